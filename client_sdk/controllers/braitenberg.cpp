@@ -1,15 +1,17 @@
 // A Braitenberg vehicle ("Vehicles: Experiments in Synthetic Psychology", 1984; thesis, section 5.2): every command is
-// a weighted sum of what the robot senses, brought into the range of its channel. The experiment gives the weights:
+// a weighted sum of the robot's observations, clamped to the range of its channel. The experiment defines the weights:
 //
 //   controller: braitenberg
 //   parameters:
 //     treel/left/velocity:            # a command channel
-//       bias: 0.2                     # what it is when nothing is sensed; 0 if absent
+//       bias: 0.2                     # default: 0
 //       proximity/0/reading: -0.1     # weight of an observation channel
-//       proximity/*/reading: [...]    # weights of all that match, in their order; one number: the same for each
-// A command channel of several values gets the same sum for each.
+//       proximity/*/reading: [...]    # weights of all matches in order, or one for all
 //
-// Units: those of the command channel for a bias, the command's over the observation's for a weight.
+// The bias is the value of the command if nothing is sensed. A command channel with several values gets the same sum
+// for each.
+//
+// Units: a bias has the unit of the command channel; a weight, that of the command over that of the observation.
 
 #include <cohort/controller.hpp>
 #include <cstddef>
@@ -24,7 +26,7 @@ constexpr std::string_view bias = "bias";
 
 struct Input {
   cohort::ObservationChannel channel;
-  std::size_t index;  // in the channel
+  std::size_t index;  // index of the value in the channel
   double weight;
 };
 
@@ -35,28 +37,29 @@ struct Output {
   std::vector<Input> inputs;
 };
 
-// The command channel whose settings a parameter belongs to. Channels may have a '.' in their names.
+// Returns the command channel that a parameter configures. Channel names may contain a '.'.
 std::string command_of(const cohort::Start& start, const std::string& parameter) {
   for (const cohort::ChannelInfo& channel : start.command_channels)
     if (parameter.starts_with(channel.name + ".")) return channel.name;
   const std::string unknown = parameter.substr(0, parameter.find('.'));
-  start.command(unknown);  // throws, and names the nearest ones, unless a channel stands there without a sensor
+  start.command(unknown);  // throws with the nearest names, unless it is a channel without a sensor
   throw cohort::ParameterError(parameter,
                                "expected 'bias' and weights of observation channels under '" + unknown + "'");
 }
 
-class Braitenberg final : public cohort::Controller {
+class Braitenberg final : public cohort::StatelessController {
  public:
   void start(const cohort::Start& start) override {
     outputs_.clear();
     for (const cohort::Parameter& parameter : start.parameters.all()) {
       try {
         add(start, parameter.name);
-      } catch (const cohort::ChannelError& error) {  // a mistake of the parameter that names the channel
+      } catch (const cohort::ChannelError& error) {  // an error of the parameter that names the channel
         throw cohort::ParameterError(parameter.name, error.what());
       }
     }
-    if (outputs_.empty()) throw std::runtime_error("braitenberg needs parameters: the weights of the commands");
+    if (outputs_.empty())
+      throw std::runtime_error("braitenberg: no parameters given; expected the weights of the commands");
   }
 
   void step(const cohort::Observation& observation, cohort::Command& command) override {
@@ -66,8 +69,6 @@ class Braitenberg final : public cohort::Controller {
       for (std::size_t i = 0; i < output.channel.size; ++i) command.set(output.channel, sum, i);
     }
   }
-
-  void save(cohort::StateWriter&) const override {}  // it remembers nothing
 
  private:
   void add(const cohort::Start& start, const std::string& parameter) {
@@ -88,8 +89,7 @@ class Braitenberg final : public cohort::Controller {
     const std::vector<double> weights = start.parameters.reals(parameter);
     if (weights.size() != 1 && weights.size() != inputs.size())
       throw cohort::ParameterError(parameter, "expected one weight or " + std::to_string(inputs.size()) +
-                                                  ", one for each value that matches, not " +
-                                                  std::to_string(weights.size()));
+                                                  ", one per matching value, not " + std::to_string(weights.size()));
     for (std::size_t i = 0; i < inputs.size(); ++i) inputs[i].weight = weights[weights.size() == 1 ? 0 : i];
     outputs_.back().inputs.insert(outputs_.back().inputs.end(), inputs.begin(), inputs.end());
   }

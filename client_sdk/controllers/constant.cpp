@@ -1,4 +1,4 @@
-// Gives every command channel that the experiment names one value, for ever.
+// Sends constant values to the command channels that the experiment names.
 //
 //   controller: constant
 //   parameters:
@@ -11,7 +11,7 @@
 
 namespace {
 
-// An unknown channel is a mistake of the parameter that names it.
+// Returns a command channel; reports an unknown one as an error of the parameter that names it.
 cohort::CommandChannel command_named(const cohort::Start& start, const std::string& name) {
   try {
     return start.command(name);
@@ -20,7 +20,7 @@ cohort::CommandChannel command_named(const cohort::Start& start, const std::stri
   }
 }
 
-class Constant final : public cohort::Controller {
+class Constant final : public cohort::StatelessController {
  public:
   void start(const cohort::Start& start) override {
     settings_.clear();
@@ -43,8 +43,6 @@ class Constant final : public cohort::Controller {
     for (const Setting& setting : settings_)
       for (std::size_t i = 0; i < setting.values.size(); ++i) command.set(setting.channel, setting.values[i], i);
   }
-
-  void save(cohort::StateWriter&) const override {}  // it remembers nothing
 
  private:
   struct Setting {

@@ -1,9 +1,9 @@
-// Aggregation by sound, for the s-bot: every robot calls, goes where it hears more, and stays where it hears much. Who
-// is in a small group leaves it now and then, so that small groups dissolve into large ones: the rule by which
-// cockroaches and swarms of robots aggregate (Garnier et al., "Aggregation behaviour as a source of collective decision
-// in a group of cockroach-like robots", ECAL 2005).
+// Aggregation by sound, for the s-bot: every robot calls, drives towards louder sound, and stays where it is loud. A
+// robot in a small group leaves from time to time, so that small groups merge into large ones. Cockroaches and robot
+// swarms aggregate by this rule (Garnier et al., "Aggregation behaviour as a source of collective decision in a group
+// of cockroach-like robots", ECAL 2005).
 //
-// It remembers what it is doing, which snapshots have; one that takes over in the middle of a run begins by walking.
+// Snapshots contain its state. A copy that takes over in the middle of a run starts by walking.
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +12,12 @@
 
 namespace {
 
-constexpr double full_speed = 0.2;     // of a track [m/s]
-constexpr double turning_speed = 0.1;  // of a track when turning on the spot [m/s]
-constexpr double too_near = 0.8;       // of an obstacle: 4 cm
-constexpr double tone = 1000.0;        // that all call with [Hz]
-constexpr double quiet = 1e-4;         // less than this is no sound at all [1]
-constexpr double in_company = 0.5;     // neighbours that count as company
+constexpr double full_speed = 0.2;     // speed of a track [m/s]
+constexpr double turning_speed = 0.1;  // speed of a track when turning on the spot [m/s]
+constexpr double too_near = 0.8;       // reading of an obstacle at 4 cm
+constexpr double tone = 1000.0;        // frequency of all calls [Hz]
+constexpr double quiet = 1e-4;         // lower levels are silence [1]
+constexpr double in_company = 0.5;     // number of neighbours that count as company
 
 class Aggregation final : public cohort::Controller {
  public:
@@ -37,7 +37,8 @@ class Aggregation final : public cohort::Controller {
     robot_.call(command, tone, call_);
 
     const cohort::Sbot::Sound sound = robot_.listen(observation);
-    const double neighbours = sound.level / (call_ / (touching * touching));  // that touch, as far as one hears
+    const double neighbours =
+        sound.level / (call_ / (touching * touching));  // number of touching neighbours with this sound level
     if (observation.time() >= until_) decide(neighbours, observation.time());
     const bool stays = state_ == State::staying;
     robot_.shine(command, stays ? cohort::Sbot::Color::red : cohort::Sbot::Color::blue);
@@ -54,9 +55,9 @@ class Aggregation final : public cohort::Controller {
 
  private:
   enum class State { walking, staying, leaving };
-  static constexpr double touching = 0.12;  // between the middles of two s-bots side by side [m]
+  static constexpr double touching = 0.12;  // distance between the centres of two adjacent s-bots [m]
 
-  // Whoever hears neighbours stays; the fewer they are, the sooner it leaves again.
+  // Decides whether to stay near neighbours; the fewer there are, the sooner the robot leaves again.
   void decide(double neighbours, std::chrono::nanoseconds time) {
     using std::chrono::milliseconds;
     const bool is_in_company = neighbours > in_company;
@@ -86,7 +87,7 @@ class Aggregation final : public cohort::Controller {
       robot_.turn(command, 0.0, turn * turning_speed);
       return;
     }
-    // The differences of the microphones are the gradient of the sound.
+    // The differences between the microphones are the gradient of the sound.
     double ahead = 1.0;
     double aside = 0.0;
     if (sound.level > quiet && state_ == State::walking) {
@@ -103,13 +104,13 @@ class Aggregation final : public cohort::Controller {
 
   cohort::Sbot robot_;
   double call_ = 0.0;     // intensity of a call
-  double crowd_ = 0.0;    // so many more neighbours make a robot stay e times as long
-  double leaving_ = 0.0;  // how often a robot would leave that has none [1/s]
+  double crowd_ = 0.0;    // so many more neighbours make the stay e times longer
+  double leaving_ = 0.0;  // leaving rate of a robot without neighbours [1/s]
   double step_ = 0.0;     // [s]
 
   std::mt19937_64 random_;
   State state_ = State::walking;
-  std::chrono::nanoseconds until_{0};  // it leaves, without looking back
+  std::chrono::nanoseconds until_{0};  // end of a walk that ignores neighbours
   double turn_ = 1.0;
 };
 

@@ -1,7 +1,7 @@
-// Phototaxis and assembly (thesis, section 5.2.3), for the s-bot: it goes to the light, and grips whatever it can.
-// Those that hold on to each other turn their chassis under their turrets towards the light, and so move as one.
+// Phototaxis and assembly (thesis, section 5.2.3), for the s-bot: it drives to the light, and grips any robot or object
+// that it can. Connected robots turn their chassis under their turrets towards the light, and so move as one.
 //
-// It keeps nothing from one step to the next but how long it still turns away from what it could not grip.
+// Its only state is the remaining time in which it turns away from an object that it could not grip.
 
 #include <algorithm>
 #include <cmath>
@@ -9,17 +9,17 @@
 
 namespace {
 
-constexpr double full_speed = 0.1;       // of a track [m/s]
-constexpr double turning_gain = 0.15;    // of a track, of the angle to the light [m/s]
-constexpr double arrived = 0.97;         // of the brightest light sensor: some 0.5 m from a lamp of intensity 1
-constexpr double darkness = 0.03;        // what the noise of a sensor may give without any light
-constexpr double in_the_way = 0.5;       // of a proximity sensor: 10 cm
-constexpr double touching = 0.97;        // of a proximity sensor: 6 mm, nearer than what a gripper grips
-constexpr double avoiding_time = 1.5;    // after what could not be gripped [s]
-constexpr double avoiding_speed = 0.05;  // of a track [m/s]
-constexpr double tone = 1000.0;          // of who grips [Hz]
-constexpr double call = 0.005;           // what arrives of it at 1 m [1]
-constexpr double next_to = 0.13;         // of a microphone: one that calls within 13 cm
+constexpr double full_speed = 0.1;     // speed of a track [m/s]
+constexpr double turning_gain = 0.15;  // speed of a track per angle to the light [m/s]
+constexpr double arrived = 0.97;       // reading of the brightest light sensor, about 0.5 m from a lamp of intensity 1
+constexpr double darkness = 0.03;      // greatest noise of a light sensor in darkness
+constexpr double in_the_way = 0.5;     // proximity reading at 10 cm
+constexpr double touching = 0.97;      // proximity reading at 6 mm, nearer than the range of a gripper
+constexpr double avoiding_time = 1.5;  // after a failed grip [s]
+constexpr double avoiding_speed = 0.05;  // speed of a track [m/s]
+constexpr double tone = 1000.0;          // call of a gripping robot [Hz]
+constexpr double call = 0.005;           // intensity of a call at 1 m [1]
+constexpr double next_to = 0.13;         // microphone reading of a call within 13 cm
 
 class Assembly final : public cohort::Controller {
  public:
@@ -67,7 +67,7 @@ class Assembly final : public cohort::Controller {
       avoiding_for_ -= step_;
       robot_.turn(command, 0.0, avoiding_speed);
     } else if (std::max(left, right) > in_the_way) {
-      // It may be one to grip: towards it.
+      // The obstacle may be an object to grip: drive towards it.
       drive(left > right ? 0.5 : -0.5, command);
     } else if (ahead > in_the_way || light.brightest < darkness) {
       drive(0.0, command);
@@ -81,7 +81,7 @@ class Assembly final : public cohort::Controller {
   }
 
   cohort::Sbot robot_;
-  double step_ = 0.0;          // from one answer to the next [s]
+  double step_ = 0.0;          // time from one answer to the next [s]
   double avoiding_for_ = 0.0;  // [s]
 };
 

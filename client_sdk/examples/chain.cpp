@@ -1,21 +1,20 @@
-// A chain of s-bots over a gap that is too wide for one (thesis, figure 1.2b). Each drives ahead until it sees the edge
-// of the ground, or another s-bot before it, which it grips. Who is on its way calls; when nobody is heard any more,
-// all that are in the chain drive ahead together.
+// A chain of s-bots crosses a gap that is too wide for one (thesis, figure 1.2b). Each drives ahead until it detects
+// the edge of the ground, or an s-bot in front of it, which it grips. A robot on its way calls. When all calls have
+// stopped, the robots of the chain drive ahead together.
 //
-// It remembers what it is doing, which snapshots have; one that takes over in the middle of a run begins by driving
-// ahead.
+// Snapshots contain its state. A copy that takes over in the middle of a run starts by driving ahead.
 
 #include <cohort/sbot.hpp>
 
 namespace {
 
-constexpr double approach_speed = 0.06;  // of a track [m/s]
-constexpr double crossing_speed = 0.08;  // of a track [m/s]
-constexpr double steering = 0.05;        // towards the one ahead [m/s]
+constexpr double approach_speed = 0.06;  // speed of a track [m/s]
+constexpr double crossing_speed = 0.08;  // speed of a track [m/s]
+constexpr double steering = 0.05;        // gain towards the robot ahead [m/s]
 constexpr double tone = 1000.0;          // [Hz]
-constexpr double call = 0.05;            // what arrives of it at 1 m [1]
-constexpr double silence = 0.005;        // of a microphone: all that call are far away, or nobody does
-constexpr double no_ground = 0.2;        // of a ground sensor; on flat ground it reads 0.65
+constexpr double call = 0.05;            // intensity of a call at 1 m [1]
+constexpr double silence = 0.005;        // microphone reading if all callers are far away, or there are none
+constexpr double no_ground = 0.2;        // reading of a ground sensor over a gap; it reads 0.65 on flat ground
 
 class Chain final : public cohort::Controller {
  public:
@@ -39,7 +38,7 @@ class Chain final : public cohort::Controller {
     using enum cohort::Sbot::Color;
     robot_.shine(command, is_on_its_way ? blue : state_ == State::waiting ? red : green);
     if (state_ == State::approaching) {
-      // The one ahead is on the side where more is seen of it.
+      // The robot ahead is on the side with the greater readings.
       const double left = observation[robot_.proximity[0]] + observation[robot_.proximity[1]];
       const double right = observation[robot_.proximity[14]] + observation[robot_.proximity[13]];
       robot_.turn(command, approach_speed, steering * (left - right));
@@ -59,7 +58,7 @@ class Chain final : public cohort::Controller {
   enum class State { approaching, gripping, waiting, crossing };
 
   cohort::Sbot robot_;
-  std::chrono::nanoseconds wait_{0};  // from the last call to the crossing
+  std::chrono::nanoseconds wait_{0};  // time from the last call to the crossing
   State state_ = State::approaching;
   std::chrono::nanoseconds silent_since_{0};
 };

@@ -1,23 +1,22 @@
-// One s-bot lifts another (thesis, section 1.1), held from behind by a third: alone it would tip over. Each that has
-// this controller drives ahead until it can grip the one before it. Who is on its way calls; when nobody is heard any
-// more, those that are told an angle raise their arm to it, hold, lower it, and let go.
+// One s-bot lifts another (thesis, section 1.1) while a third holds it from behind, because alone it would tip over.
+// Each robot with this controller drives ahead until it can grip the one in front of it. A robot on its way calls. When
+// all calls have stopped, the robots with the parameter `angle` raise their arm to it, hold, lower it, and release.
 //
-// It remembers what it is doing, which snapshots have; one that takes over in the middle of a run begins by driving
-// ahead.
+// Snapshots contain its state. A copy that takes over in the middle of a run starts by driving ahead.
 
 #include <algorithm>
 #include <cohort/sbot.hpp>
 
 namespace {
 
-constexpr double approach_speed = 0.04;  // of a track [m/s]
-constexpr double steering = 0.04;        // towards the one ahead [m/s]
+constexpr double approach_speed = 0.04;  // speed of a track [m/s]
+constexpr double steering = 0.04;        // gain towards the robot ahead [m/s]
 constexpr double tone = 1000.0;          // [Hz]
-constexpr double call = 0.05;            // what arrives of it at 1 m [1]
-constexpr double silence = 0.005;        // of a microphone: all that call are far away, or nobody does
-constexpr double calm = 2.0;             // from the last call to the lifting [s]
-constexpr double lifting_speed = 0.1;    // of the arm [rad/s]
-constexpr double level = 0.01;           // of the arm, when it is down again [rad]
+constexpr double call = 0.05;            // intensity of a call at 1 m [1]
+constexpr double silence = 0.005;        // microphone reading if all callers are far away, or there are none
+constexpr double calm = 2.0;             // time from the last call to the lift [s]
+constexpr double lifting_speed = 0.1;    // velocity of the arm [rad/s]
+constexpr double level = 0.01;           // angle of the lowered arm [rad]
 
 class Lifting final : public cohort::Controller {
  public:
@@ -39,7 +38,7 @@ class Lifting final : public cohort::Controller {
     command.set(elevation_, raised_);
     if (state_ == State::approaching || state_ == State::gripping) robot_.call(command, tone, call);
     if (state_ == State::approaching) {
-      // The one ahead is on the side where more is seen of it.
+      // The robot ahead is on the side with the greater reading.
       const double aside = observation[robot_.proximity.front()] - observation[robot_.proximity.back()];
       robot_.turn(command, approach_speed, steering * aside);
       robot_.align_turret(observation, command);
@@ -83,9 +82,9 @@ class Lifting final : public cohort::Controller {
   }
   cohort::Sbot robot_;
   cohort::CommandChannel elevation_;
-  double angle_ = 0.0;  // to lift to [rad]
-  double hold_ = 0.0;   // how long [s]
-  double step_ = 0.0;   // from one answer to the next [s]
+  double angle_ = 0.0;  // target angle [rad]
+  double hold_ = 0.0;   // duration [s]
+  double step_ = 0.0;   // time from one answer to the next [s]
   State state_ = State::approaching;
   double calm_for_ = 0.0;  // [s]
   double held_for_ = 0.0;  // [s]

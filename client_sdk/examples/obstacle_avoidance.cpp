@@ -1,8 +1,7 @@
-// Obstacle avoidance after Braitenberg (thesis, section 5.2.1), for the s-bot: each track slows down for what is near
-// on the other side, so the robot turns away from it.
+// Obstacle avoidance after Braitenberg (thesis, section 5.2.1), for the s-bot. Each track slows down for obstacles on
+// the opposite side, so the robot turns away from them.
 //
-// It keeps nothing from one step to the next. So a copy that takes over in the middle of a run drives on as if nothing
-// had happened.
+// It has no state, so a copy that takes over in the middle of a run continues without a difference.
 
 #include <algorithm>
 #include <array>
@@ -11,16 +10,16 @@
 
 namespace {
 
-// Of the four sensors on each side that look ahead, at 12, 36, 60 and 84 degrees from straight ahead: what is beside
-// the robot matters less than what is in its way.
+// Weights of the four front sensors on each side, at 12, 36, 60 and 84 degrees from straight ahead. Obstacles beside
+// the robot have lower weights.
 constexpr std::array weights{1.0, 0.8, 0.6, 0.3};
 
-constexpr double full_speed = 0.2;      // of a track [m/s]
-constexpr double turning_speed = 0.1;   // of a track when turning on the spot [m/s]
-constexpr double too_near = 0.5;        // halfway between the edge of what the sensors see and touching
-constexpr double alignment_gain = 5.0;  // of the turret [1/s]
+constexpr double full_speed = 0.2;      // speed of a track [m/s]
+constexpr double turning_speed = 0.1;   // speed of a track when turning on the spot [m/s]
+constexpr double too_near = 0.5;        // halfway between the edge of the sensors' range and contact
+constexpr double alignment_gain = 5.0;  // gain of the turret [1/s]
 
-class ObstacleAvoidance final : public cohort::Controller {
+class ObstacleAvoidance final : public cohort::StatelessController {
  public:
   void start(const cohort::Start& start) override {
     proximity_ = start.observations("proximity/*/reading", 15);
@@ -31,7 +30,7 @@ class ObstacleAvoidance final : public cohort::Controller {
   }
 
   void step(const cohort::Observation& observation, cohort::Command& command) override {
-    // Sensors are numbered counter-clockwise from the gripper: the first ones look to the left, the last to the right.
+    // Sensors are numbered counter-clockwise from the gripper: the first ones face left, the last ones face right.
     double left = 0.0;
     double right = 0.0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -40,19 +39,16 @@ class ObstacleAvoidance final : public cohort::Controller {
     }
 
     if (std::max(left, right) > too_near) {
-      // On the spot, and always the same way: one that chose the freer side would swing to and fro in a corner for
-      // ever.
+      // Turn on the spot, always in the same direction. A robot that chose the freer side would oscillate in a corner.
       command.set(left_track_, -turning_speed);
       command.set(right_track_, turning_speed);
     } else {
       command.set(left_track_, full_speed * (1.0 - right));
       command.set(right_track_, full_speed * (1.0 - left));
     }
-    // The sensors are on the turret: keep it looking where the tracks go.
+    // The sensors are on the turret: keep it aligned with the tracks.
     command.set(turret_velocity_, -alignment_gain * observation[turret_position_]);
   }
-
-  void save(cohort::StateWriter&) const override {}  // it remembers nothing
 
  private:
   std::vector<cohort::ObservationChannel> proximity_;

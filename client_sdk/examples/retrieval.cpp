@@ -1,8 +1,8 @@
-// A swarm retrieves what is too heavy for one (thesis, figure 1.2a). An s-bot goes where the prey calls, grips it,
-// turns its chassis under its turret towards the light and drives: as soon as enough of them pull and push, the prey
-// moves.
+// A swarm retrieves an object that is too heavy for one robot, the prey (thesis, figure 1.2a). An s-bot drives towards
+// the call of the prey, grips it, turns its chassis under its turret towards the light and drives. The prey moves as
+// soon as enough robots pull and push.
 //
-// It keeps nothing from one step to the next but how long it still goes around another robot.
+// Its only state is the remaining time in which it drives around another robot.
 
 #include <algorithm>
 #include <cmath>
@@ -11,14 +11,14 @@
 
 namespace {
 
-constexpr double full_speed = 0.12;    // of a track [m/s]
-constexpr double turning_gain = 0.15;  // of a track, of the angle to where it wants to go [m/s]
-constexpr double in_the_way = 0.6;     // of a proximity sensor: 8 cm
-constexpr double around_time = 1.0;    // that it goes around what is in the way [s]
-constexpr double around = 1.2;         // to its side [rad]
-constexpr double call_at_prey = 0.4;   // what is heard next to the prey, and not one robot further out
-constexpr double darkness = 0.03;      // what the noise of a light sensor may give without any light
-constexpr double slow_down = 1.0;      // of the angle to the light: from here on it only turns [rad]
+constexpr double full_speed = 0.12;    // speed of a track [m/s]
+constexpr double turning_gain = 0.15;  // speed of a track per angle to the target [m/s]
+constexpr double in_the_way = 0.6;     // proximity reading at 8 cm
+constexpr double around_time = 1.0;    // duration of driving around an obstacle [s]
+constexpr double around = 1.2;         // angle of driving around an obstacle [rad]
+constexpr double call_at_prey = 0.4;   // sound level next to the prey; less one robot further out
+constexpr double darkness = 0.03;      // greatest noise of a light sensor in darkness
+constexpr double slow_down = 1.0;      // angle to the light from which on it only turns [rad]
 
 class Retrieval final : public cohort::Controller {
  public:
@@ -50,7 +50,7 @@ class Retrieval final : public cohort::Controller {
     const bool is_at_prey = sound.level > call_at_prey;
     if (ahead > in_the_way && !is_at_prey) around_for_ = around_time;
     around_for_ = is_at_prey ? 0.0 : std::max(0.0, around_for_ - step_);
-    // Others are passed on the right.
+    // Pass other robots on the right.
     const double to = sound.bearing() + observation[robot_.turret] - (around_for_ > 0.0 ? around : 0.0);
     drive(std::remainder(to, 2.0 * std::numbers::pi), ahead > in_the_way ? 0.4 : 1.0, command);
   }
@@ -70,7 +70,7 @@ class Retrieval final : public cohort::Controller {
   }
 
   cohort::Sbot robot_;
-  double step_ = 0.0;        // from one answer to the next [s]
+  double step_ = 0.0;        // time from one answer to the next [s]
   double around_for_ = 0.0;  // [s]
 };
 

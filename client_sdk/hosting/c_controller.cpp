@@ -22,7 +22,7 @@ class CallbackController final : public Controller {
     last_error().clear();
     if (self_ == nullptr && callbacks_.create != nullptr) {
       self_ = callbacks_.create();
-      if (self_ == nullptr) throw failure("its create returned NULL");
+      if (self_ == nullptr) throw failure("create returned NULL");
     }
     const CohortStart handle(start);
     const int result = callbacks_.start(self_, &handle);
@@ -55,10 +55,10 @@ class CallbackController final : public Controller {
 
  private:
   static std::runtime_error failure(const std::string& otherwise) {
-    return std::runtime_error(last_error().empty() ? otherwise + " and gave no reason" : last_error());
+    return std::runtime_error(last_error().empty() ? otherwise + " without an error message" : last_error());
   }
   static void check(int result) {
-    if (result != 0) throw failure("it returned " + std::to_string(result));
+    if (result != 0) throw failure("the callback returned " + std::to_string(result));
   }
 
   const CohortController callbacks_;
@@ -66,7 +66,7 @@ class CallbackController final : public Controller {
   void* self_ = nullptr;
 };
 
-// A program reads what a plugin in C exports as a Plugin.
+// Programs read a C plugin's exported symbol as a Plugin.
 static_assert(COHORT_PLUGIN_ABI == Plugin::current_abi);
 static_assert(sizeof(CohortPlugin) == sizeof(Plugin));
 static_assert(offsetof(CohortPlugin, abi) == offsetof(Plugin, abi));

@@ -7,16 +7,16 @@
 #include "client_sdk/include/cohort/cohort.h"
 #include "client_sdk/include/cohort/controller.hpp"
 
-/// What stands behind the handles of cohort.h.
+/// Definitions of the handles of cohort.h.
 
 struct CohortStart {
   explicit CohortStart(const cohort::Start& its_start);
 
   const cohort::Start& start;
   CohortStartInfo info;
-  // These two change under a const handle, as a C callback gets it.
+  // These two are mutable because C callbacks get a const handle.
   mutable std::optional<std::string> mistake;  ///< the first one
-  mutable std::deque<std::string> texts;       ///< that were given out
+  mutable std::deque<std::string> texts;       ///< returned texts
 };
 
 struct CohortObservation {
@@ -38,7 +38,7 @@ struct CohortStateReader {
 
 namespace cohort {
 
-/// This thread's, for `cohort_last_error`.
+/// Returns this thread's text for `cohort_last_error`.
 std::string& last_error();
 
 }  // namespace cohort

@@ -32,7 +32,7 @@ CohortCommandChannel handle_of(const CommandChannel& channel) {
   return {channel.offset, channel.size, channel.lower, channel.upper};
 }
 
-// What `call` gives. If it throws, that is a mistake of the start, and `otherwise` is given.
+// Returns the result of `call`. If it throws, records an error of the start and returns `otherwise`.
 template <class Result, class Call>
 Result looked_up(const CohortStart* start, Result otherwise, Call call) noexcept {
   try {
@@ -68,7 +68,7 @@ const char* kept(const CohortStart* start, std::string text) {
 }
 
 std::int64_t whole(const Parameters& parameters, const char* name) {
-  constexpr double most = 9007199254740992.0;  // 2^53: all whole numbers up to it have a float64
+  constexpr double most = 9007199254740992.0;  // 2^53: float64 represents all integers up to this one
   const double number = parameters.real(name);
   if (number != std::trunc(number) || std::abs(number) > most) {
     throw ParameterError(name, "expected a whole number, not '" + parameters.text(name) + "'");

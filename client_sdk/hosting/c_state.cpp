@@ -4,7 +4,7 @@
 
 namespace {
 
-// Of state that cannot be read any further, 0.
+// Reads a value. Returns 0 once the state cannot be read any further.
 template <class Value>
 Value loaded(CohortStateReader* state) {
   Value value{};
@@ -37,8 +37,7 @@ bool cohort_load_flag(CohortStateReader* state) { return loaded<bool>(state); }
 void cohort_load_bytes(CohortStateReader* state, void* bytes, std::size_t size) {
   const auto saved = loaded<std::string>(state);
   if (!state->mistake && saved.size() != size)
-    state->mistake =
-        "the state has " + std::to_string(saved.size()) + " bytes where " + std::to_string(size) + " are expected";
+    state->mistake = "invalid state: expected " + std::to_string(size) + " bytes, not " + std::to_string(saved.size());
   if (size == 0) return;
   std::memset(bytes, 0, size);
   if (!state->mistake) std::memcpy(bytes, saved.data(), size);

@@ -7,7 +7,7 @@
 namespace cohort {
 namespace {
 
-// `*` stands for any run of characters but `/`.
+// Returns true if the name matches; `*` matches any characters except `/`.
 bool matches(std::string_view pattern, std::string_view name) {
   if (pattern.empty()) return name.empty();
   if (pattern.front() == '*') {
@@ -23,7 +23,7 @@ ChannelError no_channel(const Start& start, std::string_view kind, std::string_v
                         const std::vector<ChannelInfo>& channels) {
   std::string message =
       "robot '" + start.name + "' (" + start.model + ") has no " + std::string(kind) + " '" + std::string(name) + "'";
-  if (channels.empty()) return ChannelError{message + ", and no other " + std::string(kind) + " either"};
+  if (channels.empty()) return ChannelError{message + "; it has no " + std::string(kind) + "s at all"};
   std::vector<std::string> names;
   names.reserve(channels.size());
   for (const ChannelInfo& channel : channels) names.push_back(channel.name);
@@ -40,7 +40,7 @@ ChannelError no_channel(const Start& start, std::string_view kind, std::string_v
 constexpr std::string_view observation_kind = "observation channel";
 constexpr std::string_view command_kind = "command channel";
 
-// The channels that `accepts`; throws if none.
+// Returns the channels for which `accepts` is true; throws if there are none.
 template <class Accepts>
 std::vector<const ChannelInfo*> select(const Start& start, std::string_view kind, std::string_view name,
                                        const std::vector<ChannelInfo>& channels, Accepts accepts) {
@@ -75,7 +75,7 @@ std::vector<ObservationChannel> Start::observations(std::string_view pattern, st
   std::vector<ObservationChannel> found = observations(pattern);
   if (found.size() != count)
     throw ChannelError("robot '" + name + "' (" + model + ") has " + std::to_string(found.size()) + " " +
-                       std::string(observation_kind) + "s '" + std::string(pattern) + "', and not " +
+                       std::string(observation_kind) + "s '" + std::string(pattern) + "', expected " +
                        std::to_string(count));
   return found;
 }

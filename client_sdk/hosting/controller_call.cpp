@@ -14,7 +14,7 @@ std::atomic<const Callee*> callee_now{nullptr};
 std::atomic<const char*> what_now{nullptr};
 std::atomic<std::uint64_t> tick_now{0};
 std::atomic<pthread_t> thread_now{};
-std::mutex text_is_read;  // no callee is destroyed meanwhile
+std::mutex text_is_read;  // no callee is destroyed while this is locked
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 static_assert(std::atomic<const Callee*>::is_always_lock_free && std::atomic<pthread_t>::is_always_lock_free);

@@ -5,17 +5,17 @@
 #include <string>
 #include <utility>
 
-/// Which controller's code runs now, for messages about a process that this code ends, crashes or holds up.
+/// Tracks which controller's code is running, for messages about a process that this code ends, crashes or blocks.
 namespace cohort {
 
-/// A controller, or a plugin, as messages name it: `the controller 'wander' of sbot_3 (team swarm)`.
+/// A controller or a plugin, with its name in messages: `the controller 'wander' of sbot_3 (team swarm)`.
 class Callee {
  public:
   explicit Callee(std::string text) : text_(std::move(text)) {}
   Callee(const std::string& controller, const std::string& robot, const std::string& team);
   Callee(const Callee&) = delete;
   Callee& operator=(const Callee&) = delete;
-  ~Callee();  ///< waits for those that read the text
+  ~Callee();  ///< waits for readers of the text
 
   const std::string& text() const { return text_; }
 
@@ -23,29 +23,29 @@ class Callee {
   std::string text_;
 };
 
-/// A call of a controller's code that is under way as long as this lives. One at a time in a process is told about; it
-/// costs five stores.
+/// A call of a controller's code, active during the lifetime of this object. Only one per process is tracked; it costs
+/// five stores.
 class ControllerCall {
  public:
-  /// `what`: such as `step`; lives as long as the program.
+  /// `what` is the called function, such as `step`; it must live as long as the program.
   ControllerCall(const Callee& callee, const char* what, std::uint64_t tick) noexcept;
   ControllerCall(const ControllerCall&) = delete;
   ControllerCall& operator=(const ControllerCall&) = delete;
   ~ControllerCall();
 };
 
-/// The call that is under way.
+/// The active call.
 struct CallUnderWay {
-  const Callee* callee = nullptr;  ///< none: none is
+  const Callee* callee = nullptr;  ///< null: no call is active
   const char* what = nullptr;
   std::uint64_t tick = 0;
   bool is_on_this_thread = false;
 };
-/// Returns the call that is under way. Also for signal handlers; on another thread than that of the call, its callee
-/// may be gone at any time.
+/// Returns the active call. May be used in signal handlers. On another thread than that of the call, its callee may be
+/// destroyed at any time.
 CallUnderWay call_under_way() noexcept;
 
-/// Returns `the controller '…' of … has not returned from step` for the call that is under way. Any thread may ask.
+/// Returns `the controller '…' of … has not returned from step` for the active call. Thread-safe.
 std::optional<std::string> describe_call();
 
 }  // namespace cohort

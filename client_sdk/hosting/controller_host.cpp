@@ -11,7 +11,7 @@
 namespace cohort {
 namespace {
 
-// Runs a controller's code. Whatever it throws becomes a failure that says whose, where and why.
+// Runs a controller's code. Turns any exception into a failure that names the robot, the function and the reason.
 template <class Failure = ControllerFailure, class Call>
 decltype(auto) guarded(const Callee& callee, const std::string& robot, const char* function, std::uint64_t tick,
                        Call call) {
@@ -27,7 +27,7 @@ decltype(auto) guarded(const Callee& callee, const std::string& robot, const cha
   } catch (const std::exception& error) {
     throw failure(error.what());
   } catch (...) {
-    throw failure("it threw something that is not a std::exception");
+    throw failure("the exception is not a std::exception");
   }
 }
 
@@ -53,13 +53,13 @@ StartReason reason_of(wire::StartReason reason) {
     case wire::StartReason::restored:
     case wire::StartReason::restored_with_state: return StartReason::restored;
   }
-  throw ControllerFailure("the server gives a reason to start that this version does not know");
+  throw ControllerFailure("the server sent a start reason that this version does not support");
 }
 
 const wire::Team* team_of(const wire::Admit& admit, const wire::AdmittedRobot& robot) {
   if (admit.teams.empty()) return nullptr;
   if (robot.team < admit.teams.size()) return &admit.teams[robot.team];
-  throw ControllerFailure("robot '" + robot.name + "' has a team that the server does not describe");
+  throw ControllerFailure("robot '" + robot.name + "' has a team without a description from the server");
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
     return candidate.description == robot.description;
   });
   if (description == descriptions.end()) {
-    throw ControllerFailure("robot '" + robot.name + "' has no description");
+    throw ControllerFailure("robot '" + robot.name + "' has no description from the server");
   }
   Start start;
   start.robot = robot.robot;
@@ -112,7 +112,7 @@ struct ControllerHost::Robot {
   OwnedController controller;
   std::size_t observation_size = 0;
   std::vector<double> neutral;
-  std::uint64_t tick = 0;  // of its start, or its last step
+  std::uint64_t tick = 0;  // tick of its start or its last step
 };
 
 ControllerHost::ControllerHost(ControllerKind kind) : kind_(std::move(kind)) {}
@@ -120,14 +120,14 @@ ControllerHost::~ControllerHost() { drop_controllers(); }
 
 void ControllerHost::drop_controllers() {
   for (Robot& robot : robots_) {
-    if (robot.controller == nullptr) continue;  // another one of the robot's has it now
+    if (robot.controller == nullptr) continue;  // the robot's controller has moved to another entry
     const ControllerCall under_way(*robot.callee, "its destructor", robot.tick);
     robot.controller.reset();
   }
   robots_.clear();
 }
 
-// Mostly the one after the last that was found: frames have robots in order.
+// Tries the robot after the last one found first, because frames have robots in order.
 ControllerHost::Robot* ControllerHost::find(std::uint32_t id) {
   if (next_ >= robots_.size()) next_ = 0;
   if (next_ < robots_.size() && robots_[next_].id == id) return &robots_[next_++];
@@ -168,21 +168,21 @@ void ControllerHost::start(const wire::Admit& admit, std::span<const wire::Robot
 }
 
 std::span<const double> ControllerHost::answer(const wire::Observation& frame) {
-  // Sized before anything runs: the controllers get spans into it.
+  // Compute the size before any controller runs, because they get spans into the vector.
   std::size_t observed = 0;
   std::size_t commanded = 0;
   for (const std::uint32_t id : frame.robots) {
     const Robot* robot = find(id);
     if (robot == nullptr) {
       throw ControllerFailure("the frame of tick " + std::to_string(frame.tick) + " has robot " + std::to_string(id) +
-                              ", which this process was not given");
+                              ", which this process does not drive");
     }
     observed += robot->observation_size;
     commanded += robot->neutral.size();
   }
   if (observed != frame.values.size()) {
     throw ControllerFailure("the frame of tick " + std::to_string(frame.tick) + " has " +
-                            std::to_string(frame.values.size()) + " values where its robots' descriptions have " +
+                            std::to_string(frame.values.size()) + " values; the descriptions of its robots require " +
                             std::to_string(observed));
   }
   values_.resize(commanded);
@@ -212,8 +212,8 @@ std::vector<RobotState> ControllerHost::save() const {
     guarded<SaveFailure>(*robot.callee, robot.name, "save", robot.tick, [&] {
       robot.controller->save(writer);
       if (writer.bytes().size() > largest_state)
-        throw StateError("its state has " + std::to_string(writer.bytes().size()) + " bytes, and " +
-                         std::to_string(largest_state) + " are the most");
+        throw StateError("its state has " + std::to_string(writer.bytes().size()) + " bytes; the maximum is " +
+                         std::to_string(largest_state));
     });
     if (!writer.is_left_out()) saved.state = {kind_.name, {writer.bytes().begin(), writer.bytes().end()}};
   }
@@ -221,7 +221,7 @@ std::vector<RobotState> ControllerHost::save() const {
 }
 
 std::vector<std::string> ControllerHost::load(std::span<const RobotState> states) {
-  std::set<std::string> useless;  // kinds of controllers
+  std::set<std::string> useless;  // names of controller kinds
   for (const auto& [id, state] : states) {
     Robot* const robot = find(id);
     if (robot == nullptr || !state) continue;
@@ -233,14 +233,14 @@ std::vector<std::string> ControllerHost::load(std::span<const RobotState> states
       StateReader reader(state->bytes);
       robot->controller->load(reader);
       if (!reader.rest().empty())
-        throw StateError("it left " + std::to_string(reader.rest().size()) + " of " +
-                         std::to_string(state->bytes.size()) + " bytes of its state unread");
+        throw StateError("load did not read " + std::to_string(reader.rest().size()) + " of " +
+                         std::to_string(state->bytes.size()) + " bytes of its state");
     });
   }
   std::vector<std::string> notices;
   for (const std::string& kind : useless)
-    notices.push_back("the state is of controllers '" + kind + "', which '" + kind_.name +
-                      "' cannot go on from: it begins anew");
+    notices.push_back("the saved state belongs to controller '" + kind + "'; '" + kind_.name +
+                      "' cannot load it and starts without state");
   return notices;
 }
 

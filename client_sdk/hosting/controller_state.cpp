@@ -19,12 +19,13 @@ std::vector<RobotState> unpack(std::span<const std::byte> bytes) {
     RobotState each;
     bool is_saved = false;
     reader.read(each.robot, is_saved);
-    if (!states.empty() && each.robot <= states.back().robot) throw StateError("the state's robots do not ascend");
+    if (!states.empty() && each.robot <= states.back().robot)
+      throw StateError("invalid controller state: robot ids are not in ascending order");
     if (is_saved) {
       ControllerState& state = each.state.emplace();
       reader.read(state.controller, state.bytes);
       if (state.controller.size() > longest_controller_name || state.bytes.size() > largest_state)
-        throw StateError("the state of a robot is larger than it may be");
+        throw StateError("invalid controller state: the state of a robot is too large");
     }
     states.push_back(std::move(each));
   }

@@ -6,7 +6,7 @@
 
 namespace cohort {
 
-/// The names that are most like one that does not exist, nearest first, at most `count`.
+/// Returns at most `count` of the names, the most similar to `name` first.
 std::vector<std::string> nearest_names(std::string_view name, std::vector<std::string> names, std::size_t count);
 
 }  // namespace cohort

@@ -84,8 +84,8 @@ void Parameters::check_all_were_asked_for() const {
     return std::find(asked_.begin(), asked_.end(), parameter.name) == asked_.end();
   });
   if (left_over == parameters_.end()) return;
-  std::string message = "the controller has no such parameter";
-  if (asked_.empty()) throw ParameterError(left_over->name, message + ", and no other either");
+  std::string message = "unknown parameter";
+  if (asked_.empty()) throw ParameterError(left_over->name, message + "; the controller has no parameters");
   constexpr std::size_t shown = 3;
   message += "; the nearest are";
   const char* separator = " ";
@@ -105,7 +105,7 @@ const Parameter* Parameters::find(std::string_view name) const {
 
 const Parameter& Parameters::get(std::string_view name) const {
   const Parameter* const parameter = find(name);
-  if (parameter == nullptr) throw ParameterError(std::string(name), "the controller needs it, and it is not given");
+  if (parameter == nullptr) throw ParameterError(std::string(name), "required by the controller, but not given");
   return *parameter;
 }
 

@@ -35,12 +35,13 @@ std::string names_of_plugins(const std::vector<fs::path>& directories) {
   return names.empty() || names.size() > few ? "" : "; known: " + joined(names);
 }
 
-// What dlopen says, without the path, and what to do about it.
+// Returns the message of dlopen without the path, and advice.
 std::string reason_not_loaded(const fs::path& path) {
   const char* error = ::dlerror();
   std::string reason = error != nullptr ? error : "unknown error";
   if (const std::string prefix = path.string() + ": "; reason.starts_with(prefix)) reason.erase(0, prefix.size());
-  if (reason.starts_with("undefined symbol")) return reason + ". Link what defines it into the plugin";
+  if (reason.starts_with("undefined symbol"))
+    return reason + ". Link the library that defines the symbol into the plugin";
   return reason;
 }
 
@@ -48,10 +49,10 @@ fs::path existing_file(const std::string& path, const char* what) {
   std::error_code ignored;
   fs::path file = fs::absolute(path).lexically_normal();
   if (fs::is_regular_file(file, ignored)) return file;
-  throw std::runtime_error(std::string("there is no ") + what + " " + file.string());
+  throw std::runtime_error("no " + std::string(what) + " at " + file.string());
 }
 
-// A plugin, and the file of Python that it is to run, if any.
+// A plugin, and the Python file that it runs, if any.
 struct ControllerFiles {
   fs::path plugin;
   fs::path script{};
@@ -59,13 +60,14 @@ struct ControllerFiles {
 
 ControllerFiles find_controller(const std::string& name_or_path, const std::vector<fs::path>& directories) {
   if (!is_script(name_or_path)) return {find_plugin(name_or_path, directories)};
-  fs::path script = existing_file(name_or_path, "file of a controller");
+  fs::path script = existing_file(name_or_path, "controller file");
   try {
     return {find_plugin("python", directories), std::move(script)};
   } catch (const std::runtime_error&) {
-    throw std::runtime_error("cannot run " + script.string() +
-                             ": controllers in Python need the Python package of Cohort, whose plugin 'python' is not "
-                             "installed. Install the package, or put the folder of python.so into COHORT_PLUGIN_PATH");
+    throw std::runtime_error(
+        "cannot run " + script.string() +
+        ": controllers in Python require the Python package of Cohort, and its plugin 'python' is not "
+        "installed. Install the package, or add the folder of python.so to COHORT_PLUGIN_PATH");
   }
 }
 
@@ -88,8 +90,8 @@ fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path
     if (fs::is_regular_file(path, ignored)) return path;
     tried += (tried.empty() ? "" : ", ") + path.string();
   }
-  throw std::runtime_error("there is no controller plugin '" + name_or_path + "'" + names_of_plugins(directories) +
-                           ". Tried " + tried + ". Give its path, or put its folder into COHORT_PLUGIN_PATH");
+  throw std::runtime_error("unknown controller plugin '" + name_or_path + "'" + names_of_plugins(directories) +
+                           ". Tried " + tried + ". Give the plugin's path, or add its folder to COHORT_PLUGIN_PATH");
 }
 
 LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs::path>& directories)
@@ -105,7 +107,7 @@ LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs
   }
   if (library_ != nullptr) plugin_ = static_cast<const Plugin*>(::dlsym(library_.get(), "cohort_plugin"));
   if (plugin_ == nullptr) throw std::runtime_error("cannot load " + path_.string() + ": " + reason_not_loaded(path_));
-  // First in the struct in every version, so it can be read before anything else is trusted.
+  // The first member in every version, so it can be read before the rest is trusted.
   check_plugin_abi(path_, plugin_->abi);
   if (script_.empty())
     kind_ = kind_of(*plugin_);
@@ -113,12 +115,12 @@ LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs
     read_script();
 }
 
-// Now, so that a mistake in the file is told before any robot is claimed.
+// Reads the file now, so that errors in it are reported before any robot is claimed.
 void LoadedPlugin::read_script() {
   using KindInFile = void(const char* file, ControllerKind& kind);
   const auto kind_in_file = reinterpret_cast<KindInFile*>(::dlsym(library_.get(), "cohort_kind_in_file"));
   if (kind_in_file == nullptr)
-    throw std::runtime_error(path_.string() + " does not run files of Python. It is not the plugin of this version");
+    throw std::runtime_error(path_.string() + " cannot run Python files. Install the Python package of this version");
   const Callee callee("the controller " + script_.string());
   const ControllerCall under_way(callee, "its module", 0);
   kind_in_file(script_.c_str(), kind_);

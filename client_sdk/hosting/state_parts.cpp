@@ -31,8 +31,9 @@ bool StateParts::take(std::span<const std::uint8_t> data, std::uint64_t offset, 
   if (is_complete_ || offset != bytes_.size()) return false;
   if (offset == 0) size_ = size;
   if (size_ != size || size > most_ || data.size() > size - offset || (data.empty() && offset != size))
-    throw StateError("a part of " + std::to_string(data.size()) + " bytes from " + std::to_string(offset) + " on of " +
-                     std::to_string(size) + " does not fit; at most " + std::to_string(most_) + " are possible");
+    throw StateError("invalid part of a controller state: " + std::to_string(data.size()) + " bytes at offset " +
+                     std::to_string(offset) + " of " + std::to_string(size) + " bytes, at most " +
+                     std::to_string(most_) + " in total");
   const auto part = std::as_bytes(data);
   bytes_.insert(bytes_.end(), part.begin(), part.end());
   is_complete_ = bytes_.size() == size_;

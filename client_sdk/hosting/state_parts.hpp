@@ -10,41 +10,42 @@
 
 namespace cohort {
 
-/// State that comes in parts which are asked for one by one: docs/protocol.md, "State of controllers". Pure logic, with
-/// the caller's clock. Not thread-safe.
+/// State that arrives in parts, which are requested one by one: docs/protocol.md, "State of controllers". Pure logic,
+/// with the caller's clock. Not thread-safe.
 class StateParts {
  public:
   using Time = std::chrono::nanoseconds;
 
-  /// Begins anew: of all, at most `most` bytes.
+  /// Starts a new transfer of at most `most` bytes in total.
   void begin(std::size_t most, Time now);
-  /// Whether the next part has to be asked for, again if it was before.
+  /// Returns true if the next part must be requested, or requested again.
   bool is_due(Time now) const { return !is_complete() && now >= ask_at_; }
   void note_question(Time now);
-  /// Where the next part begins.
+  /// Returns the offset of the next part.
   std::uint64_t offset() const { return bytes_.size(); }
-  /// False of a part that is not the next one: it has come before. Throws StateError if it cannot be a part of this.
+  /// Adds a part. Returns false if it is not the next one, because it has arrived before. Throws StateError if it is
+  /// invalid.
   bool take(std::span<const std::uint8_t> data, std::uint64_t offset, std::uint64_t size, Time now);
 
   bool is_complete() const { return is_complete_; }
-  /// When the last part came, or this began.
+  /// Returns the time at which the last part arrived, or the transfer started.
   Time heard_at() const { return heard_at_; }
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
   std::vector<std::byte> bytes_;
   std::size_t most_ = 0;
-  std::uint64_t size_ = 0;  // of all, once the first part is there
+  std::uint64_t size_ = 0;  // total size, once the first part has arrived
   bool is_complete_ = false;
   Time heard_at_{0};
   Time ask_at_{0};
   Time interval_{0};
 };
 
-/// The part of `bytes` from `offset` on that one message takes; its head is up to the caller.
+/// Returns the part of `bytes` from `offset` on that fits into one message; the caller fills in its head.
 wire::ControllerState part_of(std::span<const std::byte> bytes, std::uint64_t offset);
 
-/// What came of ControllerState, for later.
+/// A copy of a received ControllerState.
 struct KeptStateMessage {
   explicit KeptStateMessage(const wire::ControllerState& message)
       : head(message), data(message.data.begin(), message.data.end()) {

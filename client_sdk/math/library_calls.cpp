@@ -18,7 +18,7 @@
 
 #include "client_sdk/math/portable_math.hpp"
 
-extern "C" const char cohort_portable_math;  // of portable_math.cpp
+extern "C" const char cohort_portable_math;  // in portable_math.cpp
 
 namespace cohort {
 namespace {
@@ -28,7 +28,7 @@ struct Function {
   std::uintptr_t ours;
 };
 
-// The function of double, or that of float, among those of one name.
+// Selects the overload for double, or for float, of functions with one name.
 Function unary(const char* name, double (*function)(double)) {
   return {name, reinterpret_cast<std::uintptr_t>(function)};
 }
@@ -76,11 +76,11 @@ const auto& our_functions() {
   return functions;
 }
 
-// A loaded object, as its dynamic section describes it (System V ABI, "Dynamic Linking").
+// A loaded object, as described by its dynamic section (System V ABI, "Dynamic Linking").
 struct Object {
   std::uintptr_t base = 0;
-  std::uintptr_t begin = 0, end = 0;              // of what is loaded
-  std::uintptr_t relro_begin = 0, relro_end = 0;  // read-only once it is bound
+  std::uintptr_t begin = 0, end = 0;              // range of the loaded segments
+  std::uintptr_t relro_begin = 0, relro_end = 0;  // read-only after relocation
   std::string_view soname{};
   std::vector<std::string_view> needed{};
   std::span<const ElfW(Rela)> calls{};  // through the procedure linkage table
@@ -90,7 +90,7 @@ struct Object {
 };
 
 void read_dynamic_section(Object& object, const ElfW(Dyn) * dynamic) {
-  // Most of these are addresses by now; those that the C library has left alone are offsets.
+  // Most of these are absolute addresses by now; the C library leaves some as offsets.
   const auto address = [&](const ElfW(Dyn) & entry) {
     return entry.d_un.d_ptr < object.base ? entry.d_un.d_ptr + object.base : entry.d_un.d_ptr;
   };
@@ -143,7 +143,7 @@ std::vector<Object> loaded_objects() {
   return objects;
 }
 
-// What the object with this code needs, and what that needs in turn.
+// Returns the libraries that the object with this code needs, directly or indirectly.
 std::vector<Object> libraries_needed() {
   const std::vector<Object> loaded = loaded_objects();
   const auto here = reinterpret_cast<std::uintptr_t>(&libraries_needed);
@@ -200,14 +200,14 @@ void write_slot(const Object& object, std::uintptr_t slot, std::uintptr_t value)
   const auto page_size = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   auto* page = reinterpret_cast<void*>(slot / page_size * page_size);
   if (mprotect(page, page_size, PROT_READ | PROT_WRITE) != 0)
-    throw std::runtime_error("the system refuses to let " + std::string(object.soname) +
-                             " be bound to portable functions (mprotect)");
+    throw std::runtime_error("cannot bind the calls of " + std::string(object.soname) +
+                             " to portable functions: mprotect failed");
   *reinterpret_cast<std::uintptr_t*>(slot) = value;
   mprotect(page, page_size, PROT_READ);
 }
 
-// Whether the program has functions of portable_math.cpp of its own. It exports them, so everything that is loaded is
-// bound to them already.
+// Returns true if the program has its own functions of portable_math.cpp. It exports them, so everything loaded is
+// already bound to them.
 bool is_bound_by_program() {
   const void* const exported = dlsym(RTLD_DEFAULT, "cohort_portable_math");
   return exported != nullptr && exported != &cohort_portable_math;
@@ -225,7 +225,7 @@ void bind_library_calls() {
 std::vector<std::string> functions_not_portable() {
   std::vector<std::string> missing;
   if (is_bound_by_program()) return missing;
-  // What the dynamic linker finds first is what it binds calls to.
+  // The dynamic linker binds calls to the first definition that it finds.
   for (const Function& function : our_functions())
     if (reinterpret_cast<std::uintptr_t>(dlsym(RTLD_DEFAULT, function.name)) != function.ours)
       missing.emplace_back(function.name);

@@ -2,13 +2,13 @@
 
 namespace cohort {
 
-/// Makes everything that is loaded in this process, such as Bullet, call the functions of portable_math.cpp. In our
-/// programs there is nothing to do: they export these functions, and the dynamic linker binds the calls of all
-/// libraries to them. A library that a program loads, such as an extension module of Python, comes too late for that:
-/// the program's C library has the names first. In a program of ours, which loads it for controllers in Python, this
-/// does nothing. Otherwise this changes the addresses that the dynamic linker has written. To be called before anything
-/// that must be portable is computed; again, for what has been loaded since. Throws std::runtime_error if the system
-/// does not allow it.
+/// Makes everything that is loaded in this process, such as Bullet, call the functions of portable_math.cpp. Our own
+/// programs do not need this: they export these functions, and the dynamic linker binds the calls of all libraries to
+/// them. For a library that another program loads, such as a Python extension module, that is too late, because the
+/// program's C library defines the names first. In that case this function changes the addresses that the dynamic
+/// linker has written. It does nothing if our own program has loaded the library, for controllers in Python. Call it
+/// before any computation that must be portable, and again after more libraries are loaded. Throws std::runtime_error
+/// if the system does not allow the change.
 void bind_library_calls();
 
 }  // namespace cohort

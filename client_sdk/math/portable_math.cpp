@@ -1,7 +1,8 @@
-// sin, cos, tan, asin, acos, atan, atan2, exp and log in + - * / and sqrt. Algorithms and coefficients are those of
-// fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, e_rem_pio2.c, e_asin.c, s_atan.c, e_exp.c, e_log.c). Within 2 ulp
-// of the C library's for |x| < 10^6, which covers every angle of a simulation. The functions of float are these,
-// rounded. What is exact in any correct implementation, as sqrt and fmod, is left to the C library.
+// sin, cos, tan, asin, acos, atan, atan2, exp and log, implemented with + - * / and sqrt. Algorithms and coefficients
+// are those of fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, e_rem_pio2.c, e_asin.c, s_atan.c, e_exp.c, e_log.c).
+// Results are within 2 ulp of the C library's for |x| < 10^6, which covers every angle of a simulation. The functions
+// of float round these results. Functions that are exact in any correct implementation, such as sqrt and fmod, remain
+// those of the C library.
 
 #include "client_sdk/math/portable_math.hpp"
 
@@ -20,7 +21,7 @@ constexpr double half_pi_low = 6.12323399573676603587e-17;  // pi/2 - half_pi
 
 double sqrt_of(double x) { return __builtin_sqrt(x); }
 
-// sin(x + tail) for |x| <= pi/4.
+// Returns sin(x + tail) for |x| <= pi/4.
 double sin_kernel(double x, double tail) {
   const double z = x * x;
   const double v = z * x;
@@ -31,7 +32,7 @@ double sin_kernel(double x, double tail) {
   return x - ((z * (0.5 * tail - v * r) - tail) - v * -1.66666666666666324348e-01);
 }
 
-// cos(x + tail) for |x| <= pi/4.
+// Returns cos(x + tail) for |x| <= pi/4.
 double cos_kernel(double x, double tail) {
   const double z = x * x;
   const double r = z * (4.16666666666666019037e-02 +
@@ -50,7 +51,7 @@ struct Reduced {
   double tail;
 };
 
-// x - n pi/2 in about 1.5 doubles (Cody and Waite in three parts).
+// Returns x - n pi/2 in about 1.5 doubles (Cody and Waite in three parts).
 Reduced reduce(double x) {
   constexpr double inverse = 6.36619772367581382433e-01;
   constexpr double part1 = 1.57079632673412561417e+00, rest1 = 6.07710050650619224932e-11;
@@ -59,7 +60,7 @@ Reduced reduce(double x) {
   double r = x - n * part1;
   double w = n * rest1;
   double value = r - w;
-  // Too much cancelled: take the second part too.
+  // Too many bits cancelled: also subtract the second part.
   const auto exponent = [](double d) { return static_cast<int>((std::bit_cast<std::uint64_t>(d) >> 52) & 0x7ff); };
   if (exponent(x) - exponent(value) > 16) {
     const double t = r;
@@ -68,7 +69,7 @@ Reduced reduce(double x) {
     w = n * rest2 - ((t - r) - w);
     value = r - w;
   }
-  // Of an angle beyond any sense every quadrant is as good, but it has to be the same one.
+  // For an angle too large to have a meaningful quadrant, any quadrant will do, as long as it is always the same.
   const bool is_countable = __builtin_fabs(n) < 0x1p62;
   return {is_countable ? static_cast<int>(static_cast<std::int64_t>(n) & 3) : 0, value, (r - value) - w};
 }
@@ -154,7 +155,7 @@ double portable_atan2(double y, double x) {
   return y_negative ? -angle : angle;
 }
 
-// (asin(s) - s) / s as a rational function of z = s^2.
+// Returns (asin(s) - s) / s as a rational function of z = s^2.
 double asin_ratio(double z) {
   const double p = z * (1.66666666666666657415e-01 +
                         z * (-3.25565818622400915405e-01 +
@@ -183,7 +184,7 @@ double portable_acos(double x) {
   if (magnitude < 0.5) return half_pi - (x - (half_pi_low - x * asin_ratio(x * x)));
   const double z = 0.5 * (1.0 - magnitude);
   const double s = sqrt_of(z);
-  const double angle = 2.0 * (s + s * asin_ratio(z));  // of the magnitude
+  const double angle = 2.0 * (s + s * asin_ratio(z));  // absolute value
   return x < 0.0 ? pi - (angle - 2.0 * half_pi_low) : angle;
 }
 
@@ -251,7 +252,7 @@ double portable_log(double x) {
 
 }  // namespace
 
-// The C library's names. Nothing above calls them, so the compiler cannot turn these into calls of themselves.
+// The names of the C library. No function above calls them, so the compiler cannot turn these into recursive calls.
 extern "C" {
 double sin(double x) noexcept { return portable_sin(x); }
 double cos(double x) noexcept { return portable_cos(x); }
@@ -289,7 +290,7 @@ float log10f(float x) noexcept { return static_cast<float>(cohort::portable_log1
 float exp2f(float x) noexcept { return static_cast<float>(cohort::portable_pow(2.0, x)); }
 float powf(float x, float y) noexcept { return static_cast<float>(cohort::portable_pow(x, y)); }
 
-// What the linker is told to look for (the CMakeLists.txt beside), so that it takes this object file before the C
-// library.
+// The symbol that the linker must find (see CMakeLists.txt in this folder), so that it takes this object file before
+// the C library.
 extern const char cohort_portable_math = 1;
 }

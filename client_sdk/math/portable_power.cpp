@@ -10,8 +10,8 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-// A number of about 106 bits: the sum of both, of which `low` is at most half a unit in the last place of `high`.
-// Sums and products: T. J. Dekker, A floating-point technique for extending the available precision, 1971.
+// A number of about 106 bits: the sum of both members. `low` is at most half a unit in the last place of `high`. Sums
+// and products follow T. J. Dekker, A floating-point technique for extending the available precision, 1971.
 struct Wide {
   double high;
   double low;
@@ -60,7 +60,7 @@ constexpr Wide ln_2 = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
 constexpr Wide log2_e = {0x1.71547652b82fep+0, 0x1.777d0ffda0d24p-56};
 constexpr Wide log10_e = {0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
 
-// m 2^exponent, of a positive number, with m from sqrt(1/2) to sqrt(2).
+// A positive number as m 2^exponent, with m from sqrt(1/2) to sqrt(2).
 struct Split {
   double m;
   int exponent;
@@ -77,8 +77,8 @@ Split split(double x) {
   return m > 1.41421356237309504880 ? Split{0.5 * m, exponent + 1} : Split{m, exponent};
 }
 
-// ln(m) for sqrt(1/2) <= m <= sqrt(2): 2 atanh(s) = 2 (s + s^3/3 + s^5/5 + ...) with s = (m - 1) / (m + 1), of which
-// s^2 is below 0.03.
+// Returns ln(m) for sqrt(1/2) <= m <= sqrt(2) as 2 atanh(s) = 2 (s + s^3/3 + s^5/5 + ...), with s = (m - 1) / (m + 1)
+// and s^2 < 0.03.
 Wide log_of_mantissa(double m) {
   const Wide s = sum_of(m, -1.0) / sum_of(m, 1.0);
   const Wide z = s * s;
@@ -88,14 +88,14 @@ Wide log_of_mantissa(double m) {
   return {2.0 * half.high, 2.0 * half.low};
 }
 
-// x 2^exponent, where that may be too large or too small for one factor.
+// Returns x 2^exponent, also if 2^exponent is too large or too small for one factor.
 double scaled(double x, int exponent) {
   const auto power = [](int n) { return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + n) << 52); };
   const int half = exponent / 2;
   return x * power(half) * power(exponent - half);
 }
 
-// e^x for |x| <= 746: 2^k e^r with |r| <= ln(2) / 2, by r = x - k ln(2) and Taylor's series of r / 16.
+// Returns e^x for |x| <= 746 as 2^k e^r with |r| <= ln(2) / 2, r = x - k ln(2), and the Taylor series of r / 16.
 double exp_of(Wide x) {
   const double k = __builtin_rint(x.high * log2_e.high);
   const Wide r = x + Wide{-k, 0.0} * ln_2;
@@ -108,7 +108,7 @@ double exp_of(Wide x) {
 
 double exp_of_product(double y, Wide logarithm) {
   constexpr double beyond = 746.0;  // e^746 is infinite, e^-746 zero
-  // The product of halves would overflow for a greater y, and any logarithm but 0 is at least 2^-53.
+  // For a greater y, the product of the halves would overflow; any logarithm except 0 is at least 2^-53.
   if (__builtin_fabs(y) > 0x1p64 || __builtin_fabs(y * logarithm.high) > beyond)
     return (y > 0.0) == (logarithm.high > 0.0) ? infinite : 0.0;
   return exp_of(Wide{y, 0.0} * logarithm);
@@ -122,7 +122,7 @@ Wide log_of_positive(double x) {
   return Wide{static_cast<double>(exponent), 0.0} * ln_2 + log_of_mantissa(m);
 }
 
-// What a logarithm of any base is where it is no number between.
+// Logarithms, to any base, of zero, infinity, NaN and negative numbers.
 bool is_special(double x) { return !(x > 0.0 && x < infinite); }
 double special_log(double x) {
   if (x == 0.0) return -infinite;
@@ -131,7 +131,7 @@ double special_log(double x) {
 
 }  // namespace
 
-// The special cases are those of IEC 60559, as of the C library.
+// The special cases are those of IEC 60559, as in the C library.
 double portable_pow(double x, double y) {
   if (y == 0.0 || x == 1.0) return 1.0;
   if (x != x || y != y) return x + y;

@@ -1,12 +1,12 @@
 #!python
-"""The command `cohort` of a wheel: the program that lies in the package, with this Python for controllers in Python."""
+"""The command `cohort` of a wheel: runs the program in the package, with this Python for controllers in Python."""
 
 import importlib.util
 import os
 import pathlib
 import sys
 
-# Found without being imported, which would take longer than the program.
+# Finds the package without importing it, which would take longer than the program.
 package = pathlib.Path(importlib.util.find_spec("cohort").origin).parent
 program = package / "bin" / "cohort"
 os.environ.setdefault("COHORT_PYTHON", sys.executable)

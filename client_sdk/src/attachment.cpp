@@ -13,6 +13,7 @@
 
 #include "client_sdk/src/client_states.hpp"
 #include "client_sdk/src/frame_queue.hpp"
+#include "client_sdk/src/network_clock.hpp"
 #include "client_sdk/src/robot_descriptions.hpp"
 #include "client_sdk/src/this_process.hpp"
 #include "client_sdk/text/printable.hpp"
@@ -21,7 +22,7 @@
 namespace cohort {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = NetworkClock;
 using namespace std::chrono_literals;
 
 constexpr auto stop_is_polled_every = 100ms;
@@ -29,21 +30,21 @@ constexpr auto state_is_asked_for_every = 20ms;
 constexpr auto patience_before_notice = 3s;
 constexpr auto joins_again_every = 1s;
 constexpr auto time_for_last_words = 500ms;
-// Where steps are longer, what a hand-over costs does not matter, and DDS must not stand still. A few may be long
-// because others had the processor.
+// For longer steps, the cost of a hand-over does not matter, and DDS must not be blocked. A few steps may be long
+// because other processes used the processor.
 constexpr auto longest_inline_frame = 1ms;
-constexpr int most_long_frames = 8;  // in a row
+constexpr int most_long_frames = 8;  // consecutive
 constexpr int frames_kept_by_dds = 8;
 
 std::optional<wire::Identity> identity_of(const ClientOptions& options) {
   if (options.secure.empty()) return std::nullopt;
   wire::Identity identity = wire::read_identity(options.secure);
   if (identity.role == wire::Role::observer)
-    throw wire::WireError("the identity in " + options.secure + " may look on, and drive no robot");
+    throw wire::WireError("the identity in " + options.secure + " is an observer's and cannot drive robots");
   return identity;
 }
 
-// Lets a lock go for a scope.
+// Releases a lock for a scope.
 class Unlocked {
  public:
   explicit Unlocked(std::unique_lock<std::mutex>& lock) : lock_(lock) { lock_.unlock(); }
@@ -55,8 +56,9 @@ class Unlocked {
   std::unique_lock<std::mutex>& lock_;
 };
 
-// One process's part of the protocol. DDS threads only put what came into the members under `mutex_`; the thread in
-// `run` does the rest (with `inline_step`, the one that brought a frame answers it, if nobody is at it).
+// The client side of the protocol for one process. DDS threads only store received data in the members under `mutex_`.
+// The thread in `run` does the rest; with `inline_step`, the thread that received a frame answers it if no other thread
+// does.
 class Attachment {
  public:
   Attachment(FrameHandler& handler, const std::string& name, const ClientOptions& options,
@@ -70,7 +72,7 @@ class Attachment {
     wire::Sender sender;
   };
 
-  // On threads of DDS.
+  // Called on DDS threads.
   void receive(const wire::Admit& admit, const wire::Sender& sender);
   void receive(const wire::RobotDescription& description, const wire::Sender& sender);
   void receive(const wire::Observation& frame);
@@ -78,7 +80,8 @@ class Attachment {
   void note_server(const wire::Sender& writer, bool alive);
   void wake(Lock lock);
 
-  // Below: with `driving_` and `lock` held; `lock` is let go while controllers and DDS are called.
+  // The functions below are called with `driving_` and `lock` held; `lock` is released during calls of controllers and
+  // DDS.
   void drive(Lock& lock);
   void drive_inline(Lock& lock);
   void heed(const wire::Report& report);
@@ -88,6 +91,7 @@ class Attachment {
 
   std::optional<ClientEnd> reason_to_leave();
   bool server_is_lost() const;
+  void tell_whether_server_responds(bool is_acknowledged);
   std::string waiting_text() const;
   ClientEnd fail(Lock& lock);
   void tell(Severity severity, const std::string& text) const;
@@ -98,27 +102,29 @@ class Attachment {
   const std::atomic<bool>& stop_;
   RunWatch* const watch_;
 
-  std::mutex driving_;  // held by whoever uses the controllers
+  std::mutex driving_;  // held by the thread that uses the controllers
   FrameHandler& handler_;
 
-  std::mutex mutex_;  // guards all down to the participant
+  std::mutex mutex_;  // guards the following members up to the participant
   std::condition_variable wake_;
   bool news_ = false;
-  int long_frames_ = 0;           // in a row, of those that a thread of DDS has answered
-  std::optional<Offer> offered_;  // an Admit not yet acted on
+  int long_frames_ = 0;           // number of consecutive ones answered on a DDS thread
+  std::optional<Offer> offered_;  // an Admit that has not been handled
   std::optional<Offer> current_;
   RobotDescriptions descriptions_;
   std::vector<wire::Report> reports_;
   FrameQueue frames_;
-  std::uint64_t tick_ = 0;  // of the frame last begun
+  std::uint64_t tick_ = 0;  // tick of the last frame that was started
   std::optional<std::string> failure_;
-  bool starting_ = false;  // controllers: they are in `start`, or have failed there
+  bool starting_ = false;  // the controllers are in `start`, or have failed there
   std::optional<ClientEnd> end_;
   std::set<std::uint64_t> servers_;  // live writers of our Admit
   std::optional<Clock::time_point> server_left_;
   std::set<std::string> reasons_told_;
   Clock::time_point since_ = Clock::now();
   bool notice_given_ = false;
+  Clock::time_point received_at_;  // the last frame
+  bool is_silent_ = false;         // the server, and the user was told
 
   wire::Participant participant_;
   wire::Writer<wire::Join> joins_;
@@ -163,8 +169,9 @@ ClientEnd Attachment::run() {
                         .robots = options_.robots};
   Clock::time_point joins_at = Clock::now();
   for (;;) {
-    // Again and again: a writer whose liveliness was lost for a moment is alive to DDS only when it writes.
+    // Write repeatedly: to DDS, a writer that has briefly lost its liveliness is alive only when it writes.
     if (Clock::now() >= joins_at) {
+      tell_whether_server_responds(joins_.matched() > 0 && joins_.wait_until_received(0ms));
       joins_.write(join);
       joins_at = Clock::now() + joins_again_every;
     }
@@ -179,6 +186,7 @@ ClientEnd Attachment::run() {
     }
     Lock lock(mutex_);
     if (const auto end = reason_to_leave()) return *end;
+    const WaitsByNetworkClock real_time;
     wake_.wait_for(lock, sleep, [&] { return news_; });
     news_ = false;
   }
@@ -187,7 +195,7 @@ ClientEnd Attachment::run() {
 void Attachment::receive(const wire::Admit& admit, const wire::Sender& sender) {
   if (admit.client != id_) return;
   Lock lock(mutex_);
-  // Only the latest counts: by writing it the server has given up the one before.
+  // Only the latest one is valid: by writing it, the server has withdrawn the previous one.
   offered_ = Offer{admit, sender};
   wake(std::move(lock));
 }
@@ -210,8 +218,9 @@ void Attachment::receive(const wire::Observation& frame) {
   if (frame.client != id_) return;
   Lock lock(mutex_);
   frames_.arrive(frame);
+  received_at_ = Clock::now();
   if (options_.inline_step && long_frames_ < most_long_frames && !offered_) {
-    news_ = true;  // for the thread in `run`: if it is at the controllers now, it looks again before it sleeps
+    news_ = true;  // for the thread in `run`: if it is using the controllers, it checks again before it sleeps
     lock.unlock();
     const std::unique_lock driving(driving_, std::try_to_lock);
     lock.lock();
@@ -263,7 +272,7 @@ void Attachment::heed(const wire::Report& report) {
   switch (report.kind) {
     case wire::ReportKind::finished: end_ = ClientEnd::finished; break;
     case wire::ReportKind::superseded:
-      tell(Severity::error, "another process has taken these robots over. " + report.text);
+      tell(Severity::error, "another process took over these robots. " + report.text);
       end_ = ClientEnd::superseded;
       break;
     case wire::ReportKind::failed:
@@ -273,7 +282,7 @@ void Attachment::heed(const wire::Report& report) {
     case wire::ReportKind::rejected:
       if (reasons_told_.insert(report.reason).second) {
         tell(Severity::warning, "the server rejected the answer to tick " + std::to_string(report.tick) + " (" +
-                                    report.reason + "; told once). " + report.text);
+                                    report.reason + "; logged once). " + report.text);
       }
       break;
   }
@@ -289,7 +298,7 @@ void Attachment::heed(Offer offer, Lock& lock) {
   const bool begun_already = current_ && current_->sender.writer == offer.sender.writer &&
                              current_->admit.run == admit.run && current_->admit.epoch == admit.epoch;
   if (begun_already) return;
-  // The epochs of another server may be lower, if its clock is behind.
+  // The epochs of another server may be lower if its clock is behind.
   if (current_ && current_->sender.participant != offer.sender.participant) frames_ = {};
   current_ = std::move(offer);
   tick_ = current_->admit.tick;
@@ -315,7 +324,7 @@ void Attachment::exchange_states(Lock& lock) {
 
 void Attachment::answer_frames(Lock& lock) {
   if (states_.are_awaited()) return;
-  // Frames may come faster than they can be answered, so what is more urgent is looked for between them.
+  // Frames may arrive faster than they can be answered, so check for more urgent events between them.
   while (!end_ && !failure_ && !stop_ && !offered_ && reports_.empty()) {
     if (const auto repeat = frames_.next_repeat()) {
       const Unlocked unlocked(lock);
@@ -326,13 +335,16 @@ void Attachment::answer_frames(Lock& lock) {
     if (frame == nullptr) return;
     tick_ = frame->tick;
     std::span<const double> values;
-    {
+    try {
       const Unlocked unlocked(lock);
       values = handler_.answer(*frame);
+    } catch (const NoAnswer&) {
+      frames_.leave_unanswered();
+      continue;
     }
     const wire::Command command = frames_.finish(values);
     const Unlocked unlocked(lock);
-    commands_.write(command);  // if it cannot be written it counts as lost, and the server asks again
+    commands_.write(command);  // a failed write counts as lost, and the server asks again
   }
 }
 
@@ -353,15 +365,28 @@ std::optional<ClientEnd> Attachment::reason_to_leave() {
   return std::nullopt;
 }
 
+// `is_acknowledged`: whether the server has acknowledged the Join of a second ago.
+void Attachment::tell_whether_server_responds(bool is_acknowledged) {
+  const Lock lock(mutex_);
+  const bool is_silent = !is_acknowledged && Clock::now() - received_at_ > joins_again_every;
+  if (!current_ || end_ || is_silent == is_silent_) return;
+  is_silent_ = is_silent;
+  const std::string server = "the server at " + options_.server + ", domain " + std::to_string(options_.domain);
+  tell(Severity::warning, is_silent ? server +
+                                          " has not responded for 1 s: it has ended or stopped, or it cannot be "
+                                          "reached. Waiting some seconds for it"
+                                    : server + " responds again");
+}
+
 bool Attachment::server_is_lost() const { return server_left_ && Clock::now() - *server_left_ > server_may_be_away; }
 std::string Attachment::waiting_text() const {
   std::string text = "waiting for a server at " + options_.server + ", domain " + std::to_string(options_.domain);
   const auto& identity = participant_.identity();
   if (!identity) return text;
   return text + ", as '" + identity->name + "' of " + identity->folder.string() +
-         ". Check that it serves with --secure, that its folder has server/" + identity->name +
-         " of the same making as this one ('cohort security list' there), and that no certificate has expired nor any "
-         "clock is wrong; 'cohort doctor' looks at all of it";
+         ". Check that the server uses --secure, that its folder contains server/" + identity->name +
+         " from the same certificate authority ('cohort security list' shows it), and that its "
+         "certificates and both clocks are valid; 'cohort doctor' checks all of this";
 }
 
 ClientEnd Attachment::fail(Lock& lock) {

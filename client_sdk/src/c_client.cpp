@@ -38,14 +38,15 @@ ClientOptions options_of(const CohortOptions* given) {
   if (given->name != nullptr) options.name = given->name;
   if (given->secure != nullptr) options.secure = given->secure;
   if (given->robots != nullptr) options.robots = split_selectors(given->robots);
-  if (options.robots.empty()) throw std::invalid_argument("the options name no robot");
+  if (options.robots.empty())
+    throw std::invalid_argument("the option 'robots' is empty; expected at least one selector");
   return options;
 }
 
 }  // namespace
 }  // namespace cohort
 
-// Hands out what a Client has for all of its robots robot by robot.
+// Splits the events of a Client, which are for all robots, into one event per robot.
 struct CohortClient {
  public:
   explicit CohortClient(const cohort::ClientOptions& options) : client_(options) {}
@@ -60,7 +61,7 @@ struct CohortClient {
     return robot == robots_.end() ? nullptr : &*robot;
   }
 
-  // Answers a robot's part of the event, and with the last robot the event itself.
+  // Answers the event of one robot, and with the last robot the event itself.
   void answer() {
     if (!std::exchange(is_under_way_, false)) return;
     if (start_ && !start_->mistake) check_parameters();
@@ -82,7 +83,7 @@ struct CohortClient {
     event_.reset();
   }
 
-  // Waits for ever without `at_most`.
+  // Returns the next event; waits without limit if `at_most` is empty.
   CohortEvent next(std::optional<std::chrono::milliseconds> at_most) {
     answer();
     while (!event_) {
@@ -135,7 +136,7 @@ struct CohortClient {
     cohort::last_error() = ended.why;
     given_.kind = cohort_event_end;
     given_.end = cohort::end_of(ended.end);
-    event_.reset();  // the client gives it again
+    event_.reset();  // the client returns it again
   }
 
   void check_parameters() {
@@ -146,14 +147,14 @@ struct CohortClient {
     }
   }
 
-  // How many events in C the event is.
+  // Returns the number of C events for the current event.
   std::size_t robot_count() const {
     if (const auto* lease = std::get_if<cohort::LeaseStart>(&*event_)) return lease->robots.size();
     if (const auto* frame = std::get_if<cohort::Frame>(&*event_)) return frame->robots.size();
     return remembers_ || std::holds_alternative<cohort::ClientEnded>(*event_) ? 1 : 0;
   }
 
-  // Of no robots, or of a state that the loop does not remember.
+  // Skips an event without robots, or of a state that the loop does not handle.
   void pass_over() {
     if (const auto* save = std::get_if<cohort::SaveState>(&*event_)) save->state->leave_out();
     client_.answer();
@@ -162,11 +163,11 @@ struct CohortClient {
 
   cohort::Client client_;
   bool remembers_ = false;
-  std::span<const cohort::DrivenRobot> robots_;  // of the lease
-  std::optional<cohort::ClientEvent> event_;     // that is not answered yet
-  std::size_t next_robot_ = 0;                   // of the event
-  CohortEvent given_{};                          // last
-  bool is_under_way_ = false;                    // and not answered
+  std::span<const cohort::DrivenRobot> robots_;  // robots of the lease
+  std::optional<cohort::ClientEvent> event_;     // not yet answered
+  std::size_t next_robot_ = 0;                   // robot of the next C event
+  CohortEvent given_{};                          // the last one
+  bool is_under_way_ = false;                    // it is not answered
   std::optional<CohortStart> start_;
   std::optional<CohortObservation> observation_;
   std::optional<CohortCommand> command_;
@@ -202,7 +203,7 @@ bool cohort_is_over(const CohortClient* client) { return client->client().is_ove
 bool cohort_policy(const CohortClient* client, uint32_t robot, CohortPolicy* policy) {
   const cohort::DrivenRobot* const driven = client->find(robot);
   if (driven == nullptr) {
-    cohort::last_error() = "this client drives no robot " + std::to_string(robot);
+    cohort::last_error() = "this client does not drive robot " + std::to_string(robot);
     return false;
   }
   *policy = {driven->policy.waits, driven->policy.period, driven->policy.phase, driven->policy.delay};

@@ -13,7 +13,7 @@ struct CohortRunEvent {
 
 namespace cohort {
 
-/// What the options in C say, over what the environment does.
+/// Returns the C options, which override those of the environment.
 template <class Options>
 Options options_in_c(const CohortOptions* given, const std::string& label) {
   Options options;
@@ -27,7 +27,7 @@ Options options_in_c(const CohortOptions* given, const std::string& label) {
   return options;
 }
 
-/// Makes a handle, or keeps why it cannot be made.
+/// Creates a handle, or stores the error.
 template <class Handle, class Options>
 Handle* make_handle(const CohortOptions* given, const std::string& label) {
   try {
@@ -44,7 +44,7 @@ inline CohortPose pose_in_c(const WorldPose& pose) {
   return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}};
 }
 
-/// One of a list, or NULL beyond the last.
+/// Returns an element of a list, or NULL beyond the last.
 template <class List>
 auto at(const List& list, std::size_t index) {
   return index < list.size() ? &list[index] : nullptr;

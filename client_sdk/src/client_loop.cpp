@@ -67,6 +67,7 @@ std::optional<ClientEvent> Client::next(std::chrono::milliseconds at_most) {
 }
 
 void Client::answer() { state_->hand_over.answer(); }
+void Client::leave_unanswered() { state_->hand_over.leave_unanswered(); }
 void Client::fail(const std::string& why) { state_->hand_over.fail(why); }
 bool Client::is_over() const { return state_->watch.is_over(); }
 int Client::descriptor() const { return state_->hand_over.descriptor(); }

@@ -4,12 +4,14 @@
 #include <span>
 #include <utility>
 
+#include "client_sdk/src/network_clock.hpp"
+
 namespace cohort {
 namespace {
 
 constexpr int state_messages_kept = 4;
 
-StateParts::Time now_for_parts() { return std::chrono::steady_clock::now().time_since_epoch(); }
+StateParts::Time now_for_parts() { return NetworkClock::now().time_since_epoch(); }
 
 }  // namespace
 
@@ -34,7 +36,7 @@ void ClientStates::receive(const wire::ControllerState& message) {
     switch (message.kind) {
       case wire::StateKind::wanted: wanted_.emplace(message); break;
       case wire::StateKind::here: here_.emplace(message); break;
-      default: return;  // of a later minor version
+      default: return;  // from a later minor version
     }
     has_news_ = true;
   }
@@ -62,7 +64,7 @@ std::vector<std::string> ClientStates::act(FrameHandler& host, std::uint64_t nex
     const std::lock_guard lock(mutex_);
     wanted = std::exchange(wanted_, std::nullopt);
   }
-  // Where a later frame is answered already, the question is an old one.
+  // If a later frame has been answered, the request is outdated.
   if (wanted && is_of_this_lease(wanted->head) && next_tick <= wanted->head.tick) return give(wanted->head, host);
   return {};
 }
@@ -83,7 +85,7 @@ std::vector<std::string> ClientStates::give(const wire::ControllerState& wanted,
   part.tick = wanted.tick;
   send(part);
   if (unsaved_.empty() || std::exchange(unsaved_told_, true)) return {};
-  return {unsaved_ + "; there is no snapshot (told once)"};
+  return {unsaved_ + "; no snapshot was taken (logged once)"};
 }
 
 std::vector<std::string> ClientStates::fetch(FrameHandler& host) {
@@ -113,7 +115,7 @@ void ClientStates::send(wire::ControllerState message) {
   message.client = client_;
   message.run = admit_->run;
   message.epoch = admit_->epoch;
-  writer_->write(message);  // lost: it is asked for again
+  writer_->write(message);  // lost: requested again
 }
 
 }  // namespace cohort

@@ -14,24 +14,24 @@
 
 namespace cohort {
 
-/// A client's part of what docs/protocol.md says of "State of controllers": gives what its controllers remember to a
-/// server that wants it, and fetches what a snapshot has of them. On the thread that uses the controllers.
+/// The client side of "State of controllers" in docs/protocol.md: sends the state of its controllers to a server on
+/// request, and fetches their state in a snapshot. Runs on the thread that uses the controllers.
 class ClientStates {
  public:
-  /// `wake` is called on threads of DDS when there is something to do.
+  /// Calls `wake` on DDS threads when there is something to do.
   ClientStates(wire::Participant& participant, std::uint64_t client, std::function<void()> wake);
 
-  /// False where an identity was made without the right to it: then the client does without.
+  /// Returns false if the identity was made without the right to it; the client then works without.
   bool are_possible() const { return writer_.has_value(); }
 
-  /// A lease has begun, and its controllers are started.
+  /// Starts a lease, whose controllers have been started.
   void begin(const wire::Admit& admit);
-  /// Whether frames have to wait until the controllers have their state.
+  /// Returns true if frames must wait until the controllers have their state.
   bool are_awaited() const { return fetched_.has_value(); }
-  /// Whether `act` may have something to do.
+  /// Returns true if `act` may have something to do.
   bool have_work() const { return fetched_ || has_news_; }
-  /// Does what there is to do. `next_tick`: all frames before it are answered. Sentences for people. Throws as the
-  /// host's functions do, and StateError.
+  /// Processes all pending requests and returns warnings. All frames before `next_tick` are answered. Throws as the
+  /// functions of `host` do, and StateError.
   std::vector<std::string> act(FrameHandler& host, std::uint64_t next_tick);
 
  private:
@@ -44,15 +44,15 @@ class ClientStates {
   const std::uint64_t client_;
   const std::function<void()> wake_;
   std::optional<wire::Admit> admit_;
-  std::optional<std::uint64_t> saved_tick_;  // of `saved_`
+  std::optional<std::uint64_t> saved_tick_;  // tick of `saved_`
   std::vector<std::byte> saved_;
   std::string unsaved_;  // why there is no `saved_`
   bool unsaved_told_ = false;
-  std::optional<StateParts> fetched_;  // while it is
+  std::optional<StateParts> fetched_;  // during a transfer
 
   std::atomic<bool> has_news_ = false;
-  std::mutex mutex_;                        // guards what came and was not looked at
-  std::optional<KeptStateMessage> wanted_;  // the last of each kind
+  std::mutex mutex_;                        // guards received data that has not been processed
+  std::optional<KeptStateMessage> wanted_;  // the last one of each kind
   std::optional<KeptStateMessage> here_;
 
   std::optional<wire::Writer<wire::ControllerState>> writer_;

@@ -6,11 +6,11 @@
 
 namespace cohort {
 
-/// DDS domains as people write them: `7`, or `7..14` with both ends. Ascending, at least one. Throws
-/// std::invalid_argument that says what was expected.
+/// Parses DDS domains: `7`, or `7..14` with both ends. Returns at least one, in ascending order. Throws
+/// std::invalid_argument with the expected format.
 std::vector<std::uint32_t> parse_domains(std::string_view text);
 
-/// Which of a server's domains this process is to use, so that many processes spread over them.
+/// Returns the domain of a server for this process, so that processes are distributed over the domains.
 std::uint32_t domain_of_this_process(const std::vector<std::uint32_t>& domains);
 
 }  // namespace cohort

@@ -23,7 +23,7 @@ EventDescriptor::~EventDescriptor() { ::close(descriptor_); }
 
 void EventDescriptor::set_readable(bool readable) const {
   std::uint64_t count = 1;
-  // Cannot fail but where it is so already.
+  // Fails only if the descriptor is already in this state.
   if (readable)
     static_cast<void>(!::write(descriptor_, &count, sizeof count));
   else

@@ -2,7 +2,7 @@
 
 namespace cohort {
 
-/// A file descriptor that poll(2) reports as readable while it is set so. Any thread.
+/// A file descriptor that poll(2) reports as readable while it is set. Thread-safe.
 class EventDescriptor {
  public:
   /// Throws std::system_error.

@@ -7,11 +7,11 @@
 namespace cohort {
 namespace {
 
-// Beyond this, frames are dropped: the server sends again what is not answered.
+// Further frames are dropped: the server sends unanswered frames again.
 constexpr std::size_t most_waiting = 64;
 constexpr std::size_t fewest_answers_kept = 8;
-// A frame that came again so often without the one awaited before it is answered: the server has that one's answer from
-// a holder before us.
+// Number of repetitions of a frame after which the awaited earlier frame is given up: the server has its answer from a
+// previous holder of the lease.
 constexpr int patience = 8;
 
 }  // namespace
@@ -81,7 +81,7 @@ const wire::Observation* FrameQueue::next() {
   return &under_way_.head;
 }
 
-// Of the frames of this lease all but the last.
+// Drops all frames of this lease except the last.
 void FrameQueue::drop_older() {
   const auto end =
       std::find_if(waiting_.begin(), waiting_.end(), [&](const Frame& frame) { return frame.head.epoch != epoch_; });
@@ -124,9 +124,9 @@ const FrameQueue::Answer* FrameQueue::find_answer(std::uint64_t tick) const {
   return found != answers_.end() ? &*found : nullptr;
 }
 
-// A due tick before this frame's may still come, if it was lost on the way and the server can still use its answer.
-// While it has the newest frame out, the server waits for the answers of the `delay` ticks before it; older ones it has
-// got or given up.
+// Returns true if the frame is the next one. An earlier due tick may still arrive, if it was lost and the server can
+// still use its answer. While the newest frame is out, the server waits for the answers of the `delay` ticks before it;
+// it has received or given up older ones.
 bool FrameQueue::in_order(const Frame& frame) const {
   if (newest_only_) return true;
   if (frame.came_again >= patience) return true;

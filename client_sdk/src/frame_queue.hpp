@@ -4,38 +4,41 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "idl/wire/messages.hpp"
 
 namespace cohort {
 
-/// The frames of one client between arrival and answer (docs/protocol.md, "Frames and answers"): answers each one of a
-/// lease once, in tick order, and keeps the latest answers for frames that the server sends again. Of a lease whose
-/// robots are all free, only the newest. Pure logic, no thread of its own, no clock; allocates nothing once the frames
-/// have their size.
+/// The frames of one client between arrival and answer (docs/protocol.md, "Frames and answers"). Answers each frame of
+/// a lease once, in tick order, and keeps the latest answers for frames that the server sends again. If all robots of a
+/// lease are free, it answers only the newest frame. Pure logic without threads or clocks; allocates nothing once the
+/// frames have their size.
 class FrameQueue {
  public:
-  /// A lease begins: forgets the answers, and drops the frames of other leases but those of later ones.
+  /// Starts a lease: discards the answers, and the frames of earlier leases.
   void begin(const wire::Admit& admit);
 
-  /// A frame came. One that was answered is due for a repeat; one that waits or is being answered is not taken twice;
-  /// one of an earlier lease is dropped. Frames may come before their lease begins.
+  /// Adds a frame. A frame that was answered is scheduled for a repeat. A frame that waits or is being answered is
+  /// ignored, and one of an earlier lease is dropped. Frames may arrive before their lease starts.
   void arrive(const wire::Observation& frame);
 
-  /// The frame to answer next, or null. It is under way until `finish`; until then `begin` must not be called.
+  /// Returns the next frame to answer, or null. It is being answered until `finish`; do not call `begin` before.
   const wire::Observation* next();
-  /// Of the lease, all frames before it are answered, under way, or not to come.
+  /// Returns the tick before which all frames of the lease are answered, being answered, or not expected.
   std::uint64_t next_tick() const { return next_tick_; }
-  /// Takes the values that answer the frame under way, and gives the command to send. Valid until `begin` or until
-  /// as many later answers as are kept.
+  /// Finishes the current frame with the values of its answer, and returns the command to send. Valid until `begin`, or
+  /// until more answers follow than are kept.
   wire::Command finish(std::span<const double> values);
-  /// An answer that the server asked for again, if there is one. Valid as what `finish` gives.
+  /// Finishes the current frame without an answer.
+  void leave_unanswered() { spare_.push_back(std::move(under_way_)); }
+  /// Returns an answer that the server requested again, if there is one. Valid like the result of `finish`.
   std::optional<wire::Command> next_repeat();
 
  private:
   struct Frame {
-    wire::Observation head;  // its spans are those of the vectors below
+    wire::Observation head;  // its spans refer to the vectors below
     std::vector<std::uint32_t> robots;
     std::vector<double> values;
     int came_again = 0;
@@ -58,19 +61,19 @@ class FrameQueue {
   const Answer* find_answer(std::uint64_t tick) const;
   wire::Command command_of(const Answer& answer) const;
 
-  std::optional<std::uint64_t> epoch_;  // of the lease: higher with each, whatever the run and the server
+  std::optional<std::uint64_t> epoch_;  // increases with each lease, across runs and servers
   std::uint32_t run_ = 0;
   std::uint64_t client_ = 0;
-  std::uint64_t next_tick_ = 0;  // all before it are answered or under way
+  std::uint64_t next_tick_ = 0;  // all frames before it are answered or being answered
   std::uint64_t longest_delay_ = 0;
-  bool newest_only_ = false;  // nobody waits for answers: older frames are not worth one
+  bool newest_only_ = false;  // the run does not wait for answers: older frames are useless
   std::vector<Schedule> schedules_;
   std::size_t answers_kept_ = 0;
 
-  std::vector<Frame> waiting_;  // by lease, then tick
+  std::vector<Frame> waiting_;  // sorted by lease, then tick
   std::vector<Frame> spare_;
   Frame under_way_;
-  std::vector<Answer> answers_;  // a ring once it is full
+  std::vector<Answer> answers_;  // a ring buffer once it is full
   std::size_t oldest_answer_ = 0;
   struct Repeat {
     std::uint64_t tick;

@@ -1,6 +1,9 @@
 #include "client_sdk/src/hand_over.hpp"
 
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
+#include <variant>
 
 #include "client_sdk/hosting/frame_handler.hpp"
 
@@ -13,6 +16,7 @@ void HandOver::offer(const ClientEvent& event) {
   changed_.wait(lock, [&] { return !event_ || left_; });
   if (event_) throw LeaveRun{};
   if (failure_) throw ControllerFailure(*std::exchange(failure_, std::nullopt));
+  if (std::exchange(unanswered_, false)) throw NoAnswer{};
 }
 
 void HandOver::end(ClientEnded ended) {
@@ -38,6 +42,18 @@ std::optional<ClientEvent> HandOver::take(std::optional<std::chrono::steady_cloc
 void HandOver::answer() {
   const Lock lock(mutex_);
   if (!std::exchange(taken_, false)) return;
+  event_.reset();
+  changed_.notify_all();
+}
+
+void HandOver::leave_unanswered() {
+  const Lock lock(mutex_);
+  const auto* frame = taken_ ? std::get_if<Frame>(&*event_) : nullptr;
+  if (frame == nullptr) throw std::logic_error("leave_unanswered: no frame is under way");
+  if (std::ranges::any_of(frame->robots, [](const FrameRobot& robot) { return robot.robot->policy.waits; }))
+    throw std::logic_error("leave_unanswered: the frame has robots of a team in lockstep, which must be answered");
+  taken_ = false;
+  unanswered_ = true;
   event_.reset();
   changed_.notify_all();
 }

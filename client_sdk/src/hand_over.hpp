@@ -11,37 +11,41 @@
 
 namespace cohort {
 
-/// Where a client's thread and the loop of a program meet: one event at a time. The thread offers and waits, the loop
+/// Hands events from a client's thread to the loop of a program, one at a time. The thread offers and waits; the loop
 /// takes and answers.
 class HandOver {
  public:
-  // On the client's thread.
+  // For the client's thread.
 
-  /// Returns when the loop has answered. Throws LeaveRun if the loop has left, and ControllerFailure if it has failed.
+  /// Offers an event and returns when the loop has answered. Throws LeaveRun if the loop has left, ControllerFailure if
+  /// it has failed, and NoAnswer if it leaves a frame unanswered.
   void offer(const ClientEvent& event);
   void end(ClientEnded ended);
 
-  // By the loop.
+  // For the loop.
 
-  /// Waits for an event until `deadline`, for ever if there is none.
+  /// Waits for an event until `deadline`, without limit if there is none.
   std::optional<ClientEvent> take(std::optional<std::chrono::steady_clock::time_point> deadline);
-  /// Answers the event that was taken, if there is one.
+  /// Answers the current event, if there is one.
   void answer();
-  /// Answers it with a failure.
+  /// Releases a frame without an answer, which is allowed only for free robots. Throws std::logic_error otherwise.
+  void leave_unanswered();
+  /// Answers the current event with a failure.
   void fail(const std::string& why);
   void leave();
 
-  /// Readable while there is something to take.
+  /// Returns a descriptor that is readable while there is an event to take.
   int descriptor() const { return descriptor_.get(); }
 
  private:
   using Lock = std::unique_lock<std::mutex>;
 
   EventDescriptor descriptor_;
-  std::mutex mutex_;  // guards all below
+  std::mutex mutex_;  // guards the following members
   std::condition_variable changed_;
-  std::optional<ClientEvent> event_;  // is on offer, or was taken and waits for its answer
+  std::optional<ClientEvent> event_;  // offered, or taken and not yet answered
   bool taken_ = false;
+  bool unanswered_ = false;
   bool left_ = false;
   std::optional<std::string> failure_;
   std::optional<ClientEnded> ended_;

@@ -34,7 +34,7 @@ std::size_t LoopHost::place_of(std::uint32_t robot, std::uint64_t tick) const {
 }
 
 std::span<const double> LoopHost::answer(const wire::Observation& frame) {
-  // Sized before the loop gets spans into it.
+  // Compute the size before the loop gets spans into the vector.
   values_.clear();
   std::size_t observed = 0;
   for (const std::uint32_t id : frame.robots) {
@@ -44,7 +44,7 @@ std::span<const double> LoopHost::answer(const wire::Observation& frame) {
   }
   if (observed != frame.values.size())
     throw ControllerFailure("the frame of tick " + std::to_string(frame.tick) + " has " +
-                            std::to_string(frame.values.size()) + " values where its robots' descriptions have " +
+                            std::to_string(frame.values.size()) + " values; the descriptions of its robots require " +
                             std::to_string(observed));
   frame_.clear();
   const std::chrono::nanoseconds time(frame.time_ns);
@@ -70,7 +70,7 @@ std::vector<RobotState> LoopHost::save() const {
     hand_over_.offer(SaveState{&robot, &writer});
     if (writer.bytes().size() > largest_state)
       throw SaveFailure("the state of robot '" + robot.start.name + "' has " + std::to_string(writer.bytes().size()) +
-                        " bytes, and " + std::to_string(largest_state) + " are the most");
+                        " bytes; the maximum is " + std::to_string(largest_state));
     if (!writer.is_left_out()) saved.state = {name_, {writer.bytes().begin(), writer.bytes().end()}};
   }
   return states;
@@ -93,8 +93,8 @@ std::vector<std::string> LoopHost::load(std::span<const RobotState> states) {
   }
   std::vector<std::string> notices;
   for (const std::string& name : useless)
-    notices.push_back("the state is of controllers '" + name + "', which '" + name_ +
-                      "' cannot go on from: it starts without it");
+    notices.push_back("the saved state belongs to controller '" + name + "'; '" + name_ +
+                      "' cannot load it and starts without state");
   return notices;
 }
 

@@ -12,10 +12,10 @@
 
 namespace cohort {
 
-/// Drives robots by handing all that comes over to a program's loop.
+/// Drives robots by handing all events to a program's loop.
 class LoopHost final : public FrameHandler {
  public:
-  /// `name`: of the program, whose saved states are told from those of others by it.
+  /// `name` is that of the program, and identifies its saved states.
   LoopHost(std::string name, HandOver& hand_over) : name_(std::move(name)), hand_over_(hand_over) {}
 
   const std::string& name() const { return name_; }
@@ -30,13 +30,13 @@ class LoopHost final : public FrameHandler {
     std::size_t observation_size = 0;
     std::vector<double> neutral;
   };
-  // The place among the robots. Throws ControllerFailure if this client does not drive it.
+  // Returns the index of a robot. Throws ControllerFailure if this client does not drive it.
   std::size_t place_of(std::uint32_t robot, std::uint64_t tick) const;
 
   const std::string name_;
   HandOver& hand_over_;
-  std::vector<DrivenRobot> robots_;  // ascending ids
-  std::vector<Layout> layouts_;      // of each
+  std::vector<DrivenRobot> robots_;  // in ascending order of ids
+  std::vector<Layout> layouts_;      // one per robot
   std::vector<FrameRobot> frame_;    // reused
   std::vector<double> values_;
 };

@@ -7,17 +7,17 @@
 
 namespace cohort {
 
-/// What servers have said of their robots. A server that takes the place of another is another participant of DDS, and
-/// may give the same number to another description.
+/// Robot descriptions received from servers. A server that replaces another is another DDS participant, and may use the
+/// same number for another description.
 class RobotDescriptions {
  public:
-  /// Replaces the description of this number, if the server has given one.
+  /// Adds a description; replaces an earlier one of the server with this number.
   void add(const wire::RobotDescription& description, std::uint64_t server);
 
-  /// Returns whether the server has described all robots that it admits.
+  /// Returns true if the server has described all robots that it admits.
   bool describe(const wire::Admit& admit, std::uint64_t server) const;
 
-  /// Forgets what other servers have said, and returns what this one has.
+  /// Discards the descriptions of other servers, and returns those of this one.
   std::vector<wire::RobotDescription> keep(std::uint64_t server);
 
  private:

@@ -63,14 +63,14 @@ Arguments parse(int argc, char** argv) {
     const std::string_view name = argument.substr(0, equals);
     const auto value = [&]() -> std::string_view {
       if (equals != std::string_view::npos) return argument.substr(equals + 1);
-      if (++i == argc) throw UsageError(std::string(name) + " wants a value");
+      if (++i == argc) throw UsageError(std::string(name) + " requires a value");
       return argv[i];
     };
     if (name == "--help" || name == "-h") {
       arguments.help = true;
     } else if (name == "--robots") {
       options.robots = split_selectors(value());
-      if (options.robots.empty()) throw UsageError("--robots names no robot");
+      if (options.robots.empty()) throw UsageError("'--robots' is empty; expected at least one selector");
     } else if (name == "--server") {
       options.server = value();
     } else if (name == "--domain") {
@@ -78,7 +78,7 @@ Arguments parse(int argc, char** argv) {
     } else if (name == "--secure") {
       options.secure = value();
     } else {
-      throw UsageError("there is no option '" + std::string(name) + "'");
+      throw UsageError("unknown option '" + std::string(name) + "'");
     }
   }
   return arguments;

@@ -6,7 +6,7 @@ namespace cohort {
 
 bool RunWatch::is_over() const {
   const std::lock_guard lock(mutex_);
-  return ended_ || (away_since_ && std::chrono::steady_clock::now() - *away_since_ > server_may_be_away);
+  return ended_ || (away_since_ && NetworkClock::now() - *away_since_ > server_may_be_away);
 }
 
 void RunWatch::note_end() {
@@ -19,7 +19,7 @@ void RunWatch::note_server(bool there) {
   if (there)
     away_since_.reset();
   else if (!away_since_)
-    away_since_ = std::chrono::steady_clock::now();
+    away_since_ = NetworkClock::now();
 }
 
 }  // namespace cohort

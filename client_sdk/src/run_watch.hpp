@@ -4,12 +4,14 @@
 #include <mutex>
 #include <optional>
 
+#include "client_sdk/src/network_clock.hpp"
+
 namespace cohort {
 
-/// Whether anybody still wants the answer that a client is working on. Any thread.
+/// Tells a client whether its current answer is still needed. Thread-safe.
 class RunWatch {
  public:
-  /// Returns whether the server has ended the run or the lease, or has been away for too long.
+  /// Returns true if the server has ended the run or the lease, or has been away for too long.
   bool is_over() const;
 
   void note_end();
@@ -18,7 +20,7 @@ class RunWatch {
  private:
   mutable std::mutex mutex_;
   bool ended_ = false;
-  std::optional<std::chrono::steady_clock::time_point> away_since_;
+  std::optional<NetworkClock::time_point> away_since_;
 };
 
 }  // namespace cohort

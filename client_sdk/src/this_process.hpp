@@ -4,16 +4,16 @@
 #include <cstdint>
 #include <string>
 
-/// What processes need that talk to each other.
+/// Identity of this process for communication with others.
 namespace cohort {
 
-/// Another one for every call, in any process on any machine; never 0.
+/// Returns a new number at every call, distinct in all processes on all machines; never 0.
 std::uint64_t random_id();
 
-/// Of the machine that this runs on.
+/// Returns the name of this machine.
 std::string host_name();
 
-/// A server that is not seen for longer is lost.
+/// Time after which a server that is not seen counts as lost.
 inline constexpr std::chrono::seconds server_may_be_away{2};
 
 }  // namespace cohort

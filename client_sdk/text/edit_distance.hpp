@@ -8,9 +8,9 @@
 
 namespace cohort {
 
-/// How many letters are to be added, removed or replaced to get from one to the other (Levenshtein).
+/// Returns the number of letters to add, remove or replace to turn one text into the other (Levenshtein).
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);  // of the table, one at a time
+  std::vector<std::size_t> row(b.size() + 1);  // one row of the table
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
     std::size_t diagonal = row[0];

@@ -4,13 +4,13 @@
 #include <string>
 #include <string_view>
 
-/// Text that comes from outside, as people may see it. It goes through here where it comes in, and once more where it
-/// reaches a terminal.
+/// Makes text from outside safe to print. Text passes through here when it is received, and again before it is written
+/// to a terminal.
 namespace cohort {
 
-/// The first character of a text in UTF-8.
+/// The first character of a UTF-8 text.
 struct TextCharacter {
-  std::size_t size = 1;  ///< [bytes]; of what is not UTF-8, up to where the next character may begin
+  std::size_t size = 1;  ///< [bytes]; if it is not UTF-8, up to the next possible start of a character
   char32_t code = 0;
   bool is_valid = false;
 };
@@ -22,7 +22,7 @@ inline TextCharacter first_character(std::string_view text) {
   if (lead < 0x80) return {1, lead, true};
   if (lead < 0xc2 || lead > 0xf4) return {};
   const std::size_t size = lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
-  // Neither longer than it must be, nor a surrogate, nor beyond Unicode.
+  // Rejects overlong encodings, surrogates and code points beyond Unicode.
   const unsigned least = lead == 0xe0 ? 0xa0 : lead == 0xf0 ? 0x90 : 0x80;
   const unsigned greatest = lead == 0xed ? 0x9f : lead == 0xf4 ? 0x8f : 0xbf;
   char32_t code = lead & (0x7fu >> size);
@@ -33,8 +33,8 @@ inline TextCharacter first_character(std::string_view text) {
   return {size, code, true};
 }
 
-/// Whether a terminal shows it as a character, where it stands. It obeys control characters (C0, DEL, C1), and shows
-/// text in another order after those that set its direction.
+/// Returns true if a terminal displays the character in place. Terminals execute control characters (C0, DEL, C1), and
+/// reorder text after characters that set its direction.
 inline bool is_shown(char32_t code) {
   const bool controls = code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x2028 || code == 0x2029;
   const bool directs = code == 0x61c || code == 0x200e || code == 0x200f || (code >= 0x202a && code <= 0x202e) ||
@@ -44,15 +44,14 @@ inline bool is_shown(char32_t code) {
 
 enum class Lines { joined, kept };
 
-/// Returns the text in valid UTF-8 and without what a terminal would obey: U+FFFD stands in the place of each of those,
-/// a space in that of tabs and line ends, unless lines are kept. A text of more than `most` bytes ends with an
-/// ellipsis.
+/// Returns the text in valid UTF-8, with U+FFFD in place of characters that a terminal would execute. Tabs and line
+/// ends become spaces, unless lines are kept. A text of more than `most` bytes ends with an ellipsis.
 inline std::string printable(std::string_view text, std::size_t most = std::string_view::npos,
                              Lines lines = Lines::joined) {
   constexpr std::string_view replacement = "\xef\xbf\xbd";
   constexpr std::string_view ellipsis = "\xe2\x80\xa6";
   std::string result;
-  std::size_t cut = 0;  // where the ellipsis can stand
+  std::size_t cut = 0;  // position for the ellipsis
   while (!text.empty()) {
     const TextCharacter character = first_character(text);
     std::string_view shown = text.substr(0, character.size);

@@ -11,8 +11,8 @@
 #include "idl/dds/topic.hpp"
 #include "idl/wire/control_messages.hpp"
 
-/// How the messages of control are on the wire. A Request has the fields of all operations side by side there, a Reply
-/// those of all that operations return; each operation uses some, and the others are zero, empty or false.
+/// Fields of the control messages in cohort.idl. A Request has the fields of all operations, and a Reply those of all
+/// results. Each operation uses some; the others are zero, empty or false.
 namespace cohort::wire {
 
 template <>
@@ -76,7 +76,7 @@ struct OnWire<SimulationStatus> : Between<SimulationStatus, cohort_v1_Simulation
                                         field(&M::controllers, &S::controllers)};
 };
 
-// Operations.
+// Operations
 
 template <>
 struct OnWire<UnknownOperation> : Between<UnknownOperation, cohort_v1_Request> {
@@ -91,6 +91,11 @@ struct OnWire<SetSimulationState> : Between<SetSimulationState, cohort_v1_Reques
 template <>
 struct OnWire<StepSimulation> : Between<StepSimulation, cohort_v1_Request> {
   static constexpr std::tuple fields = {field(&M::steps, &S::steps)};
+};
+
+template <>
+struct OnWire<AdvanceTime> : Between<AdvanceTime, cohort_v1_Request> {
+  static constexpr std::tuple fields = {field(&M::steps, &S::steps), field(&M::release, &S::on)};
 };
 
 template <>
@@ -176,7 +181,12 @@ struct OnWire<GetHistory> : Between<GetHistory, cohort_v1_Request> {
   static constexpr std::tuple fields = {field(&M::revision, &S::offset)};
 };
 
-// What they return.
+template <>
+struct OnWire<GetExperiment> : Between<GetExperiment, cohort_v1_Request> {
+  static constexpr std::tuple fields = {field(&M::offset, &S::offset)};
+};
+
+// Results
 
 template <>
 struct OnWire<SimulatorFeatures> : Between<SimulatorFeatures, cohort_v1_Reply> {
@@ -205,13 +215,13 @@ struct OnWire<HistoryPart> : Between<HistoryPart, cohort_v1_Reply> {
                                         field(&M::data, &S::data)};
 };
 
-/// How a Reply has a value that an operation returned.
+/// The fields of a value that an operation returned, in a Reply.
 template <class Value>
 struct InReply {
   static constexpr const auto& fields = OnWire<Value>::fields;
 };
 
-/// A value that is the only element of a sequence, which is empty if there is none.
+/// An optional value as a sequence of one element, or none.
 template <class Value, class Sequence>
 struct OnlyElement {
   Sequence cohort_v1_Reply::*sampled;
@@ -257,7 +267,7 @@ constexpr bool lists_all_members_of_each(std::type_identity<std::variant<One...>
   return (lists_all_members<One>() && ...);
 }
 
-/// The operation of a Request: its number, and its fields.
+/// The operation of a Request: its number and its fields.
 struct OperationField {
   using Sample = cohort_v1_Request;
   static_assert(lists_all_members_of_each(std::type_identity<Operation>{}));
@@ -282,7 +292,7 @@ struct OperationField {
   }
 };
 
-/// What the operation of a Reply, which is read before, has returned.
+/// The result of the operation of a Reply, whose number is read before.
 struct ReturnedField {
   using Sample = cohort_v1_Reply;
   static_assert(lists_all_members_of_each(std::type_identity<Returned>{}));

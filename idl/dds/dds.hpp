@@ -10,10 +10,11 @@
 #include "idl/dds/identity.hpp"
 #include "idl/dds/wire_error.hpp"
 
-/// What the files of idl/ share. Not for others: the only header that includes Cyclone's.
+/// Shared by the files of idl/, and not for others: the only header that includes Cyclone DDS.
 namespace cohort::wire {
 
-/// `result` if it is a handle or a count. Throws WireError: what was tried on what, and what DDS says.
+/// Returns `result` if it is a handle or a count. Otherwise throws WireError with the attempted operation and the error
+/// of DDS.
 dds_return_t check(dds_return_t result, const char* verb, const char* object);
 
 /// Owns a DDS entity.
@@ -44,13 +45,18 @@ struct ParticipantState {
 
 using Qos = std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)>;
 
-/// No policies yet.
+/// Creates a participant in a domain with this configuration of Cyclone and these policies. Other participants of this
+/// process may have other configurations. Throws WireError.
+std::unique_ptr<ParticipantState> join_domain(std::uint32_t domain, const std::string& configuration,
+                                              const dds_qos_t* qos);
+
+/// Creates a QoS without policies.
 Qos make_qos();
 
-/// Makes a participant this identity. Throws WireError if the plugins of DDS Security are not installed.
+/// Gives a participant this identity. Throws WireError if the plugins of DDS Security are not installed.
 void secure(dds_qos_t* qos, const Identity& identity);
 
-/// Of a message of Cyclone's log that tells of a refused handshake, the text for people the first time that it comes.
+/// Returns the text for people if a log message of Cyclone reports a refused handshake for the first time.
 std::optional<std::string> refusal_told_first(std::string_view message);
 
 }  // namespace cohort::wire

@@ -13,25 +13,27 @@
 
 #include "idl/dds/loans.hpp"
 
-/// One list of fields for each message, from which follow lending it to a sample (the struct that idlc generates from
-/// cohort.idl) and reading it from one, and the check that no field of either is left out.
+/// One list of fields for each message. It is used to lend the message to a sample, the
+/// struct that idlc generates from cohort.idl, and to read it from one. It also checks that no field of either is
+/// missing.
 namespace cohort::wire {
 
-/// How a message or a part of one is on the wire. Specialised in message_fields.hpp and control_fields.hpp with
-/// `Between`; `fields`, a tuple of what `field` and the like make; and for messages `topic`.
+/// The fields of a message or a part of one. Specializations in message_fields.hpp and control_fields.hpp use `Between`
+/// and define `fields`, a tuple of results of `field` and similar functions, and for messages `topic`.
 template <class Message>
 struct OnWire {
   static constexpr std::tuple<> fields{};
 };
 
-/// What a list of fields names: a message as `M`, and its sample as `S`.
+/// Names for lists of fields: a message as `M`, and its sample as `S`.
 template <class Message, class ItsSample>
 struct Between {
   using M = Message;
   using S = ItsSample;
 };
 
-/// Room for what a sample needs beside the message that it borrows from: arrays of pointers to texts and of samples.
+/// Storage for data that a sample needs in addition to the message that it borrows from: arrays of pointers to texts,
+/// and arrays of samples.
 class Room {
  public:
   template <class Element>
@@ -45,12 +47,12 @@ class Room {
  private:
   std::pmr::monotonic_buffer_resource arena_;
 };
-/// For messages that need none.
+/// For messages that need no storage.
 struct NoRoom {};
 
 template <class Value>
 inline constexpr bool is_scalar = std::is_arithmetic_v<Value> || std::is_enum_v<Value>;
-/// Vectors and spans, not texts.
+/// Vectors and spans, but not texts.
 template <class Value>
 concept List = !std::is_same_v<Value, std::string> && requires(const Value& value) {
   value.size(), value.data();
@@ -79,7 +81,7 @@ void read_fields(const Sample& sample, Message& message) {
   std::apply([&](const auto&... each) { (each.read(sample, message), ...); }, OnWire<Message>::fields);
 }
 
-/// What can be any member.
+/// Converts to the type of any member.
 struct Anything {
   template <class Value>
   operator Value() const noexcept;  // NOLINT(google-explicit-constructor)
@@ -88,7 +90,7 @@ template <class Struct, std::size_t... index>
 constexpr bool has_members(std::index_sequence<index...>) {
   return requires { Struct{(static_cast<void>(index), Anything{})...}; };
 }
-/// How many members a plain struct has.
+/// Returns the number of members of a plain struct.
 template <class Struct, std::size_t count = 0>
 constexpr std::size_t member_count() {
   if constexpr (has_members<Struct>(std::make_index_sequence<count + 1>{}))
@@ -104,7 +106,7 @@ constexpr bool is_same_member(First first, Second second) {
   else
     return false;
 }
-/// How many different pointers to members there are in a tuple.
+/// Returns the number of distinct pointers to members in a tuple.
 template <class... Members>
 constexpr std::size_t distinct_count(const std::tuple<Members...>& members) {
   return [&]<std::size_t... index>(std::index_sequence<index...>) {
@@ -119,7 +121,7 @@ constexpr std::size_t distinct_count(const std::tuple<Members...>& members) {
   (std::index_sequence_for<Members...>{});
 }
 
-/// The pointers to members of a message, or of a sample, that a list has.
+/// The pointers to members of a message, or of a sample, in a list.
 template <class Fields>
 constexpr auto members_in(const Fields& fields) {
   return std::apply([](const auto&... each) { return std::tuple_cat(each.members()...); }, fields);
@@ -129,20 +131,21 @@ constexpr auto samples_in(const Fields& fields) {
   return std::apply([](const auto&... each) { return std::tuple_cat(each.samples()...); }, fields);
 }
 
-/// Whether the list of `Message` has each of its members once.
+/// True if the list of `Message` contains each of its members once.
 template <class Message>
 constexpr bool lists_all_members() {
   constexpr auto listed = members_in(OnWire<Message>::fields);
   return distinct_count(listed) == std::tuple_size_v<decltype(listed)> &&
          distinct_count(listed) == member_count<Message>();
 }
-/// Whether the list of `Message` has every field of its sample.
+/// True if the list of `Message` contains every field of its sample.
 template <class Message>
 constexpr bool lists_all_fields() {
   return distinct_count(samples_in(OnWire<Message>::fields)) == member_count<typename OnWire<Message>::S>();
 }
 
-/// Texts and lists of numbers are lent; what has another layout in the sample is put into `room`.
+/// Lends a value. Texts and lists of numbers are lent directly; values with another layout in the sample are copied to
+/// `room`.
 template <class Value, class Sampled, class AnyRoom>
 void lend_value(const Value& value, Sampled& sampled, AnyRoom& room) {
   if constexpr (std::is_enum_v<Value>) {
@@ -165,12 +168,12 @@ void lend_value(const Value& value, Sampled& sampled, AnyRoom& room) {
     }
   } else {
     static_assert(std::is_same_v<typename OnWire<Value>::S, Sampled>);
-    static_assert(lists_all_members<Value>() && lists_all_fields<Value>(), "a field is missing in the list");
+    static_assert(lists_all_members<Value>() && lists_all_fields<Value>(), "a field is missing from the list");
     lend_fields(value, sampled, room);
   }
 }
 
-/// Spans borrow from the sample.
+/// Reads a value. Spans borrow from the sample.
 template <class Value, class Sampled>
 void read_value(const Sampled& sampled, Value& value) {
   if constexpr (std::is_enum_v<Value>) {
@@ -252,7 +255,7 @@ struct OptionalField {
   constexpr auto samples() const { return std::tuple(is_set, sampled); }
 };
 
-/// A member that may be absent, which a field of the sample says.
+/// A member that may be absent, with a field of the sample that says so.
 template <class Message, class Value, class Sample, class Sampled>
 constexpr OptionalField<Message, Value, Sample, Sampled> optional_field(std::optional<Value> Message::*member,
                                                                         bool Sample::*is_set,

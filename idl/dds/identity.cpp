@@ -41,12 +41,13 @@ Role parse_role(const fs::path& file, const std::string& text) {
 void expect_readable(const fs::path& file) {
   if (::access(file.c_str(), R_OK) != 0)
     throw WireError("cannot read " + file.string() + ": " + std::generic_category().message(errno) +
-                    ". The folder of an identity has to be copied whole, and is its owner's alone");
+                    ". Copy the identity's folder completely; only its owner can read it");
 }
 
 void set_value(Identity& identity, const fs::path& file, const std::string& key, const std::string& value) {
   if (key == "name") {
-    if (!is_identity_name(value)) throw WireError(file.string() + ": '" + value + "' is no name of an identity");
+    if (!is_identity_name(value))
+      throw WireError(file.string() + ": '" + value + "' is not a valid name of an identity");
     identity.name = value;
   } else if (key == "role") {
     identity.role = parse_role(file, value);
@@ -61,7 +62,7 @@ void set_value(Identity& identity, const fs::path& file, const std::string& key,
       throw WireError(file.string() + ": expected control: yes or no, not '" + value + "'");
     identity.may_control = value == "yes";
   } else {
-    throw WireError(file.string() + ": there is no '" + key + "' in the file of an identity");
+    throw WireError(file.string() + ": unknown key '" + key + "'");
   }
 }
 
@@ -89,7 +90,7 @@ Identity read_identity(const fs::path& folder) {
   identity.folder = fs::absolute(folder);
   const fs::path file = identity.folder / identity_file;
   if (fs::exists(identity.folder / "clients") && !fs::exists(file)) {
-    throw WireError(folder.string() + " has many identities: give the folder of one, such as " +
+    throw WireError(folder.string() + " contains several identities; give the folder of one, such as " +
                     (folder / "clients" / "NAME").string());
   }
   expect_readable(file);
@@ -100,7 +101,7 @@ Identity read_identity(const fs::path& folder) {
     if (colon == std::string::npos) throw WireError(file.string() + ": expected 'KEY: VALUE', not '" + line + "'");
     set_value(identity, file, line.substr(0, colon), line.substr(colon + 2));
   }
-  if (identity.name.empty()) throw WireError(file.string() + " names nobody");
+  if (identity.name.empty()) throw WireError(file.string() + ": 'name' is missing");
   for (const auto& each : {authority_file, certificate_file, key_file, governance_file, permissions_file})
     expect_readable(identity.folder / each);
   return identity;
@@ -114,13 +115,14 @@ std::vector<Identity> read_doors(const fs::path& folder) {
     if (!fs::exists(entry.path() / identity_file)) continue;
     doors.push_back(read_identity(entry.path()));
     if (doors.back().role != Role::server)
-      throw WireError(entry.path().string() + " is not a server's: give the folder that 'cohort security init' made");
+      throw WireError(entry.path().string() +
+                      " is not a server's identity; give the folder created by 'cohort security init'");
   }
   if (error) throw WireError("cannot read " + server.string() + ": " + error.message());
   std::ranges::sort(doors, {}, &Identity::door);
   if (doors.empty() || doors.front().door != observers_door)
     throw WireError(server.string() +
-                    " is not a server's folder of 'cohort security init': it has no door for observers");
+                    " is not a server's folder created by 'cohort security init': it has no door for observers");
   const auto same = std::ranges::adjacent_find(doors, {}, &Identity::door);
   if (same != doors.end())
     throw WireError(server.string() + ": " + same->name + " and " + std::next(same)->name + " have the same door");

@@ -6,47 +6,49 @@
 #include <string_view>
 #include <vector>
 
-/// Who somebody is under DDS Security: one folder for each side of each door, made by `cohort security`
+/// Identities under DDS Security: one folder for each side of each door, created by `cohort security`
 /// (docs/security.md, docs/protocol.md "Security").
 namespace cohort::wire {
 
 enum class Role { server, controller, observer };
 
-/// What the file `identity` of such a folder says. The server has one participant for each identity, its **door**,
-/// which trusts nobody but that identity: so what comes in there is that identity's, whatever it says of itself.
+/// The content of the file `identity` in such a folder. The server has one participant for each identity, its **door**,
+/// which trusts only that identity. So all data that enters there comes from that identity, regardless of what the data
+/// claims.
 struct Identity {
-  std::string name{};                 ///< of the client, on both sides: letters, digits, _ and -
-  Role role = Role::controller;       ///< whose folder it is
-  std::uint32_t door = 0;             ///< the server's participant index; 0 is the observers'
-  std::string protection = "sign";    ///< of all messages: sign or encrypt
-  std::vector<std::string> robots{};  ///< selectors of what it may claim; none for observers
-  bool may_control = false;           ///< the run: docs/protocol.md, "Control"
+  std::string name{};                 ///< name of the client, on both sides: letters, digits, _ and -
+  Role role = Role::controller;       ///< role of the folder's owner
+  std::uint32_t door = 0;             ///< participant index of the server; 0 is the observers' door
+  std::string protection = "sign";    ///< protection of all messages: sign or encrypt
+  std::vector<std::string> robots{};  ///< selectors of robots that it may claim; none for observers
+  bool may_control = false;           ///< right to control the run: docs/protocol.md, "Control"
   std::filesystem::path folder{};     ///< absolute
 };
 
-// Beside `identity` in its folder.
-inline constexpr std::string_view authority_file = "authority.pem";  // the door's, which vouches for its two sides
+// Files next to `identity` in its folder.
+inline constexpr std::string_view authority_file =
+    "authority.pem";  // certificate authority of the door, for both sides
 inline constexpr std::string_view certificate_file = "certificate.pem";
 inline constexpr std::string_view key_file = "key.pem";
 inline constexpr std::string_view governance_file = "governance.p7s";
 inline constexpr std::string_view permissions_file = "permissions.p7s";
 
-/// The door of observers, which is the only one where WorldState is written.
+/// The observers' door, the only one where WorldState is written.
 inline constexpr std::uint32_t observers_door = 0;
-/// Further ones would have the ports of the next domain.
+/// Higher doors would have the ports of the next domain.
 inline constexpr std::uint32_t last_door = 119;
 
-/// Whether it can be the name of an identity.
+/// Returns true if the name is valid for an identity.
 bool is_identity_name(std::string_view name);
 
-/// What the file `identity` holds.
+/// Returns the content of the file `identity`.
 std::string identity_text(const Identity& identity);
 
-/// The identity in `folder`. Throws WireError if a file is missing or cannot be read, naming it.
+/// Reads the identity in `folder`. Throws WireError with the file name if a file is missing or cannot be read.
 Identity read_identity(const std::filesystem::path& folder);
 
-/// The server's side of every door, by door: those in `folder`/server, or in `folder` if that is what was handed over.
-/// Throws WireError if there is none, or if the observers' is missing.
+/// Reads the server's side of every door, sorted by door, from `folder`/server, or from `folder` itself. Throws
+/// WireError if there is none, or if the observers' door is missing.
 std::vector<Identity> read_doors(const std::filesystem::path& folder);
 
 }  // namespace cohort::wire

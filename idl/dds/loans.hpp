@@ -7,10 +7,11 @@
 
 #include "idl/cohort.h"
 
-/// What fields.hpp is made of: samples that borrow from messages, and messages of what samples hold.
+/// Basic functions for fields.hpp: samples that borrow from messages, and messages read from samples.
 namespace cohort::wire {
 
-// Cyclone's structs are not const-correct; writing only reads what they point to. `_release` stays false: it is ours.
+// Cyclone's structs are not const-correct; writing only reads the data that they point to. `_release` stays false,
+// because we own the data.
 inline char* loaned(const std::string& text) { return const_cast<char*>(text.c_str()); }
 
 template <class Sequence, class Elements>

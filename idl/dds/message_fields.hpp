@@ -6,7 +6,7 @@
 #include "idl/dds/topic.hpp"
 #include "idl/wire/messages.hpp"
 
-/// How the messages of cohort.idl are on the wire, but those of control.
+/// Fields of the messages in cohort.idl, except those of control.
 namespace cohort::wire {
 
 template <>

@@ -24,9 +24,9 @@
 namespace cohort::wire {
 namespace {
 
-// The last domain whose ports exist: the next one's lie beyond 65535.
+// The last domain whose ports exist; those of the next one would exceed 65535.
 constexpr std::uint32_t last_domain = 232;
-// The last one that DDS Security has permissions for.
+// The last domain for which DDS Security has permissions.
 constexpr std::uint32_t last_secure_number = 230;
 
 void print_log(std::string_view message, DdsLogKind kind) noexcept {
@@ -42,8 +42,8 @@ void print_log(std::string_view message, DdsLogKind kind) noexcept {
 std::atomic<DdsLogReceiver> receive_log_now = &print_log;
 void receive_log(std::string_view message, DdsLogKind kind) noexcept { receive_log_now.load()(message, kind); }
 
-// Cyclone has one log for the process, and says why it refused there only. While one of these lives, what the same
-// thread's calls log is kept.
+// Captures the log of Cyclone from calls of this thread. Cyclone has one log per process, and reports the reason of a
+// failure only there.
 class LogCapture {
  public:
   LogCapture() {
@@ -91,7 +91,7 @@ class UdpSocket {
   UdpSocket& operator=(const UdpSocket&) = delete;
   ~UdpSocket() { ::close(descriptor_); }
 
-  /// 0, or what errno says.
+  /// Binds the socket. Returns 0 or errno.
   int bind(const sockaddr_in& address) const { return call(::bind, address); }
   int connect(const sockaddr_in& address) const { return call(::connect, address); }
 
@@ -125,7 +125,7 @@ in_addr resolve(const std::string& name) {
   addrinfo* found = nullptr;
   if (const int error = ::getaddrinfo(name.c_str(), nullptr, &hints, &found); error != 0) {
     throw WireError("cannot find the address of '" + name + "': " + ::gai_strerror(error) +
-                    ". Give an IPv4 address or a host name that has one.");
+                    ". Give an IPv4 address, or a host name that has one.");
   }
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(found, ::freeaddrinfo);
   return reinterpret_cast<const sockaddr_in*>(found->ai_addr)->sin_addr;
@@ -141,7 +141,7 @@ bool is_loopback(in_addr address) { return (ntohl(address.s_addr) >> 24) == 127;
 
 bool is_taken(std::uint16_t port) { return UdpSocket().bind(socket_address(in_addr{INADDR_ANY}, port)) == EADDRINUSE; }
 
-// IPv4 addresses of the network interfaces that are up.
+// Returns the IPv4 addresses of the network interfaces that are up.
 std::vector<in_addr> addresses_in_use() {
   ifaddrs* list = nullptr;
   if (::getifaddrs(&list) != 0) return {};
@@ -153,22 +153,22 @@ std::vector<in_addr> addresses_in_use() {
   return addresses;
 }
 
-// Cyclone says neither which address it misses nor which it would have found.
+// Checks the address here, because Cyclone's error contains neither the address nor the existing ones.
 void expect_own(in_addr wanted) {
   std::string others;
   for (const in_addr address : addresses_in_use()) {
-    // All of 127.0.0.0/8 is the loopback's.
+    // All addresses of 127.0.0.0/8 are loopback.
     if (address.s_addr == wanted.s_addr || (is_loopback(address) && is_loopback(wanted))) return;
     others += (others.empty() ? "" : ", ") + to_text(address);
   }
-  if (others.empty()) throw WireError("this machine has no network interface that is up, not even the loopback");
-  throw WireError("no network interface that is up has the address " + to_text(wanted) + "; there are " + others);
+  if (others.empty()) throw WireError("this machine has no network interface that is up, not even loopback");
+  throw WireError("no active network interface has the address " + to_text(wanted) + "; known: " + others);
 }
 
 in_addr own_address_towards(in_addr server, std::uint16_t port) {
   const UdpSocket socket;
   if (const int error = socket.connect(socket_address(server, port)); error != 0) {
-    throw WireError("no way to the server at " + to_text(server) + ": " + std::generic_category().message(error));
+    throw WireError("no route to the server at " + to_text(server) + ": " + std::generic_category().message(error));
   }
   return socket.local_address();
 }
@@ -176,43 +176,50 @@ in_addr own_address_towards(in_addr server, std::uint16_t port) {
 std::string configuration(std::uint32_t domain, in_addr own_address, const std::string& discovery) {
   std::string xml = R"(<CycloneDDS><Domain Id="any"><General><AllowMulticast>false</AllowMulticast>)";
   xml += R"(<Interfaces><NetworkInterface address=")" + to_text(own_address) + R"("/></Interfaces>)";
-  // Large datagrams are good on the loopback only. On a network they fit into a packet each: the kernel keeps the rest
-  // of one that lost a part for 30 s, and once it has kept too much takes no more of any.
+  // Use large datagrams on the loopback only. On a network, each datagram fits into one packet. If a
+  // datagram loses a part, the kernel keeps the rest for 30 s; once it has kept too many, it accepts no further ones.
   xml += is_loopback(own_address) ? "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>60000B</FragmentSize>"
                                   : "<MaxMessageSize>1472B</MaxMessageSize><FragmentSize>1344B</FragmentSize>";
   xml += "</General><Discovery><LeaseDuration>5s</LeaseDuration>" + discovery;
   xml += "<ExternalDomainId>" + std::to_string(domain) + "</ExternalDomainId></Discovery><Internal>";
-  // Below the watermark a write never waits for acknowledgements, which arrive on the thread that may be writing.
+  // Below the watermark, a write never waits for acknowledgements, which arrive on the thread that may be writing.
   xml += "<Watermarks><WhcHigh>16MB</WhcHigh><WhcHighInit>16MB</WhcHighInit></Watermarks>";
-  // No minimum: where the kernel allows less, that would be an error.
+  // No minimum, which would be an error if the kernel allows less.
   xml += R"(<SocketReceiveBufferSize max="4MB"/>)";
-  // How long a writer that goes waits for readers which may be dead.
+  // Time that a writer waits for possibly dead readers when it is destroyed.
   xml += "<WriterLingerDuration>100ms</WriterLingerDuration></Internal></Domain></CycloneDDS>";
   return xml;
 }
 
-// Cyclone allows one participant configuration for each domain number in a process. Others of the same domain use a
-// number of their own inside; on the network the domain is the one in the configuration. Null if DDS cannot, or does
-// not accept the identity: then its log says why.
-std::unique_ptr<ParticipantState> join(std::uint32_t domain, const std::string& configuration,
-                                         const std::optional<Identity>& identity) {
+// Creates a participant. Cyclone allows one participant configuration for each domain number in a process. Further
+// participants of the same domain use another number internally; on the network, the domain is that of the
+// configuration. Returns null if DDS fails; its log has the reason.
+std::unique_ptr<ParticipantState> try_to_join(std::uint32_t domain, const std::string& configuration,
+                                              const dds_qos_t* qos, bool is_secure) {
   std::uint32_t number = domain;
   dds_entity_t handle = dds_create_domain(number, configuration.c_str());
   while (handle == DDS_RETCODE_PRECONDITION_NOT_MET) {
-    // Security knows no numbers above those that a domain can have on the network.
-    number = identity ? (number + 1) % (last_secure_number + 1) : number + last_domain + 1;
-    if (number == domain) throw WireError("this process has too many participants");
+    // DDS Security supports no numbers above those that a domain can have on the network.
+    number = is_secure ? (number + 1) % (last_secure_number + 1) : number + last_domain + 1;
+    if (number == domain) throw WireError("too many DDS participants in this process");
     handle = dds_create_domain(number, configuration.c_str());
   }
   if (handle < 0) return nullptr;
   auto state = std::make_unique<ParticipantState>();
-  state->identity = identity;
   state->domain = Entity(handle);
-  const Qos qos = make_qos();
-  if (identity) secure(qos.get(), *identity);
-  handle = dds_create_participant(number, qos.get(), nullptr);
+  handle = dds_create_participant(number, qos, nullptr);
   if (handle < 0) return nullptr;
   state->participant = Entity(handle);
+  return state;
+}
+
+// Joins a domain. Returns null also if DDS does not accept the identity.
+std::unique_ptr<ParticipantState> join(std::uint32_t domain, const std::string& configuration,
+                                       const std::optional<Identity>& identity) {
+  const Qos qos = make_qos();
+  if (identity) secure(qos.get(), *identity);
+  auto state = try_to_join(domain, configuration, qos.get(), identity.has_value());
+  if (state != nullptr) state->identity = identity;
   return state;
 }
 
@@ -228,6 +235,14 @@ std::string as_whom(const std::optional<Identity>& identity) {
 
 void set_dds_log(DdsLogReceiver receiver) { receive_log_now = receiver == nullptr ? &print_log : receiver; }
 
+std::unique_ptr<ParticipantState> join_domain(std::uint32_t domain, const std::string& configuration,
+                                              const dds_qos_t* qos) {
+  LogCapture log;
+  auto state = try_to_join(domain, configuration, qos, false);
+  if (state == nullptr) throw WireError("cannot join domain " + std::to_string(domain) + ": " + log.text());
+  return state;
+}
+
 dds_return_t check(dds_return_t result, const char* verb, const char* object) {
   if (result >= 0) return result;
   throw WireError(std::string("DDS cannot ") + verb + " " + object + ": " + dds_strretcode(-result));
@@ -241,8 +256,8 @@ std::string partition_of(std::uint64_t client) {
 
 std::uint16_t discovery_port(std::uint32_t domain, std::uint32_t door) {
   if (domain > last_domain) {
-    throw WireError("domain " + std::to_string(domain) + " does not exist: choose one from 0 to " +
-                    std::to_string(last_domain) + ", best below 100");
+    throw WireError("domain " + std::to_string(domain) + " is out of range; expected 0 to " +
+                    std::to_string(last_domain) + ", preferably below 100");
   }
   return static_cast<std::uint16_t>(7410 + 250 * domain + 2 * door);
 }
@@ -255,17 +270,18 @@ Participant Participant::server(std::uint32_t domain, const std::string& address
   expect_own(own_address);
   std::string discovery =
       "<ParticipantIndex>" + std::to_string(door) + "</ParticipantIndex><SPDPInterval>5s</SPDPInterval>";
-  // Without a peer Cyclone announces itself to the first ports of this machine, where other doors would refuse it again
-  // and again. So it has itself.
+  // Without a peer, Cyclone announces itself to the first ports of this machine, where other doors would refuse it
+  // repeatedly. So its peer is itself.
   if (identity) discovery += "<Peers>" + peer(own_address, port) + "</Peers>";
   LogCapture log;
   auto state = join(domain, configuration(domain, own_address, discovery), identity);
   if (state == nullptr) {
     const auto data_port = static_cast<std::uint16_t>(port + 1);
     if (is_taken(port) || is_taken(data_port)) {
-      throw DomainTaken("domain " + std::to_string(domain) + " is taken: another program has UDP port " +
-                        std::to_string(port) + " or " + std::to_string(data_port) +
-                        ", most likely another server. Stop it, or give this server and its clients another domain.");
+      throw DomainTaken(
+          "domain " + std::to_string(domain) + " is in use: another program uses UDP port " + std::to_string(port) +
+          " or " + std::to_string(data_port) +
+          ", most likely another server. Stop it, or choose another domain for this server and its clients.");
     }
     throw WireError("cannot serve domain " + std::to_string(domain) + " at " + address + as_whom(identity) + ": " +
                     log.text());
@@ -276,11 +292,12 @@ Participant Participant::server(std::uint32_t domain, const std::string& address
 Participant Participant::client(std::uint32_t domain, const std::string& address,
                                 const std::optional<Identity>& identity) {
   if (identity && identity->role == Role::server)
-    throw WireError(identity->folder.string() + " is the server's: a client has a folder in clients/");
+    throw WireError(identity->folder.string() + " is the server's identity; use a client's folder in clients/");
   const std::uint16_t port = discovery_port(domain, identity ? identity->door : 0);
   const in_addr server = resolve(address);
-  // A client announces itself every second, to the server alone: so a server that starts later is found within one, and
-  // one small packet each second harms nobody. The server need not repeat itself: it answers each announcement.
+  // A client announces itself every second, only to the server. So it finds a server that starts later within a second,
+  // at the cost of one small packet per second. The server need not repeat its announcement, because it answers each
+  // one.
   const std::string discovery =
       "<ParticipantIndex>none</ParticipantIndex><SPDPInterval>1s</SPDPInterval>"
       "<Peers>" +

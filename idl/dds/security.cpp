@@ -13,17 +13,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Cyclone's plugins stand beside its library, in Debian in a folder of their own.
+// Cyclone's plugins are next to its library; on Debian, in a separate folder.
 fs::path plugin_folder() {
   const fs::path library = dds_library();
   const fs::path beside = library.parent_path();
   for (const fs::path& folder : {beside / "libddsc0debian", beside})
     if (fs::exists(folder / "libdds_security_auth.so")) return folder;
-  throw WireError("the plugins of DDS Security (libdds_security_auth.so) are not beside " + library.string() +
-                  ": this Cyclone DDS was built without them");
+  throw WireError("the plugins of DDS Security (libdds_security_auth.so) are not next to " + library.string() +
+                  "; this Cyclone DDS was built without them");
 }
 
-// What Cyclone 0.10 writes when a peer does not pass: in the handshake, or by what it presents there.
+// Log messages of Cyclone 0.10 when a peer is rejected: in the handshake, or because of its documents.
 constexpr std::array refusals = {"andshake failed", "andshake request failed", "andshake reply failed",
                                  "permissions from plugin", "does not allow remote participant"};
 
@@ -32,14 +32,15 @@ constexpr std::array refusals = {"andshake failed", "andshake request failed", "
 std::optional<std::string> refusal_told_first(std::string_view message) {
   const auto stands_in = [&](const char* text) { return message.find(text) != std::string_view::npos; };
   if (std::ranges::none_of(refusals, stands_in)) return std::nullopt;
-  constexpr std::size_t most = 1000;  // that are remembered: a flood of peers must not fill the memory
+  constexpr std::size_t most = 1000;  // limit of the remembered ones: many peers must not fill the memory
   static std::mutex mutex;
   static std::set<std::string, std::less<>> told;
   const std::lock_guard lock(mutex);
   if (told.size() >= most || !told.emplace(message).second) return std::nullopt;
-  return "DDS Security refuses a peer: " + std::string(message) +
-         ". The folders of server and client have to come from one 'cohort security init' or 'add', certificates must "
-         "not have expired, and both clocks have to be right";
+  return "DDS Security rejected a peer: " + std::string(message) +
+         ". Check that the identities of server and client come from the same 'cohort security init', that "
+         "certificates "
+         "have not expired, and that both clocks are right";
 }
 
 Qos make_qos() {

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr std::uint32_t own_major = 1;
 
-// Readers of what DDS itself tells of all writers and readers that it knows.
+// Readers of the writers and readers that DDS knows.
 class EndpointWatch {
  public:
   using Callback = std::function<void(const dds_builtintopic_endpoint_t&)>;
@@ -45,7 +45,7 @@ class EndpointWatch {
 
   static void on_data(dds_entity_t reader, void* argument) noexcept {
     const EndpointWatch& self = *static_cast<const EndpointWatch*>(argument);
-    std::array<void*, 16> samples{};  // null: lent by DDS
+    std::array<void*, 16> samples{};  // null: allocated by DDS
     std::array<dds_sample_info_t, 16> infos{};
     for (;;) {
       samples.fill(nullptr);
@@ -117,7 +117,7 @@ Survey survey(std::uint32_t domain, const std::string& address, const std::optio
   std::unique_lock lock(mutex);
   const auto deadline = std::chrono::steady_clock::now() + patience;
   changed.wait_until(lock, deadline, [&] { return !found.models.empty() || !found.majors.empty(); });
-  // A run that goes on shows itself soon; one that waits for controllers does not.
+  // A running run publishes soon; one that waits for controllers does not.
   if (states && !found.models.empty())
     changed.wait_until(lock, std::min(deadline, std::chrono::steady_clock::now() + 1s),
                        [&] { return found.run.has_value(); });
@@ -132,7 +132,7 @@ std::string dds_version() { return DDS_VERSION; }
 std::filesystem::path dds_library() {
   Dl_info library{};
   if (::dladdr(reinterpret_cast<const void*>(&dds_create_participant), &library) == 0 || library.dli_fname == nullptr)
-    throw WireError("cannot tell where Cyclone DDS is installed");
+    throw WireError("cannot determine where Cyclone DDS is installed");
   return std::filesystem::canonical(library.dli_fname);
 }
 

@@ -11,15 +11,14 @@
 
 #include "idl/dds/participant.hpp"
 
-/// What there is on a domain, for whoever looks for what is wrong.
+/// Information about a domain, for diagnosis.
 namespace cohort::wire {
 
-/// The major version of the protocol that a topic belongs to: 2 for `cohort/v2/join`. None if it is no topic of
-/// Cohort's.
+/// Returns the major version of the protocol of a topic: 2 for `cohort/v2/join`. None if it is not a Cohort topic.
 std::optional<std::uint32_t> major_version_of(std::string_view topic);
 
-/// Tells of endpoints of other major versions, which never match ours. `callback` gets the version, on a thread of
-/// DDS, once for each endpoint; it must not throw nor block for long.
+/// Reports endpoints of other major versions, which never match ours. Calls `callback` with the version, on a DDS
+/// thread, once for each endpoint; it must not throw nor block for long.
 class VersionWatch {
  public:
   VersionWatch(Participant& participant, std::function<void(std::uint32_t major)> callback);
@@ -33,19 +32,19 @@ class VersionWatch {
 };
 
 struct Survey {
-  bool has_server = false;             ///< of our major version, and it lets us in
-  std::set<std::uint32_t> majors{};    ///< others that are there
-  std::set<std::string> models{};      ///< kinds of robots that the server has
-  std::optional<std::uint32_t> run{};  ///< of the newest WorldState, if one came
-  std::uint64_t tick = 0;              ///< the same
+  bool has_server = false;             ///< with our major version, and it admits us
+  std::set<std::uint32_t> majors{};    ///< other major versions on the domain
+  std::set<std::string> models{};      ///< models of the server's robots
+  std::optional<std::uint32_t> run{};  ///< run of the newest WorldState, if one arrived
+  std::uint64_t tick = 0;              ///< tick of the newest WorldState
 };
 
-/// Looks at the server of `domain` at `address` as an observer, for as long as `patience` or until it is known. With
-/// `identity` at that identity's door, where controllers are not shown the state of the world. Throws WireError.
+/// Looks for the server of `domain` at `address` as an observer, at most for `patience`. With `identity`, uses that
+/// identity's door, where controllers do not receive the state of the world. Throws WireError.
 Survey survey(std::uint32_t domain, const std::string& address, const std::optional<Identity>& identity,
               std::chrono::milliseconds patience);
 
-/// The version of Cyclone DDS that this was built with, and the library that is in use.
+/// Return the version of Cyclone DDS that this was built with, and the library in use.
 std::string dds_version();
 std::filesystem::path dds_library();
 

@@ -6,16 +6,16 @@
 
 namespace cohort::wire {
 
-/// How a message travels: docs/protocol.md, "Topics".
+/// Transport of a message: docs/protocol.md, "Topics".
 struct Topic {
   const char* name = nullptr;
   const dds_topic_descriptor_t* type = nullptr;
-  /// Observations and commands are not: the protocol itself repairs losses, and sooner. Reliable, what is sent again
-  /// would be held back until DDS had repaired what nobody needs any more.
+  /// False for observations and commands: the protocol itself repairs losses, and does so sooner. With reliable
+  /// transport, later messages would be held back until DDS has repaired a message that is no longer needed.
   bool reliable = true;
   bool transient_local = false;
   int depth = 0;                       ///< 0: the endpoint chooses
-  std::chrono::milliseconds lease{0};  ///< 0: no lease but the participant's
+  std::chrono::milliseconds lease{0};  ///< 0: only the participant's lease
 };
 
 }  // namespace cohort::wire

@@ -28,7 +28,7 @@ Qos qos_of(const Topic& topic, const std::string& partition, int depth) {
   dds_qset_durability(qos.get(), topic.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, topic.depth != 0 ? topic.depth : depth);
   if (topic.transient_local) {
-    // What a late joiner gets is bound by this history, not by the one above.
+    // This history limits the messages for late joiners, not the one above.
     dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, topic.depth, DDS_LENGTH_UNLIMITED,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   }
@@ -82,11 +82,11 @@ std::uint32_t Writer<Message>::matched() const {
   return status.current_count;
 }
 
-// Whether what a sample has grown to is used again for the next one: frames and answers come too often to allocate for
-// each, and all else too rarely to keep what somebody once sent.
+// True if the memory of a sample is reused for the next one. Frames and answers arrive too often to allocate memory for
+// each; other messages arrive too rarely to keep memory for the largest one.
 template <class Sample>
 bool is_kept(const Sample& sample) {
-  constexpr std::uint32_t most_kept = 1 << 17;  // of elements: a megabyte of values
+  constexpr std::uint32_t most_kept = 1 << 17;  // in elements: a megabyte of values
   if constexpr (requires { sample.robots._maximum + sample.values._maximum; })
     return sample.robots._maximum <= most_kept && sample.values._maximum <= most_kept;
   return false;
@@ -99,12 +99,13 @@ struct Reader<Message>::State {
   State(Callbacks its_callbacks, const Participant& participant)
       : callbacks(std::move(its_callbacks)),
         door(static_cast<std::uint64_t>(participant.state().participant.handle()) * 0xbf58476d1ce4e5b9u) {
-    // Zeroed, as dds_take wants it; it then grows their sequences and strings, and keeps them from take to take.
+    // Zeroed, as dds_take requires; it then allocates their sequences and strings, and reuses them.
     for (void*& sample : samples) sample = dds_alloc(sizeof(Sample));
   }
 
   ~State() {
-    // Returns when no callback runs, and none starts later. Deleting alone would close the handle under a running one.
+    // Returns when no callback runs, and prevents further ones. Deleting alone would close the handle during a running
+    // one.
     if (reader.handle() != 0) dds_set_listener(reader.handle(), nullptr);
     reader = Entity();
     for (void* sample : samples) dds_sample_free(sample, Codec<Message>::topic.type, DDS_FREE_ALL);
@@ -119,7 +120,7 @@ struct Reader<Message>::State {
                        static_cast<std::uint32_t>(state.samples.size()));
       for (dds_return_t i = 0; i < taken; ++i) {
         const auto index = static_cast<std::size_t>(i);
-        // An invalid sample only tells of a writer's end, which on_liveliness tells better.
+        // An invalid sample only reports the end of a writer, which on_liveliness does better.
         if (!state.infos[index].valid_data) continue;
         Sample& sample = *static_cast<Sample*>(state.samples[index]);
         state.callbacks.message(Codec<Message>::decode(sample),
@@ -141,16 +142,15 @@ struct Reader<Message>::State {
     if (alive || dead) state.callbacks.liveliness(state.sender_of(handle, status.last_publication_handle), alive);
   }
 
-  // By the handle that DDS hands in: a callback may come before the constructor has got its own.
+  // Uses the handle from DDS, because a callback may run before the constructor has its own.
   Sender sender_of(dds_entity_t handle, dds_instance_handle_t writer) {
     if (const auto known = participants.find(writer); known != participants.end()) return {writer, known->second};
     dds_builtintopic_endpoint_t* endpoint = dds_get_matched_publication_data(handle, writer);
-    if (endpoint == nullptr) return {writer, 0};  // it has just gone
-    // By its GUID, which stays when the participant is lost and found again.
+    if (endpoint == nullptr) return {writer, 0};  // it is already gone
+    // Uses its GUID, which stays the same when the participant is lost and found again.
     std::array<std::uint64_t, 2> guid{};
     std::memcpy(guid.data(), endpoint->participant_key.v, sizeof guid);
-    // And by where it came in: with security, who has authenticated at one door may call himself what he likes at
-    // another.
+    // Also uses the door: with security, a client authenticated at one door may choose any identity at another.
     const Sender sender{writer, (guid[0] * 0x9e3779b97f4a7c15u ^ guid[1]) + door};
     dds_builtintopic_free_endpoint(endpoint);
     if (participants.size() >= most_participants) participants.clear();
@@ -158,11 +158,11 @@ struct Reader<Message>::State {
     return sender;
   }
 
-  static constexpr std::size_t most_participants = 10'000;  // looked up again if there were ever more
+  static constexpr std::size_t most_participants = 10'000;  // the cache is cleared if there are more
 
   Callbacks callbacks;
-  const std::uint64_t door;                                     // this reader's participant
-  std::map<dds_instance_handle_t, std::uint64_t> participants;  // of writers
+  const std::uint64_t door;                                     // door of this reader's participant
+  std::map<dds_instance_handle_t, std::uint64_t> participants;  // by writer
   std::array<void*, 8> samples{};
   std::array<dds_sample_info_t, 8> infos{};
   Entity topic;
@@ -177,7 +177,7 @@ Reader<Message>::Reader(Participant& participant, Callbacks callbacks, const std
   if (state_->callbacks.message) dds_lset_data_available(listener.get(), &State::on_data);
   if (state_->callbacks.liveliness) dds_lset_liveliness_changed(listener.get(), &State::on_liveliness);
   state_->topic = create_topic(participant, topic);
-  // With the listener from the first moment, no message and no change is missed.
+  // With the listener set at creation, no message and no change is missed.
   state_->reader = Entity(check(dds_create_reader(participant.state().participant.handle(), state_->topic.handle(),
                                                   qos_of(topic, partition, depth).get(), listener.get()),
                                 "read", topic.name));

@@ -12,23 +12,24 @@
 
 namespace cohort::wire {
 
-/// Writes messages of one type. Not copyable. `write` may be called from any one thread at a time, and never from
-/// inside a reader's callback unless the message's quality of service is KEEP_LAST (all of ours are).
+/// Writes messages of one type. Not copyable. Call `write` from any thread, one at a time. Do not call it inside a
+/// reader's callback unless the quality of service of the message is KEEP_LAST (all of ours are).
 template <class Message>
 class Writer {
  public:
-  /// `partition`: empty for the default one. `depth`: frames kept for readers that are behind (KEEP_LAST); for
-  /// Observation and Command, the depth of the other messages is fixed. Throws WireError.
+  /// `partition` is empty for the default one. `depth` is the number of frames kept for slow readers (KEEP_LAST), for
+  /// Observation and Command; the depth of other messages is fixed. Throws WireError.
   explicit Writer(Participant& participant, const std::string& partition = "", int depth = 1);
   Writer(Writer&&) noexcept;
   Writer& operator=(Writer&&) noexcept;
   ~Writer();
 
-  /// False if DDS could not take the message in time (100 ms): the message counts as lost. Throws WireError otherwise.
+  /// Writes a message. Returns false if DDS did not accept it in time (100 ms): the message counts as lost. Throws
+  /// WireError for other errors.
   bool write(const Message& message);
-  /// Waits until every matched reader has all that was written; false if that took too long.
+  /// Waits until every matched reader has received everything; returns false if that took too long.
   bool wait_until_received(std::chrono::milliseconds at_most);
-  /// Readers matched now.
+  /// Returns the number of matched readers.
   std::uint32_t matched() const;
 
  private:
@@ -36,21 +37,23 @@ class Writer {
   std::unique_ptr<State> state_;
 };
 
-/// What came with a message.
+/// The origin of a message.
 struct Sender {
-  std::uint64_t writer = 0;       ///< identifies the DDS writer within this process
-  std::uint64_t participant = 0;  ///< identifies its participant likewise: DDS says it, the sender cannot choose it
+  std::uint64_t writer = 0;  ///< identifies the DDS writer within this process
+  std::uint64_t participant =
+      0;  ///< identifies its participant likewise: DDS determines it, the sender cannot choose it
 };
 
-/// Reads messages of one type. All callbacks run on a thread of DDS, one at a time for each reader and perhaps before
-/// the constructor returns: they must not throw, block for long, or create or destroy entities. Set at construction, so
-/// nothing is missed; the destructor waits until none runs, so it must not be called with a lock that a callback takes.
+/// Reads messages of one type. All callbacks run on a DDS thread, one at a time for each reader, and possibly before
+/// the constructor returns. They must not throw, block for long, or create or destroy entities. They are set at
+/// construction, so nothing is missed. The destructor waits until none runs, so do not call it with a lock that a
+/// callback takes.
 template <class Message>
 class Reader {
  public:
   struct Callbacks {
     std::function<void(const Message&, const Sender&)> message;
-    /// A writer of this topic appeared, or was found dead (lease over, unmatched) or alive again; may repeat. May be
+    /// Called when a writer of this topic appeared, was lost (lease over, unmatched) or returned; may repeat. May be
     /// empty.
     std::function<void(const Sender&, bool alive)> liveliness;
   };
@@ -59,7 +62,7 @@ class Reader {
   Reader& operator=(Reader&&) noexcept;
   ~Reader();
 
-  /// Writers matched now.
+  /// Returns the number of matched writers.
   std::uint32_t matched() const;
 
  private:

@@ -4,13 +4,13 @@
 
 namespace cohort::wire {
 
-/// DDS refused: the message says what was tried and what to do about it.
+/// An error of DDS; the message contains the attempted operation and advice.
 class WireError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The port of the server's domain is taken by another process.
+/// Error: another process uses the port of the server's domain.
 class DomainTaken : public WireError {
  public:
   using WireError::WireError;

@@ -15,42 +15,44 @@
 #include <utility>
 #include <vector>
 
-/// CDR, little-endian, as ROS 2 has it: the encapsulation 00 01 00 00, then the fields, each number at a multiple of
-/// its size from the first byte after the encapsulation (OMG DDSI-RTPS 2.5, 10; CORBA 3.4 part 2, 9.3).
+/// CDR, little-endian, as in ROS 2: the encapsulation 00 01 00 00, then the fields. Each number is at a multiple of its
+/// size from the first byte after the encapsulation (OMG DDSI-RTPS 2.5, 10; CORBA 3.4 part 2, 9.3).
 namespace cohort::messages {
 
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<const std::byte>;
 
-/// A message that ends too early or is no little-endian CDR.
+/// Error: a message ends too early or is not little-endian CDR.
 class CdrError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A field of a message: its name in ROS and where it is. `field` makes one.
+/// A field of a message: its name in ROS, its member, and the maximum length of its text or list in ROS (0: no limit).
+/// Created by `field`.
 template <class Message, class Value>
 struct Field {
   const char* name;
   Value Message::*member;
+  std::size_t bound;
 };
 
 template <class Message, class Value>
-constexpr Field<Message, Value> field(const char* name, Value Message::*member) {
-  return {name, member};
+constexpr Field<Message, Value> field(const char* name, Value Message::*member, std::size_t bound = 0) {
+  return {name, member, bound};
 }
 
-/// A struct that says which message of ROS it is:
+/// A struct that describes its ROS message:
 ///
 ///     struct Point {
 ///       double x = 0, y = 0, z = 0;
 ///       static constexpr const char* type = "geometry_msgs/msg/Point";
-///       static constexpr auto fields = std::tuple(field("x", &Point::x), field("y", &Point::y), field("z",
-///       &Point::z));
+///       static constexpr auto fields =
+///           std::tuple(field("x", &Point::x), field("y", &Point::y), field("z", &Point::z));
 ///     };
 ///
-/// Fields are numbers, bool, std::string, other messages, std::vector and std::array of these. That is all that
-/// encoding, decoding and its schema (ros_schema.hpp) need.
+/// Fields are numbers, bool, std::byte, std::string, other messages, and std::vector and std::array of these. Encoding,
+/// decoding and the schema (ros_schema.hpp) need nothing else.
 template <class T>
 concept RosMessage = requires {
   T::type;
@@ -59,7 +61,16 @@ concept RosMessage = requires {
 
 static_assert(std::endian::native == std::endian::little);
 
-/// Bytes that a value takes at least.
+/// ROS gives a message without fields one byte, because IDL has no empty structs.
+template <RosMessage Message>
+inline constexpr bool has_no_fields = std::tuple_size_v<decltype(Message::fields)> == 0;
+
+/// Values with the same bytes in CDR and in memory.
+template <class Value>
+inline constexpr bool is_plain =
+    (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) || std::is_same_v<Value, std::byte>;
+
+/// The minimum size of a value [bytes].
 template <class Value>
 struct CdrSize {
   static constexpr std::size_t of_fields() {
@@ -71,9 +82,9 @@ struct CdrSize {
   }
   static constexpr std::size_t least() {
     if constexpr (RosMessage<Value>) {
-      return of_fields();
+      return has_no_fields<Value> ? 1 : of_fields();
     } else {
-      return std::is_arithmetic_v<Value> ? sizeof(Value) : 4;
+      return is_plain<Value> || std::is_same_v<Value, bool> ? sizeof(Value) : 4;
     }
   }
 };
@@ -86,21 +97,18 @@ class CdrWriter {
  public:
   CdrWriter() { clear(); }
 
-  /// Begins another message.
+  /// Starts another message.
   void clear() {
     constexpr std::array<std::byte, 4> encapsulation = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
     bytes_.assign(encapsulation.begin(), encapsulation.end());
   }
 
+  void add(bool flag) { add(static_cast<std::uint8_t>(flag ? 1 : 0)); }
   template <class Number>
-  requires std::is_arithmetic_v<Number>
+  requires is_plain<Number>
   void add(Number number) {
-    if constexpr (std::is_same_v<Number, bool>) {
-      add(static_cast<std::uint8_t>(number ? 1 : 0));
-    } else {
-      align(sizeof number);
-      append(&number, sizeof number);
-    }
+    align(sizeof number);
+    append(&number, sizeof number);
   }
   void add(const std::string& text) {
     add_count(text.size() + 1);
@@ -112,16 +120,17 @@ class CdrWriter {
   }
   template <class Value>
   void add(const std::vector<Value>& values) {
-    static_assert(!std::is_same_v<Value, bool>, "std::vector<bool> has no array of bool");
+    static_assert(!std::is_same_v<Value, bool>, "std::vector<bool> does not store an array of bool");
     add_count(values.size());
     add_all(values.data(), values.size());
   }
   template <RosMessage Message>
-  void add(const Message& message) {
+  void add([[maybe_unused]] const Message& message) {
+    if constexpr (has_no_fields<Message>) add(std::uint8_t{0});
     std::apply([&](const auto&... fields) { (add(message.*fields.member), ...); }, Message::fields);
   }
 
-  /// The message, until it is changed.
+  /// Returns the message; valid until it is changed.
   const Bytes& bytes() const { return bytes_; }
 
  private:
@@ -137,13 +146,14 @@ class CdrWriter {
     std::memcpy(bytes_.data() + at, from, size);
   }
   void add_count(std::size_t count) {
-    if (count > std::numeric_limits<std::uint32_t>::max()) throw CdrError("a list or text is longer than CDR allows");
+    if (count > std::numeric_limits<std::uint32_t>::max())
+      throw CdrError("a sequence or string is longer than CDR allows");
     add(static_cast<std::uint32_t>(count));
   }
   template <class Value>
   void add_all(const Value* values, std::size_t count) {
     if (count == 0) return;
-    if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
+    if constexpr (is_plain<Value>) {
       align(sizeof(Value));
       append(values, count * sizeof(Value));
     } else {
@@ -154,25 +164,20 @@ class CdrWriter {
   Bytes bytes_;
 };
 
-/// Reads what a CdrWriter, or ROS, wrote. Throws CdrError; takes no more memory than the message may fill.
+/// Reads the output of a CdrWriter, or of ROS. Throws CdrError; limits memory to the size of the message.
 class CdrReader {
  public:
   explicit CdrReader(ByteView message) {
-    if (message.size() < 4) throw CdrError("a message of " + std::to_string(message.size()) + " bytes is no CDR");
+    if (message.size() < 4) throw CdrError("a message of " + std::to_string(message.size()) + " bytes is not CDR");
     if (message[0] != std::byte{0} || message[1] != std::byte{1})
-      throw CdrError("the message is no little-endian CDR: it does not begin with 00 01");
+      throw CdrError("the message is not little-endian CDR: it does not begin with 00 01");
     bytes_ = message.subspan(4);
   }
 
+  void read(bool& flag) { flag = *take(1, 1) != std::byte{0}; }
   template <class Number>
-  requires std::is_arithmetic_v<Number>
-  void read(Number& number) {
-    if constexpr (std::is_same_v<Number, bool>) {
-      number = *take(1, 1) != std::byte{0};
-    } else {
-      std::memcpy(&number, take(sizeof number, sizeof number), sizeof number);
-    }
-  }
+  requires is_plain<Number>
+  void read(Number& number) { std::memcpy(&number, take(sizeof number, sizeof number), sizeof number); }
   void read(std::string& text) {
     const std::size_t count = read_count(1);
     const std::byte* bytes = take(count, 1);
@@ -185,12 +190,13 @@ class CdrReader {
   }
   template <class Value>
   void read(std::vector<Value>& values) {
-    static_assert(!std::is_same_v<Value, bool>, "std::vector<bool> has no array of bool");
+    static_assert(!std::is_same_v<Value, bool>, "std::vector<bool> does not store an array of bool");
     values.resize(read_count(CdrSize<Value>::least()));
     read_all(values.data(), values.size());
   }
   template <RosMessage Message>
-  void read(Message& message) {
+  void read([[maybe_unused]] Message& message) {
+    if constexpr (has_no_fields<Message>) take(1, 1);
     std::apply([&](const auto&... fields) { (read(message.*fields.member), ...); }, Message::fields);
   }
   template <class Value>
@@ -207,23 +213,23 @@ class CdrReader {
     const std::size_t beyond = at_ % alignment;
     const std::size_t skipped = beyond == 0 ? 0 : alignment - beyond;
     if (skipped > left() || size > left() - skipped)
-      throw CdrError("the message ends at its byte " + std::to_string(bytes_.size() + 4) + "; there should be " +
+      throw CdrError("the message ends at byte " + std::to_string(bytes_.size() + 4) + "; expected " +
                      std::to_string(size) + " more");
     at_ += skipped + size;
     return bytes_.data() + (at_ - size);
   }
-  // A count of things that take at least `bytes_each`.
+  // Reads a number of elements with at least `bytes_each` each.
   std::size_t read_count(std::size_t bytes_each) {
     const auto count = get<std::uint32_t>();
     if (count > left() / std::max<std::size_t>(1, bytes_each))
-      throw CdrError("a list or text of " + std::to_string(count) + " in a message that has " + std::to_string(left()) +
-                     " bytes left");
+      throw CdrError("a sequence or string has " + std::to_string(count) + " elements, but the message has " +
+                     std::to_string(left()) + " bytes left");
     return count;
   }
   template <class Value>
   void read_all(Value* values, std::size_t count) {
     if (count == 0) return;
-    if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
+    if constexpr (is_plain<Value>) {
       std::memcpy(values, take(count * sizeof(Value), sizeof(Value)), count * sizeof(Value));
     } else {
       for (std::size_t i = 0; i < count; ++i) read(values[i]);
@@ -241,7 +247,7 @@ Bytes encode(const Message& message) {
   return writer.bytes();
 }
 
-/// What comes after the message's last field is ignored. Throws CdrError.
+/// Decodes a message; ignores bytes after the last field. Throws CdrError.
 template <RosMessage Message>
 Message decode(ByteView bytes) {
   return CdrReader(bytes).get<Message>();

@@ -6,7 +6,7 @@
 namespace cohort::messages {
 namespace {
 
-// Depth first, by name, as rosbag2 does it.
+// Adds nested messages depth first, by name, like rosbag2.
 void add_parts(std::string& text, const RosDefinition& definition, std::set<std::string>& known) {
   std::map<std::string, const RosDefinition*> parts;
   for (const RosDefinition& part : definition.parts) parts.emplace(part.name, &part);

@@ -2,10 +2,10 @@
 
 #include "idl/messages/ros_messages.hpp"
 
-/// The messages of ROS 2's sensor_msgs.
+/// Messages of ROS 2's sensor_msgs.
 namespace cohort::messages::ros {
 
-/// Angles counter-clockwise about z [rad], distances [m], times [s]. Nothing within reach: infinite.
+/// Angles counter-clockwise about z [rad], distances [m], times [s]. A distance is infinite if nothing is in range.
 struct LaserScan {
   Header header{};
   float angle_min = 0;
@@ -27,7 +27,7 @@ struct LaserScan {
   bool operator==(const LaserScan&) const = default;
 };
 
-/// A number of each point: `offset` bytes from its beginning, `count` of `datatype`.
+/// A number of each point: `count` values of type `datatype`, `offset` bytes from the point's start.
 struct PointField {
   std::string name{};
   std::uint32_t offset = 0;
@@ -63,7 +63,7 @@ struct PointCloud2 {
   void set_points(const std::vector<float>& coordinates);
 };
 
-/// Covariances row by row; -1 as the first number: this quantity is not measured.
+/// Covariances are row-major; -1 as the first number means that the quantity is not measured.
 struct Imu {
   Header header{};
   Quaternion orientation{};
@@ -82,7 +82,7 @@ struct Imu {
   bool operator==(const Imu&) const = default;
 };
 
-/// [T].
+/// Magnetic field [T].
 struct MagneticField {
   Header header{};
   Vector3 magnetic_field{};
@@ -94,7 +94,7 @@ struct MagneticField {
   bool operator==(const MagneticField&) const = default;
 };
 
-/// [Pa], variance [Pa^2]; 0: unknown.
+/// Pressure [Pa], variance [Pa^2]; 0: unknown.
 struct FluidPressure {
   Header header{};
   double fluid_pressure = 0;
@@ -106,7 +106,7 @@ struct FluidPressure {
   bool operator==(const FluidPressure&) const = default;
 };
 
-/// [degrees Celsius].
+/// Temperature [degrees Celsius].
 struct Temperature {
   Header header{};
   double temperature = 0;
@@ -118,7 +118,7 @@ struct Temperature {
   bool operator==(const Temperature&) const = default;
 };
 
-/// 0 to 1.
+/// Relative humidity, from 0 to 1.
 struct RelativeHumidity {
   Header header{};
   double relative_humidity = 0;
@@ -130,7 +130,7 @@ struct RelativeHumidity {
   bool operator==(const RelativeHumidity&) const = default;
 };
 
-/// [rad] or [m], [rad/s] or [m/s], [Nm] or [N]; each list as long as `name`, or empty.
+/// Positions [rad] or [m], velocities [rad/s] or [m/s], efforts [N m] or [N]; each list is as long as `name`, or empty.
 struct JointState {
   Header header{};
   std::vector<std::string> name{};
@@ -144,7 +144,8 @@ struct JointState {
   bool operator==(const JointState&) const = default;
 };
 
-/// Distances [m], `field_of_view` [rad], variance [m^2], 0: unknown.
+/// Distances [m], `field_of_view` [rad], variance [m^2]; 0: unknown. In Humble the message has no variance; its readers
+/// ignore these last bytes.
 struct Range {
   Header header{};
   std::uint8_t radiation_type = 0;
@@ -163,7 +164,8 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
-/// [V], [degrees Celsius], [A] (negative while discharging), [Ah], percentage 0 to 1; NaN: not measured.
+/// Voltage [V], temperature [degrees Celsius], current [A] (negative while discharging), charge [A h], percentage from
+/// 0 to 1; NaN: not measured.
 struct BatteryState {
   Header header{};
   float voltage = 0;
@@ -197,10 +199,13 @@ struct BatteryState {
   bool operator==(const BatteryState&) const = default;
 };
 
-/// Of the receiver: `status` -2 unknown, -1 no fix, 0 fix; `service` a sum of 1 GPS, 2 GLONASS, 4 BeiDou, 8 Galileo.
+/// State of the receiver: `status` is -2 unknown, -1 no fix, 0 fix; `service` is a sum of 1 GPS, 2 GLONASS, 4 BeiDou, 8
+/// Galileo.
 struct NavSatStatus {
   std::int8_t status = -2;
   std::uint16_t service = 0;
+  static constexpr std::int8_t fix = 0;
+  static constexpr std::uint16_t gps = 1;
   static constexpr const char* type = "sensor_msgs/msg/NavSatStatus";
   static constexpr auto fields =
       std::tuple(field("status", &NavSatStatus::status), field("service", &NavSatStatus::service));
@@ -223,6 +228,23 @@ struct NavSatFix {
                  field("altitude", &NavSatFix::altitude), field("position_covariance", &NavSatFix::position_covariance),
                  field("position_covariance_type", &NavSatFix::position_covariance_type));
   bool operator==(const NavSatFix&) const = default;
+};
+
+/// Rows of `step` bytes from the top; `encoding` is such as `rgb8`.
+struct Image {
+  Header header{};
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::string encoding{};
+  std::uint8_t is_bigendian = 0;
+  std::uint32_t step = 0;
+  std::vector<std::uint8_t> data{};
+  static constexpr const char* type = "sensor_msgs/msg/Image";
+  static constexpr auto fields =
+      std::tuple(field("header", &Image::header), field("height", &Image::height), field("width", &Image::width),
+                 field("encoding", &Image::encoding), field("is_bigendian", &Image::is_bigendian),
+                 field("step", &Image::step), field("data", &Image::data));
+  bool operator==(const Image&) const = default;
 };
 
 }  // namespace cohort::messages::ros

@@ -6,16 +6,15 @@
 
 #include "idl/messages/cdr.hpp"
 
-/// What has happened in a run and how far back it can go, for those who look on: docs/protocol.md, "Control",
-/// GetHistory.
+/// The events of a run, and how far back it can go: docs/protocol.md, "Control", GetHistory.
 namespace cohort::messages {
 
-/// Something that happened, perhaps more than once.
+/// An event that happened once or several times.
 struct HistoryEvent {
-  std::uint64_t tick = 0;       ///< of the first time
-  std::uint64_t last_tick = 0;  ///< of the last time
+  std::uint64_t tick = 0;       ///< tick of the first occurrence
+  std::uint64_t last_tick = 0;  ///< tick of the last occurrence
   std::uint64_t count = 1;
-  std::string kind;  ///< a word
+  std::string kind;  ///< keyword
   std::string text;
   static constexpr const char* type = "cohort_msgs/msg/HistoryEvent";
   static constexpr auto fields = std::tuple(
@@ -24,11 +23,11 @@ struct HistoryEvent {
 };
 
 struct RunHistory {
-  std::uint64_t begin_tick = 0;       ///< that the run began or went on from
-  std::uint64_t keep_interval = 0;    ///< ticks between snapshots that are kept; 0: the run cannot go back
-  std::uint64_t first_kept_tick = 0;  ///< of those that are kept, if there are any
+  std::uint64_t begin_tick = 0;       ///< tick at which the run started or continued
+  std::uint64_t keep_interval = 0;    ///< ticks between kept snapshots; 0: the run cannot go back
+  std::uint64_t first_kept_tick = 0;  ///< first tick of the kept snapshots, if there are any
   std::uint64_t last_kept_tick = 0;
-  std::vector<HistoryEvent> events;  ///< that happened, or happened again, since what is already known
+  std::vector<HistoryEvent> events;  ///< new and repeated events since the known revision
   static constexpr const char* type = "cohort_msgs/msg/RunHistory";
   static constexpr auto fields =
       std::tuple(field("begin_tick", &RunHistory::begin_tick), field("keep_interval", &RunHistory::keep_interval),

@@ -7,9 +7,9 @@
 
 #include "idl/messages/cdr.hpp"
 
-/// What viewers are told of a world, as messages of a ROS 2 package `cohort_msgs` would be. SI units, radians; frames
-/// as in description/model.hpp. A pose is x y z and a quaternion qx qy qz qw. Numbers are float32 where they are only
-/// to be looked at.
+/// Descriptions of a world for viewers, as messages of a ROS 2 package `cohort_msgs` would be. SI units, radians;
+/// frames as in description/model.hpp. A pose is x y z and a quaternion qx qy qz qw. Numbers that are only displayed
+/// are float32.
 namespace cohort::messages {
 
 using Vector = std::array<float, 3>;
@@ -22,16 +22,16 @@ enum class ShapeKind : std::uint8_t {
   box = 0,        ///< size: edges
   sphere = 1,     ///< size: radius
   cylinder = 2,   ///< size: radius, length along z
-  capsule = 3,    ///< size: radius, length along z without the half spheres
+  capsule = 3,    ///< size: radius, length along z without the hemispheres
   ellipsoid = 4,  ///< size: radii
-  plane = 5,      ///< size: normal; without end
+  plane = 5,      ///< size: normal; infinite
   mesh = 6,
 };
 
 enum class ShapeRole : std::uint8_t {
   visual = 0,
-  collision = 1,            ///< of a link that has visuals too
-  collision_as_visual = 2,  ///< of one that has none
+  collision = 1,            ///< collision of a link that also has visuals
+  collision_as_visual = 2,  ///< collision of a link without visuals
 };
 
 struct SceneShape {
@@ -39,9 +39,9 @@ struct SceneShape {
   std::uint8_t role = 0;      ///< a ShapeRole
   std::uint32_t mesh = none;  ///< index into Scene::meshes
   Vector size{};
-  PoseNumbers pose{};  ///< in its link
+  PoseNumbers pose{};  ///< pose in its link
   Color color{};
-  bool has_mesh_colors = false;  ///< of `color` only the opacity counts: the mesh has the colours
+  bool has_mesh_colors = false;  ///< true if the mesh has colours; only the opacity of `color` is then used
   static constexpr const char* type = "cohort_msgs/msg/SceneShape";
   static constexpr auto fields =
       std::tuple(field("kind", &SceneShape::kind), field("role", &SceneShape::role), field("mesh", &SceneShape::mesh),
@@ -52,7 +52,7 @@ struct SceneShape {
 struct SceneMesh {
   std::vector<float> vertices;           ///< x y z of each
   std::vector<std::uint32_t> triangles;  ///< three vertices each, counter-clockwise seen from outside
-  std::vector<std::uint8_t> colors{};    ///< red, green, blue of each triangle; empty if it has none
+  std::vector<std::uint8_t> colors{};    ///< red, green, blue of each triangle; empty if there are no colours
   static constexpr const char* type = "cohort_msgs/msg/SceneMesh";
   static constexpr auto fields =
       std::tuple(field("vertices", &SceneMesh::vertices), field("triangles", &SceneMesh::triangles),
@@ -61,23 +61,23 @@ struct SceneMesh {
 
 struct SceneLink {
   std::string name;
-  PoseNumbers pose{};  ///< in its model, with all joints at rest
+  PoseNumbers pose{};  ///< pose in its model, with all joints at zero
   std::vector<SceneShape> shapes;
   static constexpr const char* type = "cohort_msgs/msg/SceneLink";
   static constexpr auto fields =
       std::tuple(field("name", &SceneLink::name), field("pose", &SceneLink::pose), field("shapes", &SceneLink::shapes));
 };
 
-/// What a sensor looks along: as many rays as `directions` has vectors.
+/// The rays of a sensor: one for each vector in `directions`.
 struct SceneSensor {
   std::string name;
-  std::string kind;  ///< as a world writes it, such as `proximity_ring`
+  std::string kind;  ///< as in world files, such as `proximity_ring`
   std::uint32_t link = 0;
-  std::vector<float> origins;     ///< x y z of each ray in its link
-  std::vector<float> directions;  ///< the same, unit
+  std::vector<float> origins;     ///< x y z of each ray's origin in its link
+  std::vector<float> directions;  ///< x y z of each ray's unit direction in its link
   float range = 0.0f;             ///< [m]
-  float cone = 0.0f;              ///< full angle of what one ray stands for; 0: a ray
-  std::string channel;            ///< of the first ray's reading; those of the others follow it in the observation
+  float cone = 0.0f;              ///< full angle of the cone that a ray represents; 0: a ray
+  std::string channel;            ///< channel of the first ray's reading; the others follow it in the observation
   static constexpr const char* type = "cohort_msgs/msg/SceneSensor";
   static constexpr auto fields = std::tuple(
       field("name", &SceneSensor::name), field("kind", &SceneSensor::kind), field("link", &SceneSensor::link),
@@ -91,7 +91,7 @@ struct SceneChannel {
   std::uint32_t size = 1;
   double lower = 0.0;
   double upper = 0.0;
-  double neutral = 0.0;  ///< of a command: what it is until it is set
+  double neutral = 0.0;  ///< value of a command until it is set
   static constexpr const char* type = "cohort_msgs/msg/SceneChannel";
   static constexpr auto fields =
       std::tuple(field("name", &SceneChannel::name), field("unit", &SceneChannel::unit),
@@ -114,21 +114,21 @@ struct SceneModel {
 };
 
 struct SceneEntity {
-  std::string name;  ///< scoped
+  std::string name;  ///< scoped name
   std::uint32_t model = 0;
-  std::uint32_t robot = none;  ///< its id, if it is one
+  std::uint32_t robot = none;  ///< id, if it is a robot
   std::string team{};
   static constexpr const char* type = "cohort_msgs/msg/SceneEntity";
   static constexpr auto fields = std::tuple(field("name", &SceneEntity::name), field("model", &SceneEntity::model),
                                             field("robot", &SceneEntity::robot), field("team", &SceneEntity::team));
 };
 
-/// A lamp, a loudspeaker or a LED; `link`: index among the links of a SceneFrame.
+/// A lamp, a loudspeaker or an LED; `link` is an index into the links of a SceneFrame.
 struct SceneEmitter {
   std::uint32_t entity = 0;
   std::uint32_t link = 0;
-  Vector position{};   ///< in its link
-  Vector direction{};  ///< of a lamp that shines in one, in its link; zero otherwise
+  Vector position{};   ///< position in its link
+  Vector direction{};  ///< direction of a directional lamp, in its link; zero otherwise
   float range = 0.0f;  ///< [m], may be infinite
   static constexpr const char* type = "cohort_msgs/msg/SceneEmitter";
   static constexpr auto fields =
@@ -137,10 +137,10 @@ struct SceneEmitter {
                  field("range", &SceneEmitter::range));
 };
 
-/// What there is in a world. Another one comes with another world, when objects come that were not in it, and when the
-/// last run has ended: that one has nothing in it.
+/// The contents of a world. A new one is sent for each world, when objects are added, and at the end of the last run;
+/// the last one is empty.
 struct Scene {
-  std::uint32_t revision = 0;  ///< that frames refer to; never used twice by a source
+  std::uint32_t revision = 0;  ///< used by frames; never repeated by a source
   std::string world;
   std::int64_t step_ns = 0;
   std::vector<SceneMesh> meshes;
@@ -149,8 +149,8 @@ struct Scene {
   std::vector<SceneEmitter> lamps;
   std::vector<SceneEmitter> tones;
   std::vector<SceneEmitter> leds;
-  std::string end{};       ///< how the run ended, as a recording says it, such as `finished`; empty: it has not
-  std::string end_text{};  ///< why, for people; maybe empty
+  std::string end{};       ///< end of the run as in recordings, such as `finished`; empty while it runs
+  std::string end_text{};  ///< reason, for people; may be empty
   static constexpr const char* type = "cohort_msgs/msg/Scene";
   static constexpr auto fields =
       std::tuple(field("revision", &Scene::revision), field("world", &Scene::world), field("step_ns", &Scene::step_ns),
@@ -159,17 +159,17 @@ struct Scene {
                  field("end", &Scene::end), field("end_text", &Scene::end_text));
 };
 
-/// Where everything is at a boundary. Links are in the order of models, within a model of its links, and within a link
-/// of the entities of that model: so all instances of one link stand in a row.
+/// The poses at a boundary. Links are sorted by model, then by link of the model, then by entity of that model, so that
+/// all instances of one link are contiguous.
 struct SceneFrame {
   std::uint32_t revision = 0;
   std::uint32_t run = 0;
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;
   std::uint64_t state_hash = 0;
-  std::vector<std::uint32_t> absent;       ///< entities that are not in the world, ascending
-  std::vector<std::uint32_t> quarantined;  ///< and those that are no longer simulated
-  std::vector<float> positions;            ///< x y z of each link in the world
+  std::vector<std::uint32_t> absent;       ///< entities that are not in the world, in ascending order
+  std::vector<std::uint32_t> quarantined;  ///< entities that are no longer simulated, in ascending order
+  std::vector<float> positions;            ///< x y z of each link in the world frame
   std::vector<std::int16_t> orientations;  ///< qx qy qz qw of each link, times 32767
   static constexpr const char* type = "cohort_msgs/msg/SceneFrame";
   static constexpr auto fields = std::tuple(
@@ -179,7 +179,7 @@ struct SceneFrame {
       field("positions", &SceneFrame::positions), field("orientations", &SceneFrame::orientations));
 };
 
-/// What lamps, loudspeakers and LEDs do, in the order of the scene's.
+/// The output of lamps, loudspeakers and LEDs, in the order of the scene.
 struct SceneSignals {
   std::uint32_t revision = 0;
   std::vector<float> lamps;        ///< red, green, blue and intensity of each; 0 if it is off
@@ -192,13 +192,13 @@ struct SceneSignals {
   bool operator==(const SceneSignals&) const = default;
 };
 
-/// What touches and what holds on to what, at a boundary.
+/// Contacts and grips at a boundary.
 struct SceneContacts {
   std::uint32_t revision = 0;
-  std::vector<float> positions;         ///< x y z of each contact point in the world
-  std::vector<float> forces;            ///< the same along the normal, of entity b on entity a, over the last step [N]
-  std::vector<std::uint32_t> entities;  ///< a and b of each
-  std::vector<float> grips;             ///< of each gripper that holds something: x y z of its jaw, and the force [N]
+  std::vector<float> positions;  ///< x y z of each contact point in the world frame
+  std::vector<float> forces;  ///< x y z of each contact's normal force, of entity b on entity a, over the last step [N]
+  std::vector<std::uint32_t> entities;  ///< a and b of each contact
+  std::vector<float> grips;             ///< x y z of the jaw of each gripper that holds something, and the force [N]
   static constexpr const char* type = "cohort_msgs/msg/SceneContacts";
   static constexpr auto fields =
       std::tuple(field("revision", &SceneContacts::revision), field("positions", &SceneContacts::positions),
@@ -206,7 +206,7 @@ struct SceneContacts {
                  field("grips", &SceneContacts::grips));
 };
 
-/// What one robot observes and is told, as float64 by the channels of its model.
+/// The observation and command of one robot, as float64 in the order of its model's channels.
 struct SceneRobot {
   std::uint32_t revision = 0;
   std::uint32_t robot = 0;
@@ -221,7 +221,7 @@ struct SceneRobot {
                  field("observation", &SceneRobot::observation), field("command", &SceneRobot::command));
 };
 
-/// Some of the robots.
+/// A selection of robots.
 struct SceneRobots {
   std::vector<SceneRobot> robots;
   static constexpr const char* type = "cohort_msgs/msg/SceneRobots";

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-/// The messages of cohort.idl as C++ values. Those with spans are views: when read they are valid during the callback
-/// only; when written they must stay valid until `write` returns.
+/// The messages of cohort.idl as C++ values. Messages with spans are views: received ones are valid only during the
+/// callback, and sent ones must stay valid until `write` returns.
 namespace cohort::wire {
 
 inline constexpr std::uint32_t minor_version = 2;
-inline constexpr std::uint32_t first_minor_with_state = 1;  ///< the first that has ControllerState
+inline constexpr std::uint32_t first_minor_with_state = 1;  ///< the first version with ControllerState
 
 struct Channel {
   std::string name{};
@@ -144,12 +144,12 @@ struct Report {
   bool operator==(const Report&) const = default;
 };
 
-/// The `reason` of a client's report that its controllers have failed before they answered anything.
+/// The `reason` of a client's report that its controllers failed before their first answer.
 inline constexpr const char* failed_in_start = "start";
 
-/// `unsaved`: the controllers cannot save; the data says why.
+/// `unsaved`: the controllers cannot save; the data contains the reason.
 enum class StateKind : std::uint32_t { wanted = 0, here = 1, unsaved = 2 };
-/// Of one ControllerState [bytes].
+/// Maximum size of the data in one ControllerState [bytes].
 inline constexpr std::size_t largest_state_part = std::size_t{256} << 10;
 
 struct ControllerState {

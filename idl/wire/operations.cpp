@@ -7,7 +7,7 @@
 namespace cohort::wire {
 namespace {
 
-constexpr std::array<std::pair<OperationCode, const char*>, 23> names = {{
+constexpr std::array<std::pair<OperationCode, const char*>, 25> names = {{
     {OperationCode::get_simulator_features, "GetSimulatorFeatures"},
     {OperationCode::get_simulation_state, "GetSimulationState"},
     {OperationCode::set_simulation_state, "SetSimulationState"},
@@ -31,6 +31,8 @@ constexpr std::array<std::pair<OperationCode, const char*>, 23> names = {{
     {OperationCode::stop_recording, "StopRecording"},
     {OperationCode::go_back, "GoBack"},
     {OperationCode::get_history, "GetHistory"},
+    {OperationCode::advance_time, "AdvanceTime"},
+    {OperationCode::get_experiment, "GetExperiment"},
 }};
 
 }  // namespace
@@ -63,7 +65,8 @@ bool is_query(OperationCode operation) {
     case OperationCode::put_data:
     case OperationCode::get_recording:
     case OperationCode::stop_recording:
-    case OperationCode::get_history: return true;
+    case OperationCode::get_history:
+    case OperationCode::get_experiment: return true;
     default: return false;
   }
 }

@@ -8,9 +8,9 @@
 
 #include "client_sdk/include/cohort/types.hpp"
 
-/// The operations by which clients control a run: docs/protocol.md, "Control". Each is a struct with the fields that it
-/// has: `code` is its number, `Returned` what its Reply brings beside what every Reply says. Entities are called by
-/// their scoped names. Poses, twists, forces and torques are of the world frame, in SI units.
+/// The operations with which clients control a run: docs/protocol.md, "Control". Each is a struct of its fields. `code`
+/// is its number, and `Returned` the type of its result, in addition to the common fields of every Reply. Entities are
+/// identified by their scoped names. Poses, twists, forces and torques are in the world frame, in SI units.
 namespace cohort::wire {
 
 enum class OperationCode : std::uint32_t {
@@ -37,23 +37,26 @@ enum class OperationCode : std::uint32_t {
   stop_recording = 110,
   go_back = 111,
   get_history = 112,
+  advance_time = 113,
+  get_experiment = 114,
 };
 
-/// The operation's name in docs/protocol.md, such as `StepSimulation`; empty if there is none of this number.
+/// Returns the operation's name in docs/protocol.md, such as `StepSimulation`; empty if there is none with this number.
 std::string name_of(OperationCode operation);
-/// One that changes nothing of the world, and so is answered at once.
+/// Returns true for an operation that does not change the world, and so is answered at once.
 bool is_query(OperationCode operation);
-/// One that only looks on, and so is anybody's who is let in; all others need the right to control.
+/// Returns true for an operation that only observes, which every admitted client may do; others need the right to
+/// control.
 bool is_looking_on(OperationCode operation);
 
-// The values that clients see too.
+// Values of the public headers.
 using cohort::Quaternion;
 using cohort::SimulationState;
 using cohort::Vector3;
 using Pose = WorldPose;
 using cohort::Twist;
 
-// What operations return.
+// Results of operations
 
 struct SimulatorFeatures {
   std::vector<std::uint32_t> features{};  ///< numbers of simulation_interfaces/msg/SimulatorFeatures
@@ -66,9 +69,9 @@ struct EntityNames {
   bool operator==(const EntityNames&) const = default;
 };
 
-/// The entity that an operation was done to.
+/// The entity of an operation.
 struct EntityName {
-  std::string entity{};  ///< of one that was spawned, the name that it got
+  std::string entity{};  ///< for a spawned entity, its actual name
   bool operator==(const EntityName&) const = default;
 };
 
@@ -84,13 +87,13 @@ struct ControllerStatus {
   std::uint64_t client = 0;
   std::vector<std::uint32_t> robots{};  ///< ids
   bool alive = false;
-  bool awaited = false;         ///< the barrier waits for it
-  std::int64_t awaited_ns = 0;  ///< for so long
-  std::uint64_t due_tick = 0;   ///< of its oldest frame without an answer; of the next one if there is none
+  bool awaited = false;         ///< true if the barrier waits for it
+  std::int64_t awaited_ns = 0;  ///< how long the barrier has waited for it
+  std::uint64_t due_tick = 0;   ///< tick of its oldest unanswered frame; of the next frame if all are answered
   std::uint64_t answers = 0;
-  std::uint64_t late = 0;  ///< misses
+  std::uint64_t late = 0;  ///< number of misses
   std::uint64_t rejected = 0;
-  std::uint64_t resent = 0;        ///< frames sent again
+  std::uint64_t resent = 0;        ///< number of frames sent again
   std::int64_t answer_p50_ns = 0;  ///< from the first sending of a frame to its answer
   std::int64_t answer_p99_ns = 0;
   bool operator==(const ControllerStatus&) const = default;
@@ -101,34 +104,34 @@ struct SimulationStatus {
   std::uint64_t seed = 0;
   bool started = false;  ///< false while controllers are missing at the start
   std::int64_t step_ns = 0;
-  std::int64_t duration_ns = 0;  ///< simulated, of the whole run
-  double speed = 0.0;            ///< simulated seconds per second at the most; 0: as fast as it goes
+  std::int64_t duration_ns = 0;  ///< simulated duration of the whole run
+  double speed = 0.0;            ///< limit of simulated seconds per second; 0: no limit
   double real_time_factor = 0.0;
   std::uint64_t state_hash = 0;
   std::uint32_t robots = 0;
-  std::uint32_t awaited_count = 0;     ///< robots
+  std::uint32_t awaited_count = 0;     ///< number of robots
   std::vector<std::string> awaited{};  ///< names of the first of them
-  std::int64_t waiting_ns = 0;         ///< since the frames of this tick went out
+  std::int64_t waiting_ns = 0;         ///< time since the frames of this tick were sent
   std::vector<ControllerStatus> controllers{};
   bool operator==(const SimulationStatus&) const = default;
 };
 
-/// Bytes of a snapshot or a recording.
+/// Bytes of a snapshot, a recording or an experiment.
 struct DataPart {
-  std::uint64_t size = 0;    ///< of all data [bytes]; of a recording that may grow, 0
-  std::uint64_t offset = 0;  ///< of this part
+  std::uint64_t size = 0;    ///< total size [bytes]; 0 for a recording that may grow
+  std::uint64_t offset = 0;  ///< offset of this part [bytes]
   std::vector<std::uint8_t> data{};
   bool operator==(const DataPart&) const = default;
 };
 
 struct HistoryPart {
-  std::uint64_t revision = 0;        ///< to ask with next
+  std::uint64_t revision = 0;        ///< revision for the next query
   std::uint64_t newest = 0;          ///< revision of the run
   std::vector<std::uint8_t> data{};  ///< a cohort_msgs/RunHistory in CDR
   bool operator==(const HistoryPart&) const = default;
 };
 
-// The operations.
+// Operations
 
 struct GetSimulatorFeatures {
   static constexpr auto code = OperationCode::get_simulator_features;
@@ -136,7 +139,7 @@ struct GetSimulatorFeatures {
   bool operator==(const GetSimulatorFeatures&) const = default;
 };
 
-/// A question that every Reply answers.
+/// A query that every Reply answers.
 struct GetSimulationState {
   static constexpr auto code = OperationCode::get_simulation_state;
   using Returned = std::monostate;
@@ -150,7 +153,7 @@ struct SetSimulationState {
   bool operator==(const SetSimulationState&) const = default;
 };
 
-/// So many steps of a paused run, which is paused again then.
+/// Advances a paused run by a number of steps; it is paused again after them.
 struct StepSimulation {
   static constexpr auto code = OperationCode::step_simulation;
   using Returned = std::monostate;
@@ -158,19 +161,19 @@ struct StepSimulation {
   bool operator==(const StepSimulation&) const = default;
 };
 
-/// Another run from the beginning.
+/// Restarts the run from the beginning.
 struct ResetSimulation {
   static constexpr auto code = OperationCode::reset_simulation;
   using Returned = std::monostate;
   std::uint32_t scope = 0;              ///< 0 or 255: all
-  std::optional<std::uint64_t> seed{};  ///< the run's if absent
+  std::optional<std::uint64_t> seed{};  ///< that of the run if absent
   bool operator==(const ResetSimulation&) const = default;
 };
 
 struct GetEntities {
   static constexpr auto code = OperationCode::get_entities;
   using Returned = EntityNames;
-  std::string filter{};  ///< POSIX extended regular expression that a part of the name matches
+  std::string filter{};  ///< POSIX extended regular expression that matches a part of the name
   bool operator==(const GetEntities&) const = default;
 };
 
@@ -181,26 +184,26 @@ struct GetEntityState {
   bool operator==(const GetEntityState&) const = default;
 };
 
-/// Puts an entity elsewhere, at rest, and then gives it a velocity.
+/// Moves an entity to a pose, at rest, and then sets its velocity.
 struct SetEntityState {
   static constexpr auto code = OperationCode::set_entity_state;
   using Returned = EntityName;
   std::string entity{};
-  std::optional<Pose> pose{};    ///< stays as it is if absent
-  std::optional<Twist> twist{};  ///< likewise; one of both has to be there
+  std::optional<Pose> pose{};    ///< unchanged if absent
+  std::optional<Twist> twist{};  ///< unchanged if absent; one of both must be present
   bool operator==(const SetEntityState&) const = default;
 };
 
-/// A new entity, at rest. Of the two ways to give its model, `resource_string` counts if it is not empty.
+/// Adds an entity, at rest. Its model is `resource_string` if that is not empty, otherwise `uri`.
 struct SpawnEntity {
   static constexpr auto code = OperationCode::spawn_entity;
   using Returned = EntityName;
   std::string entity{};
-  bool allow_renaming = false;    ///< another name if this one is taken
+  bool allow_renaming = false;    ///< chooses another name if this one is taken
   std::string uri{};              ///< name of one of the world's models
   std::string resource_string{};  ///< text of a model in SDF, URDF or YAML
   Pose pose{};
-  std::string team{};  ///< of a robot; empty: the only team, or the only one with robots of this model
+  std::string team{};  ///< team of a robot; if empty, the only team, or the only one with robots of this model
   bool operator==(const SpawnEntity&) const = default;
 };
 
@@ -220,7 +223,7 @@ struct GetStatus {
 struct SetSpeed {
   static constexpr auto code = OperationCode::set_speed;
   using Returned = std::monostate;
-  double speed = 0.0;  ///< simulated seconds per second at the most; 0: as fast as it goes
+  double speed = 0.0;  ///< limit of simulated seconds per second; 0: no limit
   bool operator==(const SetSpeed&) const = default;
 };
 
@@ -229,24 +232,24 @@ struct SetLight {
   using Returned = EntityName;
   std::string entity{};  ///< `object/light`, an object for all of its lights, or a light of the world
   bool on = false;
-  std::optional<double> intensity{};  ///< >= 0 [1]; stays as it is if absent
-  std::optional<Vector3> color{};     ///< red, green and blue from 0 to 1; likewise
+  std::optional<double> intensity{};  ///< >= 0 [1]; unchanged if absent
+  std::optional<Vector3> color{};     ///< red, green and blue from 0 to 1; unchanged if absent
   bool operator==(const SetLight&) const = default;
 };
 
-/// A force and a torque at a link's centre of mass, from this boundary on.
+/// Applies a force and a torque at a link's centre of mass, from this boundary on.
 struct ApplyForce {
   static constexpr auto code = OperationCode::apply_force;
   using Returned = EntityName;
   std::string entity{};
-  std::string link{};  ///< empty: the root link
-  Vector3 force{};     ///< [N], in the world's axes
-  Vector3 torque{};    ///< [N m], in the world's axes
+  std::string link{};  ///< root link if empty
+  Vector3 force{};     ///< [N], in the world frame
+  Vector3 torque{};    ///< [N m], in the world frame
   std::int64_t duration_ns = 0;
   bool operator==(const ApplyForce&) const = default;
 };
 
-/// Returns the `size` of the snapshot, whose parts GetData brings.
+/// Saves a snapshot and returns its `size`; GetData returns its parts.
 struct SaveSnapshot {
   static constexpr auto code = OperationCode::save_snapshot;
   using Returned = DataPart;
@@ -256,16 +259,16 @@ struct SaveSnapshot {
 struct GetData {
   static constexpr auto code = OperationCode::get_data;
   using Returned = DataPart;
-  std::uint64_t offset = 0;  ///< of the part that is wanted [bytes]
+  std::uint64_t offset = 0;  ///< offset of the requested part [bytes]
   bool operator==(const GetData&) const = default;
 };
 
-/// A part of a snapshot for LoadSnapshot. Returns its `size` and `offset`.
+/// Sends a part of a snapshot for LoadSnapshot. Returns its `size` and `offset`.
 struct PutData {
   static constexpr auto code = OperationCode::put_data;
   using Returned = DataPart;
-  std::uint64_t size = 0;    ///< of all data [bytes]
-  std::uint64_t offset = 0;  ///< of this part
+  std::uint64_t size = 0;    ///< total size [bytes]
+  std::uint64_t offset = 0;  ///< offset of this part [bytes]
   std::vector<std::uint8_t> data{};
   bool operator==(const PutData&) const = default;
 };
@@ -279,14 +282,14 @@ struct LoadSnapshot {
 struct StartRecording {
   static constexpr auto code = OperationCode::start_recording;
   using Returned = std::monostate;
-  std::string recorded{};  ///< YAML as after an experiment's `record`; empty: what the experiment says
+  std::string recorded{};  ///< YAML as in an experiment's `record`; if empty, that of the experiment
   bool operator==(const StartRecording&) const = default;
 };
 
 struct GetRecording {
   static constexpr auto code = OperationCode::get_recording;
   using Returned = DataPart;
-  std::uint64_t offset = 0;  ///< of the part that is wanted [bytes]; what is before is forgotten
+  std::uint64_t offset = 0;  ///< offset of the requested part [bytes]; earlier bytes are discarded
   bool operator==(const GetRecording&) const = default;
 };
 
@@ -296,31 +299,50 @@ struct StopRecording {
   bool operator==(const StopRecording&) const = default;
 };
 
-/// Another run, from the last snapshot that the server has kept at or before a time.
+/// Starts another run from the last snapshot that the server kept at or before a time.
 struct GoBack {
   static constexpr auto code = OperationCode::go_back;
   using Returned = std::monostate;
-  std::int64_t duration_ns = 0;  ///< simulated, from the run's beginning
+  std::int64_t duration_ns = 0;  ///< simulated time since the start of the run
   bool operator==(const GoBack&) const = default;
 };
 
 struct GetHistory {
   static constexpr auto code = OperationCode::get_history;
   using Returned = HistoryPart;
-  std::uint64_t revision = 0;  ///< after which events are wanted; 0: all
+  std::uint64_t revision = 0;  ///< revision after which events are requested; 0: all
   bool operator==(const GetHistory&) const = default;
 };
 
-/// An operation of a number that this version does not know.
+/// Holds the run's time: the run leaves a tick only when each client that holds it has requested a later one.
+struct AdvanceTime {
+  static constexpr auto code = OperationCode::advance_time;
+  using Returned = std::monostate;
+  /// Number of ticks after that of the last reply, at most 2^62; the reply is sent when the frames of that tick are
+  /// out. 0 starts the hold, and is answered at once.
+  std::uint64_t steps = 0;
+  bool release = false;  ///< ends the hold instead
+  bool operator==(const AdvanceTime&) const = default;
+};
+
+struct GetExperiment {
+  static constexpr auto code = OperationCode::get_experiment;
+  using Returned = DataPart;  ///< cohort_msgs/ExperimentFiles in CDR
+  std::uint64_t offset = 0;   ///< offset of the requested part [bytes]
+  bool operator==(const GetExperiment&) const = default;
+};
+
+/// An operation with a number that this version does not support.
 struct UnknownOperation {
   std::uint32_t number = 0;
   bool operator==(const UnknownOperation&) const = default;
 };
 
-using Operation = std::variant<GetSimulatorFeatures, GetSimulationState, SetSimulationState, StepSimulation,
-                               ResetSimulation, GetEntities, GetEntityState, SetEntityState, SpawnEntity, DeleteEntity,
-                               GetStatus, SetSpeed, SetLight, ApplyForce, SaveSnapshot, GetData, PutData, LoadSnapshot,
-                               StartRecording, GetRecording, StopRecording, GoBack, GetHistory, UnknownOperation>;
+using Operation =
+    std::variant<GetSimulatorFeatures, GetSimulationState, SetSimulationState, StepSimulation, ResetSimulation,
+                 GetEntities, GetEntityState, SetEntityState, SpawnEntity, DeleteEntity, GetStatus, SetSpeed, SetLight,
+                 ApplyForce, SaveSnapshot, GetData, PutData, LoadSnapshot, StartRecording, GetRecording, StopRecording,
+                 GoBack, GetHistory, AdvanceTime, GetExperiment, UnknownOperation>;
 
 using Returned = std::variant<std::monostate, SimulatorFeatures, EntityNames, EntityName, EntityState, SimulationStatus,
                               DataPart, HistoryPart>;
@@ -336,7 +358,7 @@ void for_each_name(AnyOperation& operation, const Visit& visit) {
   if constexpr (requires { operation.uri; }) visit(operation.uri);
   if constexpr (requires { operation.link; }) visit(operation.link);
 }
-/// The same with each document and what it has of data.
+/// Calls `visit` with each document and each list of bytes of the operation.
 template <class AnyOperation, class Visit>
 void for_each_document(AnyOperation& operation, const Visit& visit) {
   if constexpr (requires { operation.resource_string; }) visit(operation.resource_string);

@@ -7,8 +7,8 @@
 namespace cohort::actuation {
 namespace {
 
-/// Velocity along x [m/s] and about z [rad/s] of the middle of the rear axle. Each steered wheel stands at right angles
-/// to the way from it to the centre of the turn, which is on the line of that axle.
+/// Velocity of the middle of the rear axle along x [m/s] and about z [rad/s]. Each steered wheel is perpendicular to
+/// the line from it to the centre of the turn, which is on the line of that axle.
 class AckermannDrive final : public ActuatorOf<description::AckermannDrive> {
  public:
   AckermannDrive(const description::AckermannDrive& drive, const Mount& mount)
@@ -30,7 +30,7 @@ class AckermannDrive final : public ActuatorOf<description::AckermannDrive> {
   }
 
  private:
-  // [1/m]. At rest it is the tightest one to that side.
+  // Returns the curvature [1/m]. At rest it is the tightest one to that side.
   double curvature_of(double linear, double angular) const {
     if (angular == 0.0) return 0.0;
     if (linear == 0.0) return std::copysign(greatest_curvature_, angular);

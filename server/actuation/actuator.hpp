@@ -15,18 +15,18 @@
 
 namespace cohort::actuation {
 
-/// Acts on the world. One object for each device of each robot.
+/// An actuator that acts on the world: one object for each device of each robot.
 class Actuator {
  public:
   virtual ~Actuator() = default;
-  /// The channels that `apply` reads, in order.
+  /// Returns the channels that `apply` reads, in order.
   virtual std::vector<Channel> channels() const = 0;
-  /// Sets the device's targets for the step to come from one value for each float64 of the channels, all within range.
+  /// Sets the device's targets for the next step from one value for each float64 of the channels, all within range.
   /// Called in the order of the robots, on one thread.
   virtual void apply(std::span<const double> values) = 0;
 };
 
-/// What an actuator acts on, and the robot that has it. All that it refers to must outlive the actuator.
+/// The robot and the objects that an actuator acts on. They must outlive the actuator.
 struct Mount {
   physics::World& world;
   emission::Emitters& emitters;
@@ -34,8 +34,8 @@ struct Mount {
   gripping::Grippers& grippers;
   gripping::DetachableJoints& detachable_joints;
   UserActions& actions;
-  BodyId body;      ///< the robot's, which is its index among the description's instances
-  DeviceId device;  ///< of the robot's model
+  BodyId body;      ///< the robot's body; also its index among the description's instances
+  DeviceId device;  ///< index in the robot's model
 
   const description::Model& model() const { return description.models[description.instances[body.value].model]; }
   const description::Joint& joint(std::size_t index) const { return model().joints[index]; }

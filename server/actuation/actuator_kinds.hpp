@@ -4,18 +4,17 @@
 
 #include "server/actuation/actuator.hpp"
 
-/// The register of actuators, by what a model says of them: each stands in a file of its own, and a new kind is one
-/// more line here.
+/// The register of actuators, by their type in a model. Each has a file of its own, and a new kind adds one line here.
 namespace cohort::actuation {
 
-/// What a kind of actuator builds on: a device as the model has it, and where it is mounted.
+/// The base of a kind of actuator: a device of a model, and its mount.
 template <class Device>
 class ActuatorOf : public Actuator {
  public:
   ActuatorOf(const Device& device, const Mount& mount) : device_(device), mount_(mount) {}
 
  protected:
-  const Device& device_;  // of the model
+  const Device& device_;  // in the model
   Mount mount_;
 };
 

@@ -3,7 +3,7 @@
 namespace cohort::actuation {
 namespace {
 
-/// Velocity of the surface of a link [m/s].
+/// Surface velocity of a link [m/s].
 class Belt final : public ActuatorOf<description::Belt> {
  public:
   using ActuatorOf::ActuatorOf;

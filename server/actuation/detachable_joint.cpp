@@ -3,7 +3,7 @@
 namespace cohort::actuation {
 namespace {
 
-/// Whether it is to hold: above a half.
+/// Attachment of a joint: it holds if the value is above 0.5.
 class DetachableJoint final : public ActuatorOf<description::DetachableJoint> {
  public:
   DetachableJoint(const description::DetachableJoint& joint, const Mount& mount)

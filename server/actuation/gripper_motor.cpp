@@ -3,7 +3,7 @@
 namespace cohort::actuation {
 namespace {
 
-/// How far a gripper is to be open: from 0, closed, to 1.
+/// Opening of a gripper: from 0 (closed) to 1.
 class GripperMotor final : public ActuatorOf<description::Gripper> {
  public:
   GripperMotor(const description::Gripper& gripper, const Mount& mount)

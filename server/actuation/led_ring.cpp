@@ -3,7 +3,7 @@
 namespace cohort::actuation {
 namespace {
 
-/// The colours of LEDs, each as a marker that cameras see and, if it has an intensity, as a lamp.
+/// Colours of LEDs. Each is a marker that cameras see and, if it has an intensity, a lamp.
 class LedRing final : public ActuatorOf<description::LedRing> {
  public:
   LedRing(const description::LedRing& leds, const Mount& mount)

@@ -5,7 +5,7 @@
 namespace cohort::actuation {
 namespace {
 
-/// A message to the robots around: sent at every tick for as long as `sending` is at least 0.5.
+/// A message to nearby robots, sent at every tick while `sending` is at least 0.5.
 class MessageSender final : public ActuatorOf<description::RangeAndBearing> {
  public:
   MessageSender(const description::RangeAndBearing& device, const Mount& mount)

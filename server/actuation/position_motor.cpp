@@ -5,7 +5,7 @@
 namespace cohort::actuation {
 namespace {
 
-/// Where one joint goes, and stays [rad] or [m].
+/// Target position of one joint [rad] or [m].
 class PositionMotor final : public ActuatorOf<description::PositionMotor> {
  public:
   using ActuatorOf::ActuatorOf;

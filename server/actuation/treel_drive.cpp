@@ -3,7 +3,7 @@
 namespace cohort::actuation {
 namespace {
 
-/// Velocity of the left and the right track over ground [m/s].
+/// Velocities of the left and the right track over ground [m/s].
 class TreelDrive final : public ActuatorOf<description::TreelDrive> {
  public:
   using ActuatorOf::ActuatorOf;

@@ -3,7 +3,7 @@
 namespace cohort::actuation {
 namespace {
 
-/// Tells that the robot does something, from 0 to 1.
+/// An action of a robot, signalled by a value from 0 to 1.
 class UserAction final : public ActuatorOf<description::UserAction> {
  public:
   UserAction(const description::UserAction& action, const Mount& mount)

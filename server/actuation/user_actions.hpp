@@ -19,29 +19,29 @@ struct ActionOfRobot {
   std::string name;
   RobotId robot;
   BodyId body;
-  double value = 0.0;    ///< commanded for the last step; 0 if the robot was not in the world
+  double value = 0.0;    ///< commanded in the last step; 0 if the robot was not in the world
   bool is_done = false;  ///< the value is above `UserActions::threshold`
-  bool begins = false;   ///< it was not in the step before
+  bool begins = false;   ///< not done in the previous step
 };
 
-/// What robots do that no joint stands for. Commands come from one thread, between steps.
+/// The actions of robots that have no joint. Commands come from one thread, between steps.
 class UserActions {
  public:
-  /// Above it the robot does it, and up to it not [1].
+  /// The robot acts above this value [1].
   static constexpr double threshold = 0.5;
 
-  /// What it refers to must outlive it.
+  /// The arguments must outlive this object.
   UserActions(const description::World& description, const physics::World& world);
 
-  /// A robot has come, with the next id.
+  /// Adds the robot with the next id.
   void add_robot(RobotId robot, BodyId body, const description::Model& model);
-  /// The number of the action that is a device of a robot.
+  /// Returns the index of the action of a robot's device.
   std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({body, device}); }
   void command(std::uint32_t action, double value) { actions_[action].value = value; }
-  /// After each step: which of them begin.
+  /// Determines which actions begin; to be called after each step.
   void finish_step();
 
-  /// In the order of the robots, then of their devices.
+  /// Returns all actions, in the order of the robots, then of their devices.
   std::span<const ActionOfRobot> all() const { return actions_; }
 
   void hash(StateHash& hash) const;

@@ -16,16 +16,17 @@ std::uint64_t last_tick_of(const description::Experiment& experiment) {
   return static_cast<std::uint64_t>(experiment.duration / experiment.world.step);
 }
 
-// The rows of a batch's arrays are those of the robots that are there from the beginning, and its worlds share the
-// experiment that new objects would be added to.
+// The arrays of a batch have rows for the initial robots only, and its worlds share the experiment that new objects
+// would be added to.
 void refuse_spawners(const description::Experiment& experiment) {
   if (experiment.spawners.empty()) return;
   throw std::invalid_argument("an event spawns '" + experiment.spawners.front().name +
-                              "_1' and so on, and the worlds of a batch have the objects of the description alone: "
+                              "_1' and so on, but the worlds of a batch cannot spawn objects: "
                               "expected `add` in place of `spawn`");
 }
 
-// So few that all workers have something to do to the end, and so many that handing them over costs nothing.
+// Returns a chunk size that is small enough to keep all workers busy to the end, and large enough that the handover
+// costs almost nothing.
 std::size_t worlds_a_chunk(std::size_t worlds, unsigned threads) {
   constexpr std::size_t chunks_a_thread = 8;
   return std::clamp<std::size_t>(worlds / (threads * chunks_a_thread), 1, 16);
@@ -62,7 +63,7 @@ std::vector<Pose> Batch::placed(std::uint64_t seed) const {
   std::vector<Pose> X_WM = described_poses_;
   try {
     if (!placer_.place(seed, std::span(X_WM).subspan(placer_.first(), placer_.count())))
-      throw std::invalid_argument("seed " + std::to_string(seed) + " gives populations other numbers of objects than " +
+      throw std::invalid_argument("seed " + std::to_string(seed) + " gives other sizes of populations than " +
                                   std::to_string(first_.experiment().seed));
   } catch (const description::InputError& error) {
     throw std::invalid_argument("seed " + std::to_string(seed) + ": " + error.what());
@@ -86,14 +87,14 @@ void Batch::reset(std::size_t world, std::uint64_t seed, std::span<const Pose> X
 }
 
 void Batch::step(std::uint64_t ticks, std::span<const std::uint8_t> only) {
-  if (ticks == 0) throw std::invalid_argument("a batch is stepped by at least one tick");
+  if (ticks == 0) throw std::invalid_argument("expected at least one tick");
   if (!only.empty() && only.size() != worlds())
-    throw std::invalid_argument("a choice of " + std::to_string(only.size()) + " worlds, expected one of " +
+    throw std::invalid_argument("got a selection of " + std::to_string(only.size()) + " worlds, expected " +
                                 std::to_string(worlds()));
   const auto is_stepped = [&](std::size_t world) { return !stands_still(world) && (only.empty() || only[world] != 0); };
   for (std::size_t world = 0; world < worlds(); ++world)
     if (is_stepped(world)) check_commands(world);
-  // There and back again: those that were visited last are still in the cache.
+  // The order alternates, as the worlds that were visited last are still in the cache.
   is_on_its_way_back_ = !is_on_its_way_back_;
   const auto visit = [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -142,7 +143,7 @@ void Batch::fill_neutral(std::size_t world) {
   }
 }
 
-// What is to be seen of a world as it is now.
+// Copies the visible state of a world.
 void Batch::take(std::size_t world) {
   const Simulation& simulation = *worlds_[world];
   if (simulation.stop_reason()) done_[world] |= stopped;

@@ -13,7 +13,8 @@
 namespace cohort {
 namespace {
 
-// Of a new file; there is no way to read the mask without setting it for a moment, which other threads would see.
+// Returns the mode of a new file. The mask cannot be read without setting it for a moment, which other threads would
+// see.
 mode_t usual_mode() {
   static const mode_t mode = [] {
     const mode_t mask = umask(022);
@@ -23,7 +24,7 @@ mode_t usual_mode() {
   return mode;
 }
 
-// /dev/stdout and the like, which may be a file.
+// Returns true for /dev/stdout and the like, which may be a regular file.
 bool is_of_this_process(const std::filesystem::path& file) {
   const std::string folder = std::filesystem::absolute(file).lexically_normal().parent_path().string();
   return folder == "/dev" || folder == "/dev/fd" || folder.starts_with("/proc/");
@@ -33,7 +34,7 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : ".";
 }
 
-// A file that a container was given, say.
+// Returns true for a mounted file, as in a container.
 bool is_mounted(const std::filesystem::path& file) {
   struct statx facts {};
   const bool is_known = statx(AT_FDCWD, file.c_str(), AT_SYMLINK_NOFOLLOW, 0, &facts) == 0;
@@ -46,13 +47,13 @@ std::string why_not_written(int error) {
   const std::string reason = std::generic_category().message(error);
   switch (error) {
     case ENOENT:
-    case ENOTDIR: return reason + "; its folder has to be there";
+    case ENOTDIR: return reason + "; its folder must exist";
     case EACCES:
     case EPERM:
-    case EROFS: return reason + "; choose a folder that you may write to";
+    case EROFS: return reason + "; choose a folder that you can write to";
     case ENOSPC:
-    case EDQUOT: return reason + "; free some space there, or choose another disk";
-    case EFBIG: return reason + "; raise the limit of file sizes (ulimit -f), or choose another file system";
+    case EDQUOT: return reason + "; free some space, or choose another disk";
+    case EFBIG: return reason + "; raise the limit of the file size (ulimit -f), or choose another file system";
     default: return reason;
   }
 }
@@ -65,10 +66,10 @@ void refuse_to_write(const std::string& message, int error) {
 
 int sync_folder_of(const std::filesystem::path& file) {
   const int descriptor = open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return 0;  // one that may be written to and not read
+  if (descriptor < 0) return 0;  // it can be written but not read
   const int error = fsync(descriptor) == 0 ? 0 : errno;
   close(descriptor);
-  return error == EINVAL ? 0 : error;  // some file systems know no such thing
+  return error == EINVAL ? 0 : error;  // some file systems do not support it
 }
 
 void AtomicFile::fail(int error) const {
@@ -82,7 +83,7 @@ AtomicFile::AtomicFile(std::string_view what, std::filesystem::path target)
   if (is_there && S_ISDIR(status.st_mode)) fail(EISDIR);
   const bool is_file = is_there && S_ISREG(status.st_mode) && !is_of_this_process(target_);
   if (is_file && access(target_.c_str(), W_OK) != 0) fail(errno);
-  // In place: what is no file, and one in a folder of somebody else's, or mounted by itself.
+  // Write in place if the target is not a regular file, is in a folder without write permission, or is a mount point.
   if (is_there && (!is_file || access(folder_of(target_).c_str(), W_OK | X_OK) != 0 || is_mounted(target_))) {
     descriptor_ = open(target_.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
     if (descriptor_ < 0) fail(errno);

@@ -7,39 +7,39 @@
 
 namespace cohort {
 
-/// What was found cannot be written: what, to which file, why, and what to do.
+/// The error of a file that cannot be written. The message says what, to which file, why, and what to do.
 class WriteError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What this number of an error means for a file that is written, and what to do.
+/// Returns the meaning of this errno value for a file that is written, and what to do.
 std::string why_not_written(int error);
 
-/// Throws WriteError with this message where a disk is full or broken; otherwise std::runtime_error, since another file
-/// could be named.
+/// Throws WriteError with this message if the disk is full or broken. Otherwise throws std::runtime_error, as the user
+/// could name another file.
 [[noreturn]] void refuse_to_write(const std::string& message, int error);
 
-/// Returns when the names in the folder of `file` are safe from a power cut: 0, or the number of the error.
+/// Returns when the names in the folder of `file` survive a power failure. Returns 0, or an errno value.
 int sync_folder_of(const std::filesystem::path& file);
 
-/// A file that takes the place of what has its name as a whole or not at all, whatever happens meanwhile: it is written
-/// beside it and put there once all of it is on the disk. A symbolic link of that name is replaced, not followed. What
-/// is no file (a pipe, a terminal), or stands where nothing can take its place, is written to as it is. What fails
-/// throws WriteError.
+/// A file that replaces an existing one as a whole or not at all, even after a crash. It is written beside the target,
+/// and moved there once all of it is on the disk. A symbolic link of that name is replaced, not followed. A target that
+/// is not a regular file (a pipe, a terminal), or that cannot be replaced, is written in place. Errors throw
+/// WriteError.
 class AtomicFile {
  public:
   /// `what`: the contents, for messages, such as `the summary`.
   AtomicFile(std::string_view what, std::filesystem::path target);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
-  /// Without `commit` nothing has happened.
+  /// Discards the file unless `commit` was called.
   ~AtomicFile();
 
-  /// What is written until `commit`, for libraries that write files themselves.
+  /// Returns the file to write until `commit`, for libraries that write files themselves.
   const std::filesystem::path& path() const { return path_; }
   void write(std::string_view bytes);
-  /// Returns when the file has its name, and keeps it if the power fails. If it throws, it may be called again.
+  /// Returns when the file has its name, even after a power failure. After an exception it may be called again.
   void commit();
 
  private:

@@ -2,8 +2,8 @@
 
 namespace cohort {
 
-/// Returns the commit that the program was built from, or `unknown`. A program that knows defines it anew
-/// (tools/cohort/commit.cpp), so that another commit links that program again, and no library or test.
+/// Returns the commit that the program was built from, or `unknown`. A program that knows it overrides this function
+/// (tools/cohort/commit.cpp), so that a new commit relinks only that program, and no library or test.
 const char* commit_of_program();
 
 }  // namespace cohort

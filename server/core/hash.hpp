@@ -5,8 +5,8 @@
 
 namespace cohort {
 
-/// Accumulates 64-bit words into a 64-bit hash that depends on their values and order: the body and finaliser of
-/// MurmurHash3 (Appleby, public domain) on words. Doubles count by their bits, so -0.0 and 0.0 differ, as they should.
+/// Accumulates 64-bit words into a 64-bit hash that depends on their values and order, with the body and finaliser of
+/// MurmurHash3 (Appleby, public domain). Doubles count by their bits, so -0.0 and 0.0 differ.
 class StateHash {
  public:
   void add(std::uint64_t word) {

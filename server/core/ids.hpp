@@ -6,8 +6,8 @@
 
 namespace cohort {
 
-/// An index into one kind of thing. Ids of different kinds do not convert into each other, nor into numbers, so that
-/// the compiler finds a joint that is passed as a link.
+/// An index into a list of one kind. Ids of different kinds do not convert into each other or into numbers, so the
+/// compiler rejects a joint that is passed as a link.
 template <class Tag>
 struct Id {
   std::uint32_t value = 0;
@@ -24,7 +24,7 @@ using BodyId = Id<struct BodyTag>;              ///< a body of a world: an insta
 using LinkId = Id<struct LinkTag>;              ///< a link of a model
 using JointId = Id<struct JointTag>;            ///< a joint of a model
 using DeviceId = Id<struct DeviceTag>;          ///< a device of a model
-using RobotId = Id<struct RobotTag>;            ///< a robot of a world, which is not its body
+using RobotId = Id<struct RobotTag>;            ///< a robot of a world, which differs from its body
 using ConnectionId = Id<struct ConnectionTag>;  ///< a connection that a world made
 
 }  // namespace cohort

@@ -4,7 +4,7 @@
 
 namespace cohort {
 
-/// No bound, nothing met, or for ever.
+/// Infinity: no bound, no hit, or no end.
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace cohort

@@ -11,13 +11,13 @@ constexpr std::size_t longest_name = 255;
 
 }  // namespace
 
-// What is no name is not repeated in a message either.
+// The message does not repeat an invalid name.
 void check_name(const std::string& name, const std::string& what) {
   check_utf8(name, what);
   if (name.size() > longest_name)
     throw std::invalid_argument(what + " is longer than " + std::to_string(longest_name) + " bytes");
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
-  if (std::ranges::any_of(name, is_control)) throw std::invalid_argument(what + " has a control character in it");
+  if (std::ranges::any_of(name, is_control)) throw std::invalid_argument(what + " contains a control character");
 }
 
 void check_utf8(const std::string& text, const std::string& what) {
@@ -32,12 +32,12 @@ void check_utf8(const std::string& text, const std::string& what) {
                                               : 0;
     bool is_good = length > 0;
     for (std::size_t k = 1; k < length; ++k) is_good = is_good && (byte(i + k) & 0xc0) == 0x80;
-    // Shortest forms, no surrogates, nothing beyond U+10FFFF.
+    // Only shortest forms are valid, no surrogates, and nothing beyond U+10FFFF.
     if (first == 0xe0) is_good = is_good && byte(i + 1) >= 0xa0;
     if (first == 0xed) is_good = is_good && byte(i + 1) < 0xa0;
     if (first == 0xf0) is_good = is_good && byte(i + 1) >= 0x90;
     if (first == 0xf4) is_good = is_good && byte(i + 1) < 0x90;
-    if (!is_good) throw std::invalid_argument(what + " is not UTF-8");
+    if (!is_good) throw std::invalid_argument(what + " is not valid UTF-8");
     i += length;
   }
 }

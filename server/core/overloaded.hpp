@@ -2,7 +2,7 @@
 
 namespace cohort {
 
-/// Functions as one, for std::visit.
+/// Combines functions into one overload set, for std::visit.
 template <class... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;

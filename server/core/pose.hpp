@@ -4,8 +4,8 @@
 
 namespace cohort {
 
-/// Pose X_AB of a frame B in a frame A: right-handed, metres, unit quaternion. `X_AB * X_BC` is X_AC, `X_AB * p_B` the
-/// point p_B expressed in A.
+/// Pose X_AB of a frame B in a frame A: right-handed, metres, unit quaternion. `X_AB * X_BC` is X_AC, and `X_AB * p_B`
+/// is the point p_B expressed in A.
 struct Pose {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();

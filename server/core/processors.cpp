@@ -28,10 +28,10 @@ bool has(const std::vector<std::string>& parts, const std::string& part) {
   return std::ranges::find(parts, part) != parts.end();
 }
 
-// A file system of control groups that knows of processor time (man 7 cgroups, man 5 proc_pid_mountinfo).
+// A file system of control groups with processor quotas (man 7 cgroups, man 5 proc_pid_mountinfo).
 struct Mount {
   bool is_version_2 = false;
-  fs::path group;  // that the mounted folder is
+  fs::path group;  // group of the mounted folder
   fs::path folder;
 };
 
@@ -51,7 +51,7 @@ std::vector<Mount> mounts_in(const fs::path& root) {
   return mounts;
 }
 
-// The group that this process is in, in the hierarchy that is mounted.
+// Returns the group of this process in the mounted hierarchy.
 std::optional<fs::path> group_of(const Mount& mount, const fs::path& root) {
   std::ifstream in(root / "proc/self/cgroup");
   for (std::string line; std::getline(in, line);) {
@@ -65,7 +65,7 @@ std::optional<fs::path> group_of(const Mount& mount, const fs::path& root) {
   return std::nullopt;
 }
 
-// In cores.
+// Returns the quota in cores.
 double quota_in(const fs::path& folder, bool is_version_2) {
   std::string quota;
   double period = 0.0;
@@ -75,11 +75,11 @@ double quota_in(const fs::path& folder, bool is_version_2) {
     std::ifstream(folder / "cpu.cfs_quota_us") >> quota;
     std::ifstream(folder / "cpu.cfs_period_us") >> period;
   }
-  const double microseconds = std::strtod(quota.c_str(), nullptr);  // "max" and -1 are no quota
+  const double microseconds = std::strtod(quota.c_str(), nullptr);  // "max" and -1: no quota
   return microseconds > 0.0 && period > 0.0 ? microseconds / period : no_quota;
 }
 
-// The least of a group and of all that it is in, as far as they can be seen.
+// Returns the least quota of a group and its visible parents.
 double quota_of(const Mount& mount, const fs::path& root) {
   const auto group = group_of(mount, root);
   if (!group) return no_quota;

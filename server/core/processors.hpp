@@ -4,9 +4,9 @@
 
 namespace cohort {
 
-/// How many threads may run at once: the cores that this process may run on, or fewer where a control group (of a
-/// container, or of a systemd unit) has a quota of processor time; at least 1. Of a quota of 2.5 cores 2: a thread that
-/// is stopped when the quota is used up keeps all others waiting. `root` is where /proc and /sys are.
+/// Returns how many threads may run at once, at least 1: the cores available to this process, or fewer if a control
+/// group limits the processor time (container, systemd unit). A quota of 2.5 cores gives 2, as a thread that is stopped
+/// by the quota delays all others. `root`: folder with /proc and /sys.
 unsigned available_processors(const std::filesystem::path& root = "/");
 
 }  // namespace cohort

@@ -37,7 +37,7 @@ double RandomStream::uniform(std::uint64_t tick, std::uint32_t draw) const {
 
 double RandomStream::normal(std::uint64_t tick, std::uint32_t draw) const {
   const std::uint64_t random = bits(tick, draw);
-  // Two 32-bit uniforms; the first in (0, 1], so that its logarithm is finite.
+  // Two 32-bit uniform numbers; the first is in (0, 1], so that its logarithm is finite.
   const double first = (static_cast<double>(random & 0xffffffffu) + 1.0) * 0x1p-32;
   const double second = static_cast<double>(random >> 32) * 0x1p-32;
   return std::sqrt(-2.0 * std::log(first)) * std::cos(2.0 * std::numbers::pi * second);

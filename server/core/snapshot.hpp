@@ -10,13 +10,13 @@
 
 namespace cohort {
 
-/// A snapshot that cannot be read, or is of something else.
+/// The error of a snapshot that cannot be read, or does not match.
 class SnapshotError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Numbers one after the other, as they are in the memory of a little-endian machine.
+/// A writer of consecutive numbers in the memory layout of a little-endian machine.
 class SnapshotWriter {
  public:
   template <class Number>
@@ -34,7 +34,7 @@ class SnapshotWriter {
     bytes_.resize(at + count * sizeof *numbers);
     std::memcpy(bytes_.data() + at, numbers, count * sizeof *numbers);
   }
-  /// How many follow; `SnapshotReader::read_count` checks it.
+  /// Adds the number of elements that follow; `SnapshotReader::read_count` checks it.
   void add_count(std::size_t count) { add(static_cast<std::uint64_t>(count)); }
 
   const std::vector<std::byte>& bytes() const { return bytes_; }
@@ -43,11 +43,11 @@ class SnapshotWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// How a simulation's numbers stand in a snapshot: later builds add to it, and read the earlier ones.
+/// The layout of a simulation's numbers in a snapshot. Later builds extend it, and read the earlier ones.
 enum class SnapshotLayout { first, with_belt_loads };
 
-/// Reads what a SnapshotWriter wrote, in the same order. Throws SnapshotError at the end of the bytes. A snapshot may
-/// come from anywhere: whoever reads numbers from it sees to it that they can be.
+/// Reads the data of a SnapshotWriter, in the same order. Throws SnapshotError at the end of the bytes. A snapshot may
+/// come from an untrusted source, so callers must validate the numbers.
 class SnapshotReader {
  public:
   explicit SnapshotReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -55,7 +55,7 @@ class SnapshotReader {
   template <class Number>
   requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
   void read(Number& number) {
-    if (bytes_.size() < sizeof number) throw SnapshotError("the snapshot ends too early");
+    if (bytes_.size() < sizeof number) throw SnapshotError("the snapshot is incomplete");
     std::memcpy(&number, bytes_.data(), sizeof number);
     bytes_ = bytes_.subspan(sizeof number);
   }
@@ -63,35 +63,35 @@ class SnapshotReader {
   requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
   void read_all(Number* numbers, std::size_t count) {
     if (count == 0) return;
-    if (bytes_.size() / sizeof *numbers < count) throw SnapshotError("the snapshot ends too early");
+    if (bytes_.size() / sizeof *numbers < count) throw SnapshotError("the snapshot is incomplete");
     std::memcpy(numbers, bytes_.data(), count * sizeof *numbers);
     bytes_ = bytes_.subspan(count * sizeof *numbers);
   }
-  /// A flag is 0 or 1.
+  /// Reads a flag, which must be 0 or 1.
   void read(bool& flag) {
     std::uint8_t number = 0;
     read(number);
-    if (number > 1) throw SnapshotError("the snapshot has a flag that is neither 0 nor 1");
+    if (number > 1) throw SnapshotError("snapshot: a flag is neither 0 nor 1");
     flag = number == 1;
   }
-  /// A count of things that take at least `bytes_each`.
+  /// Reads a number of elements that take at least `bytes_each` each.
   std::size_t read_count(std::size_t bytes_each) {
     std::uint64_t count = 0;
     read(count);
-    if (count > bytes_.size() / bytes_each) throw SnapshotError("the snapshot ends too early");
+    if (count > bytes_.size() / bytes_each) throw SnapshotError("the snapshot is incomplete");
     return static_cast<std::size_t>(count);
   }
-  /// Checks that what was saved had as many `what` as there are here.
+  /// Reads a number of `what` and throws SnapshotError unless it is `count`.
   void expect_count(std::size_t count, const std::string& what) {
     std::uint64_t saved = 0;
     read(saved);
     if (saved != count)
-      throw SnapshotError("the snapshot is of something else: it has " + std::to_string(saved) + " " + what + ", not " +
-                          std::to_string(count));
+      throw SnapshotError("the snapshot is of another experiment: it has " + std::to_string(saved) + " " + what +
+                          ", not " + std::to_string(count));
   }
   bool is_at_end() const { return bytes_.empty(); }
 
-  /// The layout of what is read, as its beginning says; the latest one unless it was set.
+  /// Returns the layout of the snapshot as given at its beginning; by default the latest one.
   SnapshotLayout layout() const { return layout_; }
   void set_layout(SnapshotLayout layout) { layout_ = layout; }
 

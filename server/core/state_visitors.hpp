@@ -8,11 +8,11 @@
 #include "server/core/pose.hpp"
 #include "server/core/snapshot.hpp"
 
-/// What a `visit_state` calls for each number of a state, so that hash, snapshot and restoring see the same ones;
-/// `unusual` for what counts only where it is not as usual.
+/// Visitors that `visit_state` calls for each number of a state, so that hash, snapshot and restoring cover the same
+/// ones. `unusual` is for numbers that count only if they differ from their usual value.
 namespace cohort {
 
-/// Adds whatever number a state holds.
+/// Adds each number of a state to the hash.
 struct StateHasher {
   StateHash& hash;
   void operator()(const double& number) const { hash.add(number); }
@@ -26,7 +26,7 @@ struct StateHasher {
       hash.add(static_cast<std::uint64_t>(choice));
   }
 };
-/// Writes it.
+/// Writes each number.
 struct StateSaver {
   SnapshotWriter& writer;
   template <class Number>
@@ -38,12 +38,12 @@ struct StateSaver {
     writer.add(choice);
   }
 };
-/// Reads it back. Throws SnapshotError for a number that such a state cannot have.
+/// Reads each number. Throws SnapshotError for a number that such a state cannot have.
 struct StateRestorer {
   enum class Numbers {
     finite,
-    limits,  ///< maybe infinite
-    broken,  ///< of a body that was taken out of the world because they were no numbers
+    limits,  ///< may be infinite
+    broken,  ///< numbers of a body that was quarantined because they were not finite
   };
   SnapshotReader& reader;
   Numbers numbers = Numbers::finite;
@@ -52,7 +52,7 @@ struct StateRestorer {
     reader.read(number);
     if constexpr (std::is_floating_point_v<Number>) {
       const bool fits = numbers == Numbers::finite ? std::isfinite(number) : !std::isnan(number);
-      if (!fits && numbers != Numbers::broken) throw SnapshotError("the snapshot has a number that cannot be");
+      if (!fits && numbers != Numbers::broken) throw SnapshotError("snapshot: a number is out of range");
     }
   }
   template <class Choice>
@@ -67,16 +67,16 @@ void visit_pose(PoseType& pose, Visit&& visit) {
   for (int i = 0; i < 4; ++i) visit(pose.orientation.coeffs()[i]);
 }
 
-/// Where something may be: throws SnapshotError for what no world holds.
+/// Validates the position and orientation of an object; throws SnapshotError.
 inline void expect_placed(const Pose& pose) {
-  constexpr double furthest = 1e7;  // [m]; bodies that move are kept much nearer
+  constexpr double furthest = 1e7;  // [m]; moving bodies are kept much nearer
   constexpr double roundings = 1e-6;
   const double norm = pose.orientation.norm();
   if (!(pose.position.cwiseAbs().maxCoeff() <= furthest) || !(std::abs(norm - 1.0) <= roundings))
-    throw SnapshotError("the snapshot has something at a place that cannot be");
+    throw SnapshotError("snapshot: invalid position or orientation");
 }
 
-/// Throws SnapshotError, too, for what no world holds.
+/// Reads a pose; throws SnapshotError if it is invalid.
 inline void restore_pose(SnapshotReader& reader, Pose& pose) {
   visit_pose(pose, StateRestorer{reader});
   expect_placed(pose);

@@ -8,8 +8,8 @@ namespace cohort {
 
 namespace {
 
-// oneTBB starts no more threads than cores without it. Of all that are set in a process the least one counts, so there
-// is one, for as long as the process lives: how many threads a loop has is a matter of its arena.
+// Allows more threads than cores, which oneTBB does not by default. The least of all limits in a process counts, so
+// there is a single one for the life of the process. The number of threads of a loop depends on its arena.
 void allow_more_threads_than_cores() {
   constexpr std::size_t more_than_any_pool = 4096;
   [[maybe_unused]] static const auto* const allowance =

@@ -5,19 +5,19 @@
 
 namespace cohort {
 
-/// oneTBB's parallel loop. In a file of its own because that is built without ThreadSanitizer, which would take the way
-/// oneTBB's templates and its library hand tasks over for races. Who calls it has to tell ThreadSanitizer what is
-/// ordered: see worker_pool.cpp.
+/// A parallel loop of oneTBB. Its source file is built without ThreadSanitizer, which would report races in oneTBB's
+/// handover of tasks between its templates and its library. The caller must describe the ordering to ThreadSanitizer:
+/// see worker_pool.cpp.
 class TbbLoop {
  public:
   using Call = void (*)(void* argument, std::size_t index, unsigned worker);
 
-  /// `threads` >= 2, the caller's included; may exceed the number of cores.
+  /// `threads` >= 2, including the caller's; may exceed the number of cores.
   explicit TbbLoop(unsigned threads);
   ~TbbLoop();
 
-  /// Calls `call` for each index below `count`, no two at once with the same `worker` < threads. An exception is passed
-  /// on.
+  /// Calls `call` for each index below `count`. No two concurrent calls have the same `worker` < threads. Exceptions
+  /// are passed on.
   void run(std::size_t count, Call call, void* argument);
 
  private:

@@ -42,7 +42,7 @@ std::vector<std::string_view> words(std::string_view text) {
 
 std::optional<double> parse_real(std::string_view text) {
   text = trimmed(text);
-  // from_chars knows no plus sign.
+  // from_chars does not accept a plus sign.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   return parse<double>(text);
 }

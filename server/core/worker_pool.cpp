@@ -23,14 +23,14 @@ struct WorkerPool::Threads {
 
   TbbLoop loop;
 
-  // Of the loop under way.
+  // The current loop.
   std::size_t count = 0;
   std::size_t grain = 1;
   Call call = nullptr;
   void* body = nullptr;
 
-  // What oneTBB guarantees already, said once more so that ThreadSanitizer, which cannot see into it, knows too: chunks
-  // come after the loop's begin, its end after them, and chunks with one worker's scratch memory after each other.
+  // Repeats the ordering guarantees of oneTBB for ThreadSanitizer, which cannot see into it. Chunks run after the start
+  // of the loop and before its end, and chunks with the same worker's scratch memory run one after the other.
   std::atomic<std::size_t> begun = 0;
   std::atomic<std::size_t> done = 0;
   std::vector<std::atomic<std::size_t>> handed_over;  // by worker

@@ -6,20 +6,20 @@
 
 namespace cohort {
 
-/// The threads of one simulation, over oneTBB. A loop runs in chunks whose bounds depend on `count` and `grain` alone;
-/// results are deterministic as long as a chunk writes only what belongs to its indices (and to its worker's scratch
-/// memory, which must not carry over from one chunk to the next).
+/// The threads of one simulation, based on oneTBB. A loop runs in chunks whose bounds depend only on `count` and
+/// `grain`. Results are deterministic if a chunk writes only data of its indices, and its worker's scratch memory.
+/// Scratch memory must not carry over from one chunk to the next.
 class WorkerPool {
  public:
-  /// `threads` >= 1, the caller's included; may exceed the number of cores.
+  /// `threads` >= 1, including the caller's; may exceed the number of cores.
   explicit WorkerPool(unsigned threads);
   ~WorkerPool();
 
   unsigned threads() const { return threads_; }
 
-  /// Calls `body(begin, end, worker)` for chunks of at most `grain` indices that cover [0, count); returns when all are
-  /// done. `worker` < threads(), and no two chunks run at once with the same one. An exception is passed on. One loop
-  /// at a time: not from inside a chunk, nor from two threads.
+  /// Calls `body(begin, end, worker)` for chunks of at most `grain` indices that cover [0, count), and returns when all
+  /// are done. `worker` < threads(), and no two concurrent chunks have the same one. Exceptions are passed on. Only one
+  /// loop may run at a time: not from inside a chunk, nor from two threads.
   template <class Body>
   void for_each_chunk(std::size_t count, std::size_t grain, Body&& body) {
     using Plain = std::remove_reference_t<Body>;

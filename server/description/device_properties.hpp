@@ -9,15 +9,15 @@
 #include "server/description/emitter.hpp"
 #include "server/description/input_error.hpp"
 
-/// What the stages need to know of a device, whatever its kind. A kind that has a property derives from it
-/// (`TrackPair`, `Thruster`) or answers by a member: `motors`, `belts`, `emitters`, `held_child`, `not_planar`,
-/// `readout`. The functions at the end of devices.hpp ask any device. Frames: L a link.
+/// Properties that the stages need of a device of any kind. A kind that has a property derives from it (`TrackPair`,
+/// `Thruster`) or has a member for it: `motors`, `belts`, `emitters`, `held_child`, `not_planar`, `readout`. The
+/// functions at the end of devices.hpp read them from any device. Frames: L a link.
 namespace cohort::description {
 
-/// What any motor on a joint has.
+/// Limits of a motor on a joint.
 struct MotorLimits {
   std::size_t joint = 0;
-  double max_velocity = 0.0;  ///< infinite of a motor that does not limit it
+  double max_velocity = 0.0;  ///< infinite for a motor without a limit
   double max_effort = 0.0;
   double rotor_inertia = 0.0;
 };
@@ -34,59 +34,60 @@ struct TrackPair {
   double half_gauge = 0.0;           ///< |y| of the ground points in the link's frame [m]
   double half_contact_length = 0.0;  ///< |x| of the ground points [m]
   double ground_height = 0.0;        ///< z of the ground points [m]
-  double wheel_radius = 0.0;         ///< from motor torque to traction [m]
+  double wheel_radius = 0.0;         ///< converts motor torque to traction [m]
   double max_torque = 0.0;           ///< per side [N m]
-  double max_velocity = 0.0;         ///< of the ground points [m/s]
-  double friction = 0.0;             ///< Coulomb coefficient of the tracks; a pair has the smaller of the two
+  double max_velocity = 0.0;         ///< velocity of the ground points [m/s]
+  double friction = 0.0;             ///< Coulomb coefficient of the tracks; a contact uses the smaller of the two
 
-  /// The joints of the real wheels that the tracks stand for. Where wheels are simulated (Fidelity::articulated) their
-  /// motors are the drive; elsewhere they are welded to the link, and their collisions are none.
+  /// Joints of the real wheels that the tracks replace. Where wheels are simulated (Fidelity::articulated), their
+  /// motors are the drive; elsewhere the wheels are welded to the link and have no collisions.
   std::vector<std::size_t> left_wheels{};
   std::vector<std::size_t> right_wheels{};
 };
 
 /// A propeller, which pushes its link along the z axis of R and turns it about that axis.
 struct Thruster {
-  /// How it turns at a positive velocity, seen against the z axis of R: from above, if that points up.
+  /// Direction of rotation at a positive velocity, seen from the positive z axis of R (from above, if that axis points
+  /// up).
   enum class Direction { ccw, cw };
 
-  std::size_t link = 0;  ///< feels thrust, reaction and drag
+  std::size_t link = 0;  ///< on which thrust, reaction torque and drag act
   Pose X_LR;
   Direction direction = Direction::ccw;
-  /// Thrust for each ω|ω| [N s^2/rad^2]. With the thrust coefficient of a propeller of diameter D in a fluid (Fossen,
-  /// "Handbook of marine craft hydrodynamics and motion control", 2011, chapter 12), it is density K D^4 / 4π^2.
+  /// Ratio of thrust to ω|ω| [N s^2/rad^2]. A propeller of diameter D with thrust coefficient K has
+  /// density K D^4 / 4π^2 (Fossen, "Handbook of marine craft hydrodynamics and motion control", 2011, chapter 12).
   double motor_constant = 0.0;
-  double moment_constant = 0.0;             ///< reaction torque for each newton of thrust [m]
-  double drag_coefficient = 0.0;            ///< force for each |ω| v across the axis [N s^2/(rad m)]
-  double rolling_moment_coefficient = 0.0;  ///< torque for the same [N s^2/rad]
-  double time_constant_up = 0.0;            ///< while its velocity rises [s]; 0: at once
-  double time_constant_down = 0.0;          ///< while it falls [s]
-  double density = 0.0;                     ///< of the fluid that the coefficients are of [kg/m^3]; 0: the same in any
+  double moment_constant = 0.0;             ///< ratio of reaction torque to thrust [m]
+  double drag_coefficient = 0.0;            ///< force per |ω| v perpendicular to the axis [N s^2/(rad m)]
+  double rolling_moment_coefficient = 0.0;  ///< torque per |ω| v perpendicular to the axis [N s^2/rad]
+  double time_constant_up = 0.0;            ///< while the velocity increases [s]; 0 for no delay
+  double time_constant_down = 0.0;          ///< while the velocity decreases [s]
+  double density = 0.0;  ///< density of the fluid for which the coefficients hold [kg/m^3]; 0 for all fluids
 
   /// Returns the sign of the torque about z at a positive thrust.
   double reaction_sense() const { return direction == Direction::ccw ? -1.0 : 1.0; }
 };
 
-/// A sender of messages to the robots around.
+/// A sender of messages to nearby robots.
 struct Beacon {
   double range = 0.0;            ///< [m]
-  std::size_t message_size = 0;  ///< values of a message
+  std::size_t message_size = 0;  ///< number of values in a message
 };
 
-/// An emitter whose output the actuator of its device sets.
+/// An emitter whose output is set by the actuator of its device.
 struct DeviceEmitter {
   std::size_t link = 0;
   Pose X_LE;
-  std::variant<Light, Sound, Marker, Beacon> what;  ///< as it is at first
+  std::variant<Light, Sound, Marker, Beacon> what;  ///< initial state
 };
 
-/// Another object of the world, which a device holds.
+/// Another object of the world that is attached to a device.
 struct HeldChild {
-  std::size_t link = 0;         ///< that holds it
+  std::size_t link = 0;         ///< to which the object is attached
   std::string child;            ///< scoped name of the object
-  std::string child_link{};     ///< of it; empty: its root link
+  std::string child_link{};     ///< link of the object; empty for its root link
   bool may_be_missing = false;  ///< a missing object is not an error
-  Problem child_place{};        ///< where a file says so, without a message
+  Problem child_place{};        ///< position in the file, without a message
 };
 
 }  // namespace cohort::description

@@ -18,7 +18,7 @@ struct FindReadout {
   }
 };
 
-// What the kind of a device answers, or nothing if it cannot be asked.
+// Returns the result of `ask` for the kind of the device, or a default value if it does not apply to that kind.
 template <class Answer, class Ask>
 Answer answer_of(const Device& device, const Ask& ask) {
   return std::visit(
@@ -43,7 +43,7 @@ const Part* part_of(const Device& device) {
       device);
 }
 
-// Of the wheels alone: the fastest is that on the outside of a turn.
+// Returns the motors of the wheels; the fastest wheel is on the outside of a turn.
 template <class Drive>
 std::vector<MotorLimits> wheel_motors(const Drive& drive) {
   const double fastest = (drive.max_linear + 0.5 * drive.wheel_separation * drive.max_angular) / drive.wheel_radius;
@@ -152,7 +152,7 @@ std::optional<HeldChild> held_child_of(const Device& device) {
 std::string reason_against_planar(const Device& device) {
   const std::string what = answer_of<std::string>(
       device, [](const auto& kind) -> decltype(std::string(kind.not_planar)) { return kind.not_planar; });
-  return what.empty() ? what : what + " '" + name_of(device) + "' cannot be planar";
+  return what.empty() ? what : "planar physics does not support " + what + " '" + name_of(device) + "'";
 }
 
 }  // namespace cohort::description

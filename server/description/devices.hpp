@@ -16,7 +16,7 @@
 #include "server/description/samples.hpp"
 #include "server/description/sdf_sensors.hpp"
 
-/// What robots can do and measure, as plain data. Joints, links and devices are indices into those of the model.
+/// Actuators and sensors of robots, as plain data. Joints, links and devices are indices into those of the model.
 /// Frames: L a link, S a sensor.
 namespace cohort::description {
 
@@ -27,47 +27,48 @@ struct JointEncoder {
   Readout readout{};
 };
 
-/// Way and velocity of each track relative to the hull: observations `NAME/left/position` [m], `NAME/left/velocity`
-/// [m/s] and the same of the right.
+/// Travel and velocity of each track relative to the hull: observations `NAME/left/position` [m], `NAME/left/velocity`
+/// [m/s], and the same for the right track.
 struct TreelEncoder {
   std::string name;
   std::size_t drive = 0;  ///< index into Model::devices of a TreelDrive
   Readout readout{};
 };
 
-/// How proximity is measured (thesis, section 3.2.1): by a ray along the axis of each sensor, by one at random within
-/// its cone, by five in its cone, by all directions round the ring in its plane, or by looking up samples.
+/// Techniques for measuring proximity (thesis, section 3.2.1): one ray along the axis of each sensor, one random ray
+/// within its cone, or five rays in its cone. `shadow` uses all directions around the ring in its plane, and `samples`
+/// readings from a file.
 enum class ProximityTechnique { ray, random_ray, five_rays, shadow, samples };
 
-/// A ring of infrared proximity sensors in the xy plane of S, looking outwards, numbered counter-clockwise from
-/// `first_bearing`. Observations `NAME/I/reading`: 1 at contact, falling linearly to 0 at `range`.
+/// A ring of infrared proximity sensors in the xy plane of S that point outwards, numbered counter-clockwise from
+/// `first_bearing`. Observations `NAME/I/reading`: 1 at contact, decreasing linearly to 0 at `range`.
 struct ProximityRing {
   std::string name;
   std::size_t link = 0;
   Pose X_LS;
   std::size_t count = 0;
-  double first_bearing = 0.0;  ///< of sensor 0, from the x axis of S [rad]
+  double first_bearing = 0.0;  ///< bearing of sensor 0, from the x axis of S [rad]
   double spacing = 0.0;        ///< between neighbours [rad]
-  double ring_radius = 0.0;    ///< where the rays start [m]
-  double range = 0.0;          ///< from there [m]
+  double ring_radius = 0.0;    ///< origins of the rays [m]
+  double range = 0.0;          ///< length of the rays [m]
   Readout readout{};
   ProximityTechnique technique = ProximityTechnique::ray;
-  double cone = 0.0;                         ///< full angle of what a sensor sees, where the technique has one [rad]
-  std::shared_ptr<const Samples> samples{};  ///< of the technique of this name: a reading for each sensor
+  double cone = 0.0;                         ///< full opening angle of a sensor, for techniques that use it [rad]
+  std::shared_ptr<const Samples> samples{};  ///< for the technique `samples`: a reading for each sensor
 };
 
-/// Rays down from places under a link, as a ring of proximity sensors has them outwards: they see where the ground
-/// ends. Observations `NAME/I/reading`: 1 at contact, falling linearly to 0 at `range`.
+/// Proximity sensors under a link that point down and detect where the ground ends. Observations `NAME/I/reading`: 1 at
+/// contact, decreasing linearly to 0 at `range`.
 struct GroundSensors {
   std::string name;
   std::size_t link = 0;
-  std::vector<Eigen::Vector3d> places_L;  ///< where the rays start [m]
+  std::vector<Eigen::Vector3d> places_L;  ///< origins of the rays [m]
   double range = 0.0;                     ///< [m]
   Readout readout{};
 };
 
-/// A ring of light sensors in the xy plane of S, looking outwards, numbered as those of a ProximityRing. Observations
-/// `NAME/I/reading`.
+/// A ring of light sensors in the xy plane of S that point outwards, numbered like those of a ProximityRing.
+/// Observations `NAME/I/reading`.
 struct LightSensors {
   std::string name;
   std::size_t link = 0;
@@ -75,23 +76,24 @@ struct LightSensors {
   std::size_t count = 0;
   double first_bearing = 0.0;  ///< [rad]
   double spacing = 0.0;        ///< [rad]
-  double gain = 1.0;           ///< from the sum of what arrives to the argument of the sigmoid [1]
+  double gain = 1.0;           ///< applied to the summed intensity before the sigmoid [1]
   Readout readout{};
-  std::shared_ptr<const Samples> samples{};  ///< of a lamp that gives 1 at 1 m, in place of its square and cosine
+  std::shared_ptr<const Samples>
+      samples{};  ///< for a lamp of intensity 1 at 1 m; they replace the inverse square and the cosine
 };
 
-/// Microphones that hear sounds within bands of frequency. Observations `NAME/I/intensity`, a value for each band.
+/// Microphones that measure sounds within frequency bands. Observations `NAME/I/intensity`, a value for each band.
 struct Microphones {
   std::string name;
   std::size_t link = 0;
   std::vector<Eigen::Vector3d> places_L;
-  std::vector<Eigen::Vector2d> bands;  ///< lowest and highest frequency of each [Hz]
+  std::vector<Eigen::Vector2d> bands;  ///< minimum and maximum frequency of each [Hz]
   double gain = 1.0;
   Readout readout{};
-  std::shared_ptr<const Samples> samples{};  ///< of a sound that gives 1 at 1 m, in place of its square
+  std::shared_ptr<const Samples> samples{};  ///< for a sound of intensity 1 at 1 m; they replace the inverse square
 };
 
-/// What a mass on springs measures: acceleration less gravity, observation `NAME/0/acceleration`, x y z in S [m/s^2].
+/// An accelerometer: acceleration minus gravity, observation `NAME/0/acceleration`, x y z in S [m/s^2].
 struct Accelerometer {
   std::string name;
   std::size_t link = 0;
@@ -99,7 +101,7 @@ struct Accelerometer {
   Readout readout{};
 };
 
-/// How S leans, against gravity: observations `NAME/0/roll` and `NAME/0/pitch` [rad].
+/// Tilt of S relative to gravity: observations `NAME/0/roll` and `NAME/0/pitch` [rad].
 struct Inclinometer {
   std::string name;
   std::size_t link = 0;
@@ -107,7 +109,7 @@ struct Inclinometer {
   Readout readout{};
 };
 
-/// LEDs of any colour around a link, numbered as the sensors of a ProximityRing. Commands `NAME/I/color`, red, green
+/// LEDs of any colour around a link, numbered like the sensors of a ProximityRing. Commands `NAME/I/color`: red, green
 /// and blue from 0 to 1.
 struct LedRing {
   std::string name;
@@ -117,33 +119,33 @@ struct LedRing {
   double first_bearing = 0.0;  ///< [rad]
   double spacing = 0.0;        ///< [rad]
   double ring_radius = 0.0;    ///< [m]
-  double intensity = 0.0;      ///< of each as a lamp for light sensors, at full brightness [1]
+  double intensity = 0.0;      ///< intensity of each LED for light sensors, at full brightness [1]
 
   std::vector<DeviceEmitter> emitters() const;
 };
 
-/// Commands `NAME/0/frequency` [Hz] and `NAME/0/intensity` [1].
+/// A loudspeaker. Commands `NAME/0/frequency` [Hz] and `NAME/0/intensity` [1].
 struct Loudspeaker {
   std::string name;
   std::size_t link = 0;
   Pose X_LE;
   double max_frequency = 0.0;  ///< [Hz]
-  double max_intensity = 0.0;  ///< what arrives at 1 m [1]
+  double max_intensity = 0.0;  ///< at 1 m [1]
 
   std::vector<DeviceEmitter> emitters() const;
 };
 
-/// Messages to the robots around, as ARGoS's range-and-bearing system has them: whoever is near enough and in sight
-/// hears them and knows where they came from. Commands `NAME/0/sending` and `NAME/0/message`; observations
-/// `NAME/0/count` and, of as many as were heard, the nearest first, `NAME/I/range` [m], `NAME/I/bearing` and
-/// `NAME/I/elevation` [rad] in S, `NAME/I/message`.
+/// A range-and-bearing device as in ARGoS: it sends messages to all robots within range and line of sight, which
+/// measure the position of the sender. Commands `NAME/0/sending` and `NAME/0/message`; observation `NAME/0/count`, and
+/// for each received message, nearest first, `NAME/I/range` [m], `NAME/I/bearing` and `NAME/I/elevation` [rad] in S,
+/// and `NAME/I/message`.
 struct RangeAndBearing {
   std::string name;
   std::size_t link = 0;
   Pose X_LS;
-  double range = 0.0;            ///< that its messages reach [m]
-  std::size_t message_size = 0;  ///< values of a message
-  std::size_t capacity = 0;      ///< messages that are reported at a time
+  double range = 0.0;            ///< maximum range of messages [m]
+  std::size_t message_size = 0;  ///< number of values in a message
+  std::size_t capacity = 0;      ///< maximum number of messages in a report
   Readout readout{};
 
   std::vector<DeviceEmitter> emitters() const;
@@ -157,8 +159,8 @@ struct ClimateSensor {
   Readout readout{};
 };
 
-/// A camera that looks all round and reports coloured spots: markers and LEDs of others that are in sight. Observations
-/// `NAME/0/count` and, of as many spots, the nearest first, `NAME/I/bearing` and `NAME/I/elevation` [rad] in S,
+/// An omnidirectional camera that reports coloured spots: visible markers and LEDs of other objects. Observation
+/// `NAME/0/count`, and for each spot, nearest first, `NAME/I/bearing` and `NAME/I/elevation` [rad] in S,
 /// `NAME/I/distance` [m] and `NAME/I/color`.
 struct OmnidirectionalCamera {
   std::string name;
@@ -167,12 +169,12 @@ struct OmnidirectionalCamera {
   double range = 0.0;          ///< [m]
   double min_elevation = 0.0;  ///< above the xy plane of S [rad]
   double max_elevation = 0.0;
-  std::size_t capacity = 0;  ///< spots that are reported at a time
+  std::size_t capacity = 0;  ///< maximum number of spots in a report
   Readout readout{};
 };
 
-/// A camera that looks all round and gives an image: rows from the highest elevation to the lowest, each from the x
-/// axis of S counter-clockwise. Observation `NAME/0/image`: red, green and blue of each pixel, from 0 to 1.
+/// A panoramic camera that produces an image: rows from the highest elevation to the lowest, each counter-clockwise
+/// from the x axis of S. Observation `NAME/0/image`: red, green and blue of each pixel, from 0 to 1.
 struct PanoramicCamera {
   std::string name;
   std::size_t link = 0;
@@ -181,67 +183,68 @@ struct PanoramicCamera {
   std::size_t height = 0;  ///< pixels
   double min_elevation = 0.0;
   double max_elevation = 0.0;
-  double range = std::numeric_limits<double>::infinity();  ///< what is further away is not seen [m]
-  Eigen::Vector3d sky = Eigen::Vector3d::Zero();           ///< where nothing is seen
+  double range = std::numeric_limits<double>::infinity();  ///< maximum distance at which things are seen [m]
+  Eigen::Vector3d sky = Eigen::Vector3d::Zero();           ///< colour where nothing is seen
   Readout readout{};
 };
 
-/// What feeds the robot: observations `NAME/0/charge` [1] and `NAME/0/power` [W]. When it is empty, commands do nothing
-/// any more: every channel has its neutral value.
+/// A battery that powers the robot: observations `NAME/0/charge` [1] and `NAME/0/power` [W]. When it is empty, commands
+/// have no effect: every channel has its neutral value.
 struct Battery {
   std::string name;
   double capacity = 0.0;          ///< [J]
-  double charge = 1.0;            ///< at first, of the capacity [1]
-  double idle_power = 0.0;        ///< of all that is not a motor [W]
-  double motor_efficiency = 1.0;  ///< mechanical power to what motors take [1]
+  double charge = 1.0;            ///< initial fraction of the capacity [1]
+  double idle_power = 0.0;        ///< consumption of everything except motors [W]
+  double motor_efficiency = 1.0;  ///< ratio of mechanical to electrical power of motors [1]
   Readout readout{};
 };
 
-/// A jaw that grasps what is grippable: a GripRing, or a collision that is. G is between its open sides, x outwards.
-/// Command `NAME/0/opening`, from 0, closed, to 1; observations `NAME/0/opening` as it is, `NAME/0/gripping` and
-/// `NAME/0/grippable` (0 or 1), `NAME/0/force` [N].
+/// A jaw that grasps grippable objects: a GripRing, or a grippable collision. G is between its open sides, with x
+/// pointing outwards. Command `NAME/0/opening`, from 0 (closed) to 1; observations `NAME/0/opening` (the actual value),
+/// `NAME/0/gripping` and `NAME/0/grippable` (0 or 1), `NAME/0/force` [N].
 struct Gripper {
-  /// How it is found out that there is something between the sides: whether something could be grasped, or by a ray
-  /// from one to the other.
+  /// How an object between the sides is detected: by whether it could be grasped, or by a ray from one side to the
+  /// other.
   enum class LightBarrier { simple, beam };
 
   std::string name;
   std::size_t link = 0;
   Pose X_LG;
-  // What is accepted, from the origin of G:
-  double depth = 0.0;           ///< how far [m]
-  double half_angle = 0.0;      ///< how far aside of x it may be [rad]
-  double height = 0.0;          ///< how far above or below [m]
-  double closing_time = 0.5;    ///< from open to closed [s]
-  double holding_force = 60.0;  ///< along each axis; above it slips [N]
-  double holding_torque = 3.0;  ///< of the closed gripper; about the ring's axis it falls to 0 half open [N m]
-  double breaking_force = std::numeric_limits<double>::infinity();   ///< above it lets go [N]
+  // Region in which objects are accepted, from the origin of G:
+  double depth = 0.0;           ///< maximum distance [m]
+  double half_angle = 0.0;      ///< maximum angle from x, to either side [rad]
+  double height = 0.0;          ///< maximum distance above or below the xy plane [m]
+  double closing_time = 0.5;    ///< time to close fully [s]
+  double holding_force = 60.0;  ///< along each axis; above it, the grip slips [N]
+  double holding_torque =
+      3.0;  ///< for the closed gripper; about the axis of the ring it decreases to 0 at half open [N m]
+  double breaking_force = std::numeric_limits<double>::infinity();   ///< above it, the gripper releases the object [N]
   double breaking_torque = std::numeric_limits<double>::infinity();  ///< [N m]
   LightBarrier light_barrier = LightBarrier::simple;
-  double jaw_width = 0.03;  ///< length of the beam, through the middle of the depth [m]
+  double jaw_width = 0.03;  ///< length of the beam, which crosses the jaw at half the depth [m]
   Readout readout{};
 };
 
-/// Holds a link of another object of the world fast, until it is told to let go. Command `NAME/0/attached`, 1 at first.
+/// A joint that fixes a link of another object until a command detaches it. Command `NAME/0/attached`, initially 1.
 struct DetachableJoint {
   std::string name;
   std::size_t link = 0;
   std::string child;            ///< scoped name of the object
-  std::string child_link{};     ///< of it; empty: its root link
-  bool may_be_missing = false;  ///< that there is no such object is no mistake
-  Problem child_place{};        ///< where a file says so, without a message
+  std::string child_link{};     ///< link of the object; empty for its root link
+  bool may_be_missing = false;  ///< a missing object is not an error
+  Problem child_place{};        ///< position in the file, without a message
 
   HeldChild held_child() const;
 };
 
-/// Of a joint's motor: observation `NAME/0/torque` [N m], or of a sliding one `NAME/0/force` [N].
+/// Torque of the motor of a joint: observation `NAME/0/torque` [N m], or `NAME/0/force` [N] for a prismatic joint.
 struct TorqueSensor {
   std::string name;
   std::size_t joint = 0;
   Readout readout{};
 };
 
-/// What the child of a joint exerts on its parent, in the xy plane of the parent: observations `NAME/0/direction`
+/// Force that the child of a joint exerts on its parent, in the xy plane of the parent: observations `NAME/0/direction`
 /// [rad], `NAME/0/intensity` [N] and `NAME/0/force`, x and y.
 struct TractionSensor {
   std::string name;
@@ -249,22 +252,23 @@ struct TractionSensor {
   Readout readout{};
 };
 
-/// Something that a robot does and no joint stands for: events of the experiment, or a handler of whoever uses
-/// `Simulation`, say what comes of it. Command `NAME/0/value`, from 0 to 1.
+/// An action of a robot that no joint represents. Events of the experiment, or a handler in a program that uses
+/// `Simulation`, define its effect. Command `NAME/0/value`, from 0 to 1.
 struct UserAction {
   std::string name;
 };
 
-/// The register: a new kind is one more here. In the order in which manuals have them, SDF's own ones last.
+/// The list of all kinds: add a new kind here. They are in the order of the manuals, with those of SDF last.
 using DeviceKinds =
     std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, DifferentialDrive, AckermannDrive, Belt,
                  TrackedDrive, Rotor, LedRing, Loudspeaker, JointEncoder, TreelEncoder, ProximityRing, GroundSensors,
                  LightSensors, Microphones, Accelerometer, Inclinometer, RangeAndBearing, OmnidirectionalCamera,
                  PanoramicCamera, ClimateSensor, Battery, Gripper, DetachableJoint, TorqueSensor, TractionSensor,
                  UserAction, Imu, ForceTorqueSensor, Lidar, ContactSensor, Altimeter, Magnetometer, LogicalCamera,
-                 AirPressureSensor>;
+                 AirPressureSensor, NavSat>;
 
-/// One of these. Copying and moving are in one source: each that had them to itself would compile for seconds.
+/// A device of any of these kinds. Copy and move operations are defined in one source file, since compiling them in
+/// each would take seconds.
 struct Device : DeviceKinds {
   using DeviceKinds::DeviceKinds;
   Device();
@@ -275,24 +279,24 @@ struct Device : DeviceKinds {
   ~Device();
 };
 
-/// How the readings of a device come out; null if it senses nothing.
+/// Returns how the readings of a device are reported; null if it is not a sensor.
 Readout* readout_of(Device& device);
 const Readout* readout_of(const Device& device);
 const std::string& name_of(const Device& device);
 
-// What the stages ask of a device, whatever its kind: see device_properties.hpp.
+// Properties of a device of any kind; see device_properties.hpp.
 
-/// Of all motors on joints that the device is; those of tracks with wheels depend on the fidelity and are not among
-/// them.
+/// Returns all motors of the device on joints, except those of tracks with wheels, which depend on the fidelity.
 std::vector<MotorLimits> motor_limits(const Device& device);
 std::vector<BeltPlace> belts_of(const Device& device);
-const TrackPair* tracks_of(const Device& device);   ///< null: it has none
-const Thruster* thruster_of(const Device& device);  ///< null: it is none
+const TrackPair* tracks_of(const Device& device);   ///< null if it has none
+const Thruster* thruster_of(const Device& device);  ///< null if it is none
 /// Returns how many things other than joints the device drives: tracks, belts, a rotor.
 std::size_t output_count(const Device& device);
 std::vector<DeviceEmitter> emitters_of(const Device& device);
 std::optional<HeldChild> held_child_of(const Device& device);
-/// Why no planar world can have the device, as `rotor 'NAME' cannot be planar`; empty if one can.
+/// Returns why a planar world cannot have the device, as `planar physics does not support rotor 'NAME'`; empty if it
+/// can.
 std::string reason_against_planar(const Device& device);
 
 }  // namespace cohort::description

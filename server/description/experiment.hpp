@@ -12,13 +12,14 @@
 #include "server/description/event.hpp"
 #include "server/description/kept_files.hpp"
 #include "server/description/parsed_model.hpp"
+#include "server/description/ros2.hpp"
 #include "server/description/world.hpp"
 
 namespace cohort::description {
 
 enum class OnLate { wait, hold, zero, detach, stop };
 
-/// As experiments write it.
+/// Returns the value as it is written in experiments.
 inline const char* word_of(OnLate on_late) {
   switch (on_late) {
     case OnLate::wait: return "wait";
@@ -31,71 +32,73 @@ inline const char* word_of(OnLate on_late) {
 }
 
 enum class Mode {
-  lockstep,  ///< the world waits for each answer, as `on_late` says
-  free,      ///< never waited for; the newest answer acts from the tick after which it came
+  lockstep,  ///< the world waits for each answer, as defined by `on_late`
+  free,      ///< the world never waits; the newest answer acts from the tick after its arrival
 };
 
-/// What happens when another process takes a robot over whose controller is lost.
+/// Response when a new process takes over a robot whose controller is lost.
 enum class OnLost {
-  go_on,   ///< the new controller starts without what the former one remembered
-  rewind,  ///< the run goes back to its last snapshot, where the state of controllers is known
+  go_on,   ///< the run continues with a new controller without state
+  rewind,  ///< the run returns to its last snapshot, for which the state of controllers is known
 };
 
-/// When a robot's controller is asked, and what happens when it does not answer (docs/semantics.md).
+/// When observations go to the controller of a robot, and the response to a late answer (docs/semantics.md).
 struct Policy {
-  std::uint32_t period = 1;  ///< asked every `period` ticks, >= 1
-  std::uint32_t phase = 0;   ///< first asked at this tick, < period
+  std::uint32_t period = 1;  ///< observations every `period` ticks, >= 1
+  std::uint32_t phase = 0;   ///< tick of the first observation, < period
   std::uint32_t delay = 0;   ///< the answer to frame k acts at tick k + delay
   OnLate on_late = OnLate::wait;
-  /// Wall-clock patience: per tick; if free, since the last answer, zero being for ever. Not read under `wait`.
+  /// Wall time to wait for an answer, for each tick; in `free` mode, since the last answer, and 0 means without limit.
+  /// Not used under `wait`.
   std::chrono::nanoseconds deadline{0};
   Mode mode = Mode::lockstep;
-  bool required = true;  ///< the run does not start, or go on, without a controller
+  bool required = true;  ///< the run neither starts nor continues without a controller
   OnLost on_lost = OnLost::go_on;
 };
 
-/// What to do about a controller process that dies.
+/// Response to the exit of a controller process.
 enum class Restart { on_failure, never };
 
-/// What the experiment gives a team's controllers. Nested maps are flattened: their keys are joined by '.'.
+/// A parameter for the controllers of a team. Nested maps are flattened: their keys are joined by '.'.
 struct Parameter {
   std::string name;
-  std::vector<std::string> values;  ///< one, or those of a list, as they are written
-  int line = 0;                     ///< in the experiment's file
+  std::vector<std::string> values;  ///< one value, or those of a list, as written
+  int line = 0;                     ///< in the file of the experiment
 };
 
 /// Robots that share a controller and a policy.
 struct Team {
   std::string name;
   std::vector<std::uint32_t> robots;  ///< ids, ascending
-  std::string controller;             ///< plugin name, or a path to a plugin; empty: none
+  std::string controller;             ///< name of a plugin, or path to one; empty for none
   Policy policy;
   Restart restart = Restart::on_failure;
-  std::vector<Parameter> parameters{};  ///< of the controllers, in the file's order
-  int controller_line = 0;              ///< of the key `controller` in the file
+  std::vector<Parameter> parameters{};  ///< in the order of the file
+  int controller_line = 0;              ///< line of the key `controller` in the file
 };
 
 struct Experiment {
   std::filesystem::path file;
-  std::string name;  ///< the file's, without the extension
+  std::string name;  ///< name of the file, without the extension
   World world;
   std::uint64_t seed = 1;
   std::chrono::nanoseconds duration{0};
   std::vector<Team> teams;    ///< every robot is in exactly one
-  unsigned threads = 0;       ///< that step the world; 0: as many as there are cores
-  std::vector<Event> events;  ///< in the order of their times, and of the file
+  unsigned threads = 0;       ///< number of threads that step the world; 0 for the number of cores
+  std::vector<Event> events;  ///< ordered by time, then as in the file
   std::vector<Reaction> reactions;
   std::vector<Spawner> spawners{};
   std::vector<StopCondition> stops;
   std::vector<PrintedQuantity> prints;
   History history;
   Recorded recorded;
-  std::shared_ptr<const KeptFiles> inputs{};  ///< what it was read from; null if it was made in a program
-  /// Sets again what refers to robots and objects by index: teams, events, what is printed and recorded. Called when
-  /// the world has got other instances with another seed. Throws InputError; null if the experiment was made in a
-  /// program. Callable from any thread.
+  Ros2 ros2{};
+  std::shared_ptr<const KeptFiles> inputs{};  ///< files from which it was read; null if it was made in a program
+  /// Recomputes everything that refers to robots and objects by index: teams, events, printed and recorded quantities.
+  /// Called when another seed has given the world different instances. Throws InputError; null if the experiment was
+  /// made in a program. Callable from any thread.
   std::function<void(Experiment&)> select_again{};
-  /// Reads models that come as text while the world runs. They may name only files that are in `inputs`. Null if the
+  /// Reads models that arrive as text while the world runs. They may refer only to files in `inputs`. Null if the
   /// experiment was made in a program that reads none.
   ModelReader read_model{};
 };

@@ -8,8 +8,8 @@
 namespace cohort::description {
 namespace {
 
-// Files in the order in which they come up, each from its first line to its last. What is found twice, in a file that
-// is read twice, is said once.
+// Sorts problems: files in the order of their first problem, each from its first line to its last. A problem that is
+// found twice, in a file that is read twice, is reported once.
 std::vector<Problem> in_order(std::vector<Problem> problems) {
   std::set<std::string> said;
   std::erase_if(problems, [&](const Problem& problem) { return !said.insert(problem.text()).second; });

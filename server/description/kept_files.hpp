@@ -5,21 +5,21 @@
 
 namespace cohort::description {
 
-/// A file as it was when it was read.
+/// A file with the content that it had when it was read.
 struct KeptFile {
   std::string path;  ///< absolute
   std::string bytes;
 };
 
-/// Everything that reading an experiment took from the machine, so that it can be read again elsewhere, with the same
-/// result, when the files are no more (`read_experiment` of experiment.hpp).
+/// All files that were read for an experiment. From them it can be read again on another machine with the same result,
+/// even if the files no longer exist (`read_experiment` of experiment.hpp).
 struct KeptFiles {
-  std::string experiment;      ///< its file, as it was named
-  std::string working_folder;  ///< absolute; what a relative path is relative to
+  std::string experiment;      ///< its file, as given by the user
+  std::string working_folder;  ///< absolute; base of relative paths
   std::string model_path;      ///< the environment variable COHORT_MODEL_PATH
   std::vector<std::string> last_model_folders;
-  std::vector<KeptFile> files;       ///< each that was read, once; ascending by path
-  std::vector<std::string> folders;  ///< those that were looked for and found; absolute, ascending
+  std::vector<KeptFile> files;       ///< all files that were read, ascending by path
+  std::vector<std::string> folders;  ///< folders that were searched for and found; absolute, ascending
 };
 
 }  // namespace cohort::description

@@ -12,27 +12,29 @@
 #include "server/description/emitter.hpp"
 #include "server/description/shape.hpp"
 
-/// A model as plain data, read once and never changed. SI units; radians; frames as in SDFormat: M the model, L a link,
-/// C a collision, J a joint, S a sensor. A member `X_AB` is the pose of frame B in frame A.
+/// A model as plain data, which is read once and never changed. Units are SI, angles in radians. Frames are as in
+/// SDFormat: M the model, L a link, C a collision, J a joint, S a sensor. A member `X_AB` is the pose of frame B in
+/// frame A.
 namespace cohort::description {
 
-/// Of two surfaces that touch: the smaller friction, the larger restitution and the larger rolling resistance, unless
-/// the world has a MaterialPair for them; the larger spinning resistance. Of friction that has a direction that of the
-/// surface with the smaller coefficient along it holds, and the smaller coefficient across it. Springs in series, and
-/// the sum of the dampings. The larger bounce threshold of those that are given.
+/// Contact properties of a surface. For two surfaces in contact, the smaller friction, the larger restitution and the
+/// larger rolling resistance apply, unless the world has a MaterialPair for them, and the larger spinning resistance.
+/// If friction has a direction, that of the surface with the smaller coefficient along it applies, with the smaller
+/// coefficient across it. Stiffnesses combine as springs in series, and dampings add up. The larger of the given bounce
+/// thresholds applies.
 struct Surface {
   double friction = 1.0;             ///< Coulomb coefficient [1]
-  double restitution = 0.0;          ///< share of the normal velocity that comes back [1]
-  double rolling_resistance = 0.0;   ///< torque against rolling for each newton of normal force [m]
-  double spinning_resistance = 0.0;  ///< torque against turning about the normal, for each newton of it [m]
+  double restitution = 0.0;          ///< coefficient of restitution [1]
+  double rolling_resistance = 0.0;   ///< ratio of rolling torque to normal force [m]
+  double spinning_resistance = 0.0;  ///< ratio of torque about the normal to normal force [m]
   std::uint32_t material = 0;        ///< index into World::materials
-  bool is_grippable = false;         ///< by a gripper, anywhere
-  /// Along which `friction` holds, a unit vector in C; zero: in every direction.
+  bool is_grippable = false;         ///< grippers can grasp any point
+  /// Direction in which `friction` applies, a unit vector in C; zero for every direction.
   Eigen::Vector3d friction_direction = Eigen::Vector3d::Zero();
   double second_friction = 1.0;                                ///< Coulomb coefficient across that direction [1]
-  double stiffness = std::numeric_limits<double>::infinity();  ///< of each point of contact [N/m]
-  double damping = 1.0;                                        ///< beside a stiffness [N s/m]
-  std::optional<double> bounce_threshold{};                    ///< slower than this nothing bounces [m/s]
+  double stiffness = std::numeric_limits<double>::infinity();  ///< for each point of contact [N/m]
+  double damping = 1.0;                                        ///< if the stiffness is finite [N s/m]
+  std::optional<double> bounce_threshold{};                    ///< impacts below this velocity do not bounce [m/s]
   std::uint16_t category_bitmask = every_bit;
   std::uint16_t collide_bitmask = every_bit;
 
@@ -40,7 +42,8 @@ struct Surface {
   bool has_direction() const { return !friction_direction.isZero(0.0); }
 };
 
-/// By SDF's rule for bitmasks: one is of a category with which the other collides.
+/// Returns whether the surfaces can collide by the bitmasks of SDF: one belongs to a category with which the other
+/// collides.
 inline bool may_collide(const Surface& a, const Surface& b) {
   return ((a.category_bitmask & b.collide_bitmask) | (b.category_bitmask & a.collide_bitmask)) != 0;
 }
@@ -52,22 +55,22 @@ struct Collision {
   Surface surface;
 };
 
-/// What is shown of a link: to people, never to sensors.
+/// The appearance of a link for people; sensors do not see it.
 struct Visual {
   std::string name;
   Pose X_LV;
   Shape shape;
   Eigen::Vector4d color;   ///< red, green, blue and opacity, from 0 to 1
-  bool has_color = false;  ///< it was written: otherwise a mesh has the colours of its file, if there are any
+  bool has_color = false;  ///< the colour is given; otherwise a mesh has the colours of its file, if any
 };
 
 struct Inertial {
   double mass = 1.0;                                      ///< [kg], > 0
-  Pose X_LI;                                              ///< I: the centre of mass and the axes of `inertia`
+  Pose X_LI;                                              ///< I: at the centre of mass, with the axes of `inertia`
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre of mass, in I [kg m^2]
 };
 
-/// Of a link that does not say.
+/// Returns the colour of a link without a colour of its own.
 inline Eigen::Vector3d default_color() { return {0.5, 0.5, 0.5}; }
 
 struct Link {
@@ -75,14 +78,15 @@ struct Link {
   Pose X_ML;
   Inertial inertial;
   std::vector<Collision> collisions;
-  Eigen::Vector3d color = default_color();  ///< for cameras: that of the first visual; red, green, blue from 0 to 1
-  std::vector<Visual> visuals{};            ///< those whose shape can be read
-  bool feels_wind = false;                  ///< SDF's enable_wind
-  bool feels_gravity = true;                ///< SDF's gravity
-  bool is_kinematic = false;                ///< of the root alone: nothing but commands changes how it moves
+  Eigen::Vector3d color =
+      default_color();            ///< as seen by cameras: that of the first visual; red, green, blue from 0 to 1
+  std::vector<Visual> visuals{};  ///< those whose shape can be read
+  bool feels_wind = false;        ///< SDF's enable_wind
+  bool feels_gravity = true;      ///< SDF's gravity
+  bool is_kinematic = false;      ///< for a root link: only commands change its motion
 };
 
-/// A circle that grippers hold on to, in the xy plane of R: the T-shaped ring around the turret of an s-bot.
+/// A circle that grippers can grasp, in the xy plane of R: the T-shaped ring around the turret of an s-bot.
 struct GripRing {
   std::string name;
   std::size_t link = 0;
@@ -97,18 +101,18 @@ struct JointAxis {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();     ///< unit vector in J
   double lower = -std::numeric_limits<double>::infinity();  ///< [rad] or [m]
   double upper = std::numeric_limits<double>::infinity();
-  double limit_stiffness = std::numeric_limits<double>::infinity();  ///< of both limits [N m/rad] or [N/m]
-  double limit_damping = 0.0;                                        ///< of limits that are not rigid, as `damping`
-  double damping = 0.0;                                              ///< [N m s/rad] or [N s/m]
-  double friction = 0.0;                                             ///< Coulomb friction of the joint [N m] or [N]
-  double spring_stiffness = 0.0;                                     ///< [N m/rad] or [N/m]
-  double spring_reference = 0.0;                                     ///< where the spring is at rest [rad] or [m]
-  // Of a motor on it, whatever the motor itself may do:
+  double limit_stiffness = std::numeric_limits<double>::infinity();  ///< for both limits [N m/rad] or [N/m]
+  double limit_damping = 0.0;     ///< for limits that are not rigid; units as for `damping`
+  double damping = 0.0;           ///< [N m s/rad] or [N s/m]
+  double friction = 0.0;          ///< Coulomb friction of the joint [N m] or [N]
+  double spring_stiffness = 0.0;  ///< [N m/rad] or [N/m]
+  double spring_reference = 0.0;  ///< position at which the spring is relaxed [rad] or [m]
+  // Limits for any motor on the joint:
   double max_effort = std::numeric_limits<double>::infinity();    ///< [N m] or [N]
   double max_velocity = std::numeric_limits<double>::infinity();  ///< [rad/s] or [m/s]
 };
 
-/// Joins two links of the same model, or a link and the world.
+/// A joint between two links of the same model, or between a link and the world.
 struct Joint {
   static constexpr std::size_t world = std::numeric_limits<std::size_t>::max();
 
@@ -117,13 +121,14 @@ struct Joint {
   std::size_t parent = 0;  ///< index into Model::links, or `world`
   std::size_t child = 0;   ///< index into Model::links
   Pose X_LJ;               ///< in the child link
-  JointAxis axis;          ///< of all but fixed joints; of a ball only damping and friction; of a screw, how it turns
-  JointAxis second_axis;   ///< of a universal joint: the one that moves with the first, fixed in the child
-  double thread_pitch = 0.0;  ///< of a screw: its way along the axis for each turn [m], negative: left-handed
+  JointAxis
+      axis;  ///< not for fixed joints; only damping and friction for ball joints, and the rotation for screw joints
+  JointAxis second_axis;      ///< for a universal joint: the axis that moves with the first, fixed in the child
+  double thread_pitch = 0.0;  ///< for a screw joint: travel along the axis per turn [m]; negative if left-handed
 };
 
-/// Lets one joint follow another: its position is `multiplier` times that of the leader, plus `offset`. Of joints with
-/// several axes the first.
+/// A coupling that makes one joint follow another: its position is `multiplier` times that of the leader, plus
+/// `offset`. For joints with several axes, it applies to the first.
 struct Coupling {
   std::size_t follower = 0;  ///< index into Model::joints
   std::size_t leader = 0;    ///< likewise
@@ -131,12 +136,12 @@ struct Coupling {
   double offset = 0.0;       ///< [rad] or [m]
 };
 
-/// Links in an order in which every parent comes before its children; link 0 is the root, which is free to move unless
-/// a joint ties it to the world. Every link is the child of at most one of the joints; what closes a loop stands apart.
-/// Devices in document order, which is the order of their channels. A static model has
-/// neither joints nor devices, and its links stay at X_ML.
+/// A model of links, joints and devices. Every parent link comes before its children. Link 0 is the root, which is free
+/// to move unless a joint attaches it to the world. Every link is the child of at most one of the joints; joints that
+/// close loops are listed separately. Devices are in document order, which is the order of their channels. A static
+/// model has neither joints nor devices, and its links stay at X_ML.
 struct Model {
-  // In one source, as those of Device are.
+  // Defined in one source file, like those of Device.
   Model();
   Model(const Model& other);
   Model(Model&& other) noexcept;
@@ -146,12 +151,12 @@ struct Model {
 
   std::string name;
   bool is_static = false;
-  bool may_sleep = true;      ///< steps may pass over an instance that has been still for a while
-  bool self_collide = false;  ///< links of one instance collide with each other, but for those that a joint connects
+  bool may_sleep = true;      ///< steps may skip an instance that has been at rest for a while
+  bool self_collide = false;  ///< links of one instance collide with each other, except those that a joint connects
   std::vector<Link> links;
   std::vector<Joint> joints;
   std::vector<Joint>
-      loop_joints{};  ///< between links that joints connect already; without limits, springs and friction
+      loop_joints{};  ///< between links that other joints already connect; without limits, springs and friction
   std::vector<Coupling> couplings{};
   std::vector<Device> devices;
   std::vector<Emitter> emitters;
@@ -159,13 +164,13 @@ struct Model {
   std::vector<Fin> fins{};
   std::vector<Drag> drags{};
 
-  /// A robot is a model that can be observed or commanded.
+  /// Returns whether the model is a robot: one that can be observed or commanded.
   bool is_robot() const { return !devices.empty(); }
-  /// Why its root link stays where it is, such as "is static"; null if it is free to move.
+  /// Returns why the root link cannot move, such as "is static"; null if it is free to move.
   const char* why_fixed() const {
     const auto ties_root = [](const Joint& joint) { return joint.parent == Joint::world && joint.child == 0; };
     if (is_static) return "is static";
-    return std::any_of(joints.begin(), joints.end(), ties_root) ? "is tied to the world by a joint" : nullptr;
+    return std::any_of(joints.begin(), joints.end(), ties_root) ? "is attached to the world by a joint" : nullptr;
   }
 };
 

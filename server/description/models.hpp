@@ -10,8 +10,8 @@
 
 namespace cohort::description {
 
-/// The models of a world. Each stays where it is while more come, and copies of a list share those that neither of them
-/// has edited: many worlds of one experiment take the memory of one.
+/// The models of a world. The address of a model does not change when models are added. Copies of a list share the
+/// models that neither has edited, so many worlds of one experiment need the memory of one.
 class Models {
  public:
   class Iterator {
@@ -63,7 +63,7 @@ class Models {
   void push_back(Model model) { models_.push_back(std::make_shared<Model>(std::move(model))); }
   void pop_back() { models_.pop_back(); }
   void clear() { models_.clear(); }
-  /// To be changed. One that other lists share is copied first: it is then at another place.
+  /// Returns a model for editing. A model that other lists share is copied first, so its address changes.
   Model& edit(std::size_t index) {
     std::shared_ptr<Model>& model = models_[index];
     if (model.use_count() > 1) model = std::make_shared<Model>(*model);

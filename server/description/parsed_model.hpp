@@ -10,16 +10,16 @@
 
 namespace cohort::description {
 
-/// A model that was read from a text of its own, apart from any world.
+/// A model that was read from a separate text, independently of any world.
 struct ParsedModel {
   std::string text;  ///< in SDF, URDF or YAML
   Model model;
-  std::vector<std::string> materials;  ///< that `model` refers to by their places here; the first has no name
-  std::vector<Problem> warnings{};     ///< what the text asks for and is not simulated
+  std::vector<std::string> materials;  ///< to which `model` refers by index; the first has no name
+  std::vector<Problem> warnings{};     ///< features of the text that are not simulated
 };
 using ParsedModelPtr = std::shared_ptr<const ParsedModel>;
 
-/// Reads the text of a model. Throws std::invalid_argument with all that is wrong with it. Callable from any thread.
+/// Reads the text of a model. Throws std::invalid_argument with all problems of the text. Callable from any thread.
 using ModelReader = std::function<ParsedModelPtr(const std::string& text)>;
 
 }  // namespace cohort::description

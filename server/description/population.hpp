@@ -11,35 +11,35 @@
 
 namespace cohort::description {
 
-/// Places in rows and columns about a centre, the first row at the least y.
+/// Positions in rows and columns around a centre; the first row has the smallest y.
 struct GridLayout {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< [m]
   double spacing = 1.0;                              ///< [m]
   std::uint64_t columns = 1;
-  double yaw = 0.0;  ///< of the rows against the x axis [rad]
+  double yaw = 0.0;  ///< angle of the rows from the x axis [rad]
 };
-/// Anywhere in a rectangle with equal probability.
+/// Uniformly distributed positions in a rectangle.
 struct UniformLayout {
   Eigen::Vector2d lower = Eigen::Vector2d::Zero();  ///< [m]
   Eigen::Vector2d upper = Eigen::Vector2d::Zero();
 };
-/// Around a centre, normally distributed along x and y.
+/// Positions that are normally distributed around a centre along x and y.
 struct GaussianLayout {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   double deviation = 1.0;  ///< standard deviation [m]
 };
-/// Evenly around a circle, counter-clockwise.
+/// Evenly spaced positions on a circle, counter-clockwise.
 struct RingLayout {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   double radius = 1.0;
-  double first_bearing = 0.0;  ///< of the first place, from the x axis [rad]
+  double first_bearing = 0.0;  ///< bearing of the first position, from the x axis [rad]
 };
-/// Evenly from one point to another, both included.
+/// Evenly spaced positions on a line, including both ends.
 struct LineLayout {
   Eigen::Vector2d from = Eigen::Vector2d::Zero();
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
 };
-/// Places that are given one by one: x [m], y [m] and heading [rad] in the frame of the formation.
+/// Positions that are listed one by one: x [m], y [m] and heading [rad] in the frame of the formation.
 struct FormationLayout {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   std::vector<Eigen::Vector3d> members;
@@ -49,31 +49,31 @@ using Layout = std::variant<GridLayout, UniformLayout, GaussianLayout, RingLayou
 enum class HeadingKind {
   random,
   fixed,
-  towards,  ///< a point
-  away,     ///< from a point
-  along,    ///< the ring, counter-clockwise, or the line
+  towards,  ///< towards a point
+  away,     ///< away from a point
+  along,    ///< along the ring, counter-clockwise, or the line
 };
 
-/// Instances of one model whose places the seed of the run decides (`server/placement`).
+/// Instances of one model, placed by the seed of the run (`server/placement`).
 struct Population {
   std::string name;
   std::size_t model = 0;   ///< index into World::models
-  std::size_t bodies = 1;  ///< of each instance; their models follow each other from `model` on
+  std::size_t bodies = 1;  ///< in each instance; their models are consecutive from `model` on
   std::uint64_t count = 0;
   std::uint64_t seed_offset = 0;  ///< added to the seed of the run
-  bool may_be_fewer = false;      ///< than `count`, if there is no room
+  bool may_be_fewer = false;      ///< fewer than `count`, if there is not enough room
   Layout layout;
-  HeadingKind heading = HeadingKind::random;  ///< of an instance; of a formation as a whole
+  HeadingKind heading = HeadingKind::random;  ///< for each instance, or for a whole formation
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
   double yaw = 0.0;           ///< added to the heading [rad]
   double gap = 0.0;           ///< [m]
-  double level = 0.0;         ///< static things no higher than this are ground [m]
-  Problem place{};            ///< where a file has it, without a message
-  Problem placement_place{};  ///< where a file says how it is placed, without a message
+  double level = 0.0;         ///< static objects up to this height are ground [m]
+  Problem place{};            ///< position in the file, without a message
+  Problem placement_place{};  ///< position of the placement in the file, without a message
 
-  // What it has in the world.
+  // The instances of the population in the world:
   std::size_t first = 0;               ///< index into World::instances of the first body of its first instance
-  std::vector<std::uint64_t> numbers;  ///< of its instances, ascending; place i of the layout has number i
+  std::vector<std::uint64_t> numbers;  ///< numbers of its instances, ascending; position i of the layout has number i
 };
 
 }  // namespace cohort::description

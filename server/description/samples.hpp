@@ -7,17 +7,17 @@
 
 namespace cohort::description {
 
-/// Readings of a real sensor, taken for one object at a grid of places around the robot (thesis, section 2.3.2: indexed
-/// by the distance between robot and object, by the angle between the robot's front and the object, and by the single
-/// sensor).
+/// Readings of a real sensor, sampled for one object at a grid of positions around the robot. They are indexed by the
+/// distance between robot and object, the angle between the front of the robot and the object, and the single sensor
+/// (thesis, section 2.3.2).
 struct Samples {
   std::vector<double> distances;   ///< [m], >= 0, ascending
   std::vector<double> angles;      ///< [rad], ascending, over less than a full turn
-  std::vector<std::string> units;  ///< of each reading
+  std::vector<std::string> units;  ///< for each reading
   std::vector<double> readings;    ///< by distance, then by angle, then by reading
-  std::filesystem::path file{};    ///< where they came from, if anywhere
+  std::filesystem::path file{};    ///< source file, if any
 
-  std::size_t count() const { return units.size(); }  ///< of readings at each place
+  std::size_t count() const { return units.size(); }  ///< number of readings at each position
 };
 
 }  // namespace cohort::description

@@ -23,9 +23,20 @@ std::string robots_of(const World& world) {
   return "the robots of this world are 0.." + std::to_string(count - 1);
 }
 
+// Returns the names with '*' in place of the number at their end, each once, such as `explorers/sbot_*`.
+std::vector<std::string> patterns_of(const std::vector<std::string>& names) {
+  std::set<std::string> patterns;
+  for (const std::string& name : names) {
+    const std::size_t last = name.find_last_not_of("0123456789");
+    const std::size_t end = last == std::string::npos ? 0 : last + 1;
+    patterns.insert(end == name.size() ? name : name.substr(0, end) + "*");
+  }
+  return {patterns.begin(), patterns.end()};
+}
+
 }  // namespace
 
-// Greedy matching with one step back to the last star is enough for stars alone.
+// Greedy matching that backtracks to the last star is sufficient for patterns with stars only.
 bool matches(std::string_view name, std::string_view pattern) {
   std::size_t n = 0;
   std::size_t p = 0;
@@ -63,7 +74,7 @@ std::vector<std::uint32_t> select_robots(const World& world, const std::string& 
   const std::optional<std::uint64_t> last = dots == std::string_view::npos ? first : parse_whole(text.substr(dots + 2));
   if (first && last) {
     if (*first > *last) throw std::invalid_argument("the range " + quoted + " ends before it starts");
-    if (*last >= count) throw std::invalid_argument(quoted + " reaches beyond the last robot; " + robots_of(world));
+    if (*last >= count) throw std::invalid_argument(quoted + " extends beyond the last robot; " + robots_of(world));
     return ids(*first, *last);
   }
 
@@ -73,8 +84,9 @@ std::vector<std::uint32_t> select_robots(const World& world, const std::string& 
   if (!found.empty()) return found;
   std::vector<std::string> names;
   for (std::uint32_t id = 0; id < count; ++id) names.push_back(world.robot(id).name);
-  throw std::invalid_argument("no robot is called " + quoted +
-                              (count == 0 ? "; the world has no robots" : suggestion(text, names)));
+  std::string hint = count == 0 ? "; the world has no robots" : suggestion(text, names);
+  if (hint.empty()) hint = suggestion(text, patterns_of(names));
+  throw std::invalid_argument("there is no robot " + quoted + hint);
 }
 
 std::vector<std::uint32_t> select_robots(const World& world, std::span<const std::string> selectors) {
@@ -95,7 +107,7 @@ std::vector<std::size_t> select_objects(const World& world, const std::string& s
     names.push_back(world.instances[i].name);
   }
   if (found.empty())
-    throw std::invalid_argument("no object is called '" + std::string(text) + "'" + suggestion(text, names));
+    throw std::invalid_argument("there is no object '" + std::string(text) + "'" + suggestion(text, names));
   return found;
 }
 

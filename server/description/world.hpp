@@ -16,68 +16,69 @@
 
 namespace cohort::description {
 
-/// One placed copy of a model.
+/// An instance of a model: one copy of it with a pose.
 struct Instance {
   std::string name;       ///< scoped, unique in the world, such as `explorers/sbot_7`
   std::size_t model = 0;  ///< index into World::models
   Pose X_WM;
-  bool is_present = true;  ///< from the beginning; otherwise an event of the experiment brings it
+  bool is_present = true;  ///< initially; otherwise an event of the experiment adds it
 };
 
-/// What is simulated of a model (docs/fidelity.md).
+/// The level of detail of the simulated models (docs/fidelity.md).
 enum class Fidelity {
   articulated,  ///< every joint and wheel
-  treel,        ///< a treel drive stands for the wheels under it
+  treel,        ///< a treel drive replaces the wheels under it
   planar,       ///< flat ground: position and heading only
 };
 
-/// How joints and contacts are solved, island by island.
+/// The solver for joints and contacts, island by island.
 enum class Solver {
   iterative,  ///< sequential impulses, warm-started
   direct,     ///< Dantzig's algorithm on the whole island
   hybrid,     ///< direct for islands of few bodies, iterative for others
 };
 
-/// How bodies come by their velocities, and answer impulses: two ways to the same numbers. Planar bodies need neither.
+/// The algorithm for forward dynamics and responses to impulses; both give the same results. Planar bodies need
+/// neither.
 enum class Dynamics {
   bullet,  ///< bodies of Bullet and its articulated-body algorithm
-  cohort,  ///< our own mass matrix and its factors
+  cohort,  ///< mass matrix and factorisation of Cohort
 };
 
 struct PhysicsSettings {
   Fidelity fidelity = Fidelity::treel;
   Dynamics dynamics = Dynamics::bullet;
   Solver solver = Solver::iterative;
-  std::uint32_t iterations = 10;                             ///< of the iterative solver, at the most
-  std::uint32_t direct_bodies = 4;                           ///< hybrid: the largest island that is solved directly
+  std::uint32_t iterations = 10;                             ///< maximum number, for the iterative solver
+  std::uint32_t direct_bodies = 4;                           ///< largest island that the hybrid solver solves directly
   double lowest = -std::numeric_limits<double>::infinity();  ///< a body below this z has left the world [m]
-  bool sleeping = true;                                      ///< steps pass over what has been still for a while
+  bool sleeping = true;                                      ///< steps skip bodies that have been at rest for a while
   bool strict = false;                                       ///< a body that breaks or leaves the world ends the run
 };
 
-/// The air where no source is near.
+/// The air far from all sources.
 struct Climate {
   double temperature = 293.15;  ///< [K]
   double humidity = 0.5;        ///< relative [1]
 };
 
-/// The air that bodies move in.
+/// The air around all bodies.
 struct Air {
-  double density = 1.225;                          ///< of the standard atmosphere at sea level [kg/m^3]
+  double density = 1.225;                          ///< standard atmosphere at sea level [kg/m^3]
   Eigen::Vector3d wind = Eigen::Vector3d::Zero();  ///< the same everywhere [m/s]
-  /// Of links that feel the wind: force for each kilogram and m/s of wind that passes them [1/s].
+  /// Force on links with wind enabled, per kilogram and per m/s of relative wind [1/s].
   double wind_force = 1.0;
 };
 
-/// All below a height, and all that is there.
+/// Water, which fills everything below a height.
 struct Water {
-  double level = 0.0;                                 ///< z of its surface [m]
+  double level = 0.0;                                 ///< z of the water surface [m]
   double density = 1000.0;                            ///< [kg/m^3]
   Eigen::Vector3d current = Eigen::Vector3d::Zero();  ///< the same everywhere [m/s]
 };
 
-/// What holds between two materials in place of the surfaces' own coefficients. Either order; a material may be paired
-/// with itself.
+/// Contact parameters of two materials, which replace those of the surfaces. The order does not matter, and a material
+/// may be paired with itself.
 struct MaterialPair {
   std::uint32_t first = 0;  ///< index into World::materials
   std::uint32_t second = 0;
@@ -86,27 +87,28 @@ struct MaterialPair {
   double rolling_resistance = 0.0;  ///< [m]
 };
 
-/// Links of two objects, held together as they stand at first until that takes too much. One of the two moves.
+/// A joint that fixes links of two objects in their initial relative pose until it is overloaded. At least one of the
+/// two must not be static.
 struct BreakableJoint {
   std::string name;
   std::size_t first = 0;  ///< index into World::instances
   std::size_t first_link = 0;
   std::size_t second = 0;
   std::size_t second_link = 0;
-  std::optional<Pose> X_LP{};  ///< where it is, in the first link; at the origin of the second one if absent
+  std::optional<Pose> X_LP{};  ///< pose in the first link; at the origin of the second link if absent
   double breaking_force = std::numeric_limits<double>::infinity();   ///< [N]
   double breaking_torque = std::numeric_limits<double>::infinity();  ///< [N m]
-  Problem first_place{};   ///< where a file names the first object, without a message
-  Problem second_place{};  ///< the same of the second one
+  Problem first_place{};   ///< position of the first object in the file, without a message
+  Problem second_place{};  ///< position of the second object
 };
 
-/// A model of which events of an experiment bring new objects.
+/// A model from which events of an experiment create new objects.
 struct SpawnableModel {
-  std::string uri;        ///< as the experiment has it
+  std::string uri;        ///< as written in the experiment
   std::size_t model = 0;  ///< index into World::models
 };
 
-/// A world with every include and population expanded. A robot's id is its place in `robots`.
+/// A world with all includes and populations expanded. The id of a robot is its index in `robots`.
 struct World {
   std::string name;
   std::filesystem::path file;
@@ -117,18 +119,18 @@ struct World {
   Climate climate;
   Air air;
   std::optional<Water> water{};
-  std::vector<std::string> materials{""};  ///< 0 is of all that names none
+  std::vector<std::string> materials{""};  ///< 0 is for collisions without a material
   std::vector<MaterialPair> material_pairs;
   Models models;
-  /// First those that stand where a file says, then those of the populations in their order, then those that events of
-  /// an experiment bring.
+  /// Instances with a pose in the file come first, then those of the populations in their order, then those that events
+  /// of an experiment add.
   std::vector<Instance> instances;
   std::vector<Population> populations;
   std::vector<BreakableJoint> breakable_joints;
   std::vector<SpawnableModel> spawnable_models{};
   std::vector<std::size_t> robots;  ///< indices into `instances`, in their order
-  std::vector<Problem> warnings;    ///< what the file asks for and is not simulated
-  std::size_t seed_warnings = 0;    ///< how many of the last warnings depend on the seed
+  std::vector<Problem> warnings;    ///< features of the file that are not simulated
+  std::size_t seed_warnings = 0;    ///< number of warnings at the end that depend on the seed
 
   const Instance& robot(std::uint32_t id) const { return instances[robots[id]]; }
   const Model& robot_model(std::uint32_t id) const { return models[robot(id).model]; }

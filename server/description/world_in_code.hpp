@@ -4,14 +4,14 @@
 
 #include "server/description/world.hpp"
 
-/// Worlds that are put together in code, not read from files: of benchmarks, figures and tests.
+/// Helpers for worlds that are built in code instead of read from files, for benchmarks, figures and tests.
 namespace cohort::description {
 
 inline Pose at(double x, double y, double z, double yaw = 0.0) {
   return {{x, y, z}, Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()))};
 }
 
-/// Upright; `z` is that of its centre in the link.
+/// Returns the inertia of an upright cylinder; `z` is the height of its centre in the link.
 inline Inertial solid_cylinder(double mass, double radius, double length, double z) {
   const double across = mass * (3.0 * radius * radius + length * length) / 12.0;
   const double along = mass * radius * radius / 2.0;
@@ -29,7 +29,7 @@ inline Inertial solid_sphere(double mass, double radius) {
   return inertial;
 }
 
-/// One link with these collisions; without any, for what only shines or sounds.
+/// Returns a static model of one link with these collisions; without any, for a model with only emitters.
 inline Model static_model(std::string name, std::vector<Collision> collisions = {}) {
   Model model;
   model.name = std::move(name);
@@ -42,7 +42,7 @@ inline Model static_shape(std::string name, const Shape& shape, const Surface& s
   return static_model(std::move(name), {{"collision", {}, shape, surface}});
 }
 
-/// Returns its index among the instances, which is its body.
+/// Adds an instance; returns its index, which is that of its body.
 inline std::uint32_t place(World& world, std::size_t model, std::string name, const Pose& X_WM) {
   const auto body = static_cast<std::uint32_t>(world.instances.size());
   if (world.models[model].is_robot()) world.robots.push_back(body);
@@ -50,7 +50,7 @@ inline std::uint32_t place(World& world, std::size_t model, std::string name, co
   return body;
 }
 
-/// The same with a model of its own.
+/// Does the same with a separate model.
 inline std::uint32_t place(World& world, Model model, std::string name, const Pose& X_WM) {
   world.models.push_back(std::move(model));
   return place(world, world.models.size() - 1, std::move(name), X_WM);

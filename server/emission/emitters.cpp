@@ -11,7 +11,7 @@ namespace cohort::emission {
 namespace {
 
 constexpr std::size_t emitters_a_chunk = 256;
-// Cameras look about so far, and a query reads few cells then [m].
+// A typical range of cameras, so that a query reads few cells [m].
 constexpr double marker_cell = 0.5;
 constexpr double beacon_cell = 1.0;
 
@@ -59,7 +59,7 @@ void Emitters::change(BodyId body, std::size_t emitter, const description::Emitt
                                         return std::pair{entry.body, entry.emitter} < key;
                                       });
   if (found == entries_.end() || found->body != body || found->emitter != emitter)
-    throw std::invalid_argument("the object has no such emitter");
+    throw std::invalid_argument("the object does not have this emitter");
   const auto set = [](auto& value, const auto& to) {
     if (to) value = *to;
   };
@@ -127,7 +127,7 @@ Emitters::OfDevice Emitters::of_device(BodyId body, DeviceId device) const {
                                         return std::pair{entry.body, entry.device} < key;
                                       });
   if (found == devices_.end() || found->body != body || found->device != device)
-    throw std::logic_error("the device emits nothing");
+    throw std::logic_error("the device is not an emitter");
   return found->first;
 }
 

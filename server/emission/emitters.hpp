@@ -14,7 +14,7 @@
 
 namespace cohort::emission {
 
-/// Where an emitter is.
+/// The body, the link and the pose of an emitter.
 struct Mount {
   BodyId body;
   LinkId link;
@@ -23,36 +23,36 @@ struct Mount {
 
 struct Lamp {
   Mount mount;
-  description::Light light;                  ///< colour and intensity as they are now
-  double usual_intensity = light.intensity;  ///< at first
+  description::Light light;                  ///< current colour and intensity
+  double usual_intensity = light.intensity;  ///< initial intensity
   bool is_on = true;
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
-  Eigen::Vector3d direction_W = Eigen::Vector3d::Zero();  ///< of a spot or directional light, unit
+  Eigen::Vector3d direction_W = Eigen::Vector3d::Zero();  ///< unit direction of a spot or directional light
 };
 
 struct Tone {
   Mount mount;
-  description::Sound sound;  ///< frequency and intensity as they are now
+  description::Sound sound;  ///< current frequency and intensity
   bool is_on = true;
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 
 struct Marker {
   Mount mount;
-  Eigen::Vector3d color = Eigen::Vector3d::Zero();  ///< as it is now; black is not seen
+  Eigen::Vector3d color = Eigen::Vector3d::Zero();  ///< current colour; black is invisible
   bool is_on = true;
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 
 struct ClimateSource {
   Mount mount;
-  description::ClimateSource source;          ///< temperature and humidity as they are now
-  description::ClimateSource usual = source;  ///< at first
+  description::ClimateSource source;          ///< current temperature and humidity
+  description::ClimateSource usual = source;  ///< initial values
   bool is_on = true;
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 
-/// What sends messages to those around.
+/// A sender of messages to nearby robots.
 struct Beacon {
   Mount mount;
   double range = 0.0;  ///< [m]
@@ -61,21 +61,21 @@ struct Beacon {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 
-/// What robots and objects let others perceive from afar. Actuators change emitters, sensors read them; in between
-/// `update` takes the poses of a new boundary. Emitters of a body that is not in the world are off. An emitter's index
-/// is its place among those of its kind and never another one's. Changes and `update` belong to one thread; all else
+/// The emitters of robots and objects, which others perceive from a distance. Actuators change emitters, and sensors
+/// read them; in between `update` takes the poses of a new boundary. Emitters of a body that is not in the world are
+/// off. An emitter's index among those of its kind is never reused. Changes and `update` belong to one thread; all else
 /// may run from any thread in between.
 class Emitters {
  public:
-  /// Those of all instances: of their models and of their devices. Keeps references to both.
+  /// Creates the emitters of all instances, from their models and devices. Keeps references to both arguments.
   Emitters(const description::World& description, const physics::World& world);
 
-  /// A body has come, of one of the description's models.
+  /// Adds a new body with one of the description's models.
   void add_body(BodyId body, const description::Model& model);
-  /// Takes the poses of this boundary and what is on.
+  /// Updates the poses and the active emitters at this boundary.
   void update(WorkerPool& workers);
 
-  /// Those that are on, by index, as of the last `update`.
+  /// Returns the indices of the active lamps at the last `update`.
   std::span<const std::uint32_t> lit_lamps() const { return lit_lamps_; }
   std::span<const std::uint32_t> sounding_tones() const { return sounding_tones_; }
   const Lamp& lamp(std::uint32_t index) const { return lamps_[index]; }
@@ -87,8 +87,8 @@ class Emitters {
   std::span<const ClimateSource> climate_sources() const { return climate_sources_; }
   bool is_in_world(const Mount& mount) const { return world_.is_active(mount.body); }
 
-  /// Calls `visit(index)` for each lit marker that may be within `range` of a point, in an order that depends on the
-  /// state alone.
+  /// Calls `visit(index)` for each lit marker that may be within `range` of a point, in an order that depends only on
+  /// the state.
   template <class Visit>
   void for_each_marker_near(const Eigen::Vector3d& p_W, double range, Visit&& visit) const {
     const Eigen::Vector3d reach = Eigen::Vector3d::Constant(range);
@@ -96,34 +96,34 @@ class Emitters {
   }
 
   const Beacon& beacon(std::uint32_t index) const { return beacons_[index]; }
-  /// The same of the beacons that are sending and may reach a point.
+  /// Calls `visit(index)` likewise for each sending beacon that may reach a point.
   template <class Visit>
   void for_each_beacon_near(const Eigen::Vector3d& p_W, Visit&& visit) const {
     const Eigen::Vector3d reach = Eigen::Vector3d::Constant(longest_range_);
     beacon_grid_.for_each_overlap({p_W - reach, p_W + reach}, visit);
   }
 
-  /// Of the emitters that a device of a body has, the first of each kind; they are in a row.
+  /// The first emitter of each kind of a device; the others follow it.
   struct OfDevice {
     std::uint32_t lamp = 0;
     std::uint32_t tone = 0;
     std::uint32_t marker = 0;
     std::uint32_t beacon = 0;
   };
-  /// Throws std::logic_error for a device that emits nothing.
+  /// Returns the emitters of a device. Throws std::logic_error if it has none.
   OfDevice of_device(BodyId body, DeviceId device) const;
-  /// Of an emitter of a body's model, by its index there. Throws std::invalid_argument if there is none.
+  /// Changes an emitter of a body, by its index in the model. Throws std::invalid_argument if there is none.
   void change(BodyId body, std::size_t emitter, const description::EmitterChange& change);
   void set_lamp(std::uint32_t lamp, const Eigen::Vector3d& color) { lamps_[lamp].light.color = color; }
   void set_tone(std::uint32_t tone, double frequency, double intensity);
   void set_marker(std::uint32_t marker, const Eigen::Vector3d& color) { markers_[marker].color = color; }
   void set_beacon(std::uint32_t beacon, bool is_sending, std::span<const double> message);
 
-  /// Adds all that can change, but for poses.
+  /// Adds all state except poses.
   void hash(StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
-  /// Into one as it is after its construction, after the world is restored; `update` comes next. Throws SnapshotError
-  /// if the snapshot is of something else.
+  /// Restores newly constructed emitters, after the world; `update` must follow. Throws SnapshotError if the snapshot
+  /// does not match.
   void restore(SnapshotReader& reader);
 
  private:
@@ -137,7 +137,7 @@ class Emitters {
     BodyId body;
     std::size_t emitter = 0;
     Kind kind = Kind::lamp;
-    std::uint32_t index = 0;  // among those of its kind
+    std::uint32_t index = 0;  // index among those of its kind
   };
   void add(BodyId body, std::size_t place, const description::Emitter& emitter);
   void add_devices(BodyId body, const description::Model& model);
@@ -163,7 +163,7 @@ class Emitters {
   std::vector<std::uint32_t> sending_beacons_;
   std::vector<geometry::Bounds> beacon_bounds_;  // by index
   geometry::CornerGrid beacon_grid_;
-  double longest_range_ = 0.0;  // of the beacons that are sending [m]
+  double longest_range_ = 0.0;  // greatest range of the sending beacons [m]
 };
 
 }  // namespace cohort::emission

@@ -72,7 +72,7 @@ void DetachableJoints::restore(SnapshotReader& reader) {
   visit_state(*this, [&](auto& value) { reader.read(value); });
   for (const Joint& joint : joints_)
     if (joint.connection != nothing && joint.connection.value >= world_.connections().made())
-      throw SnapshotError("the snapshot has a joint that holds by a connection that never was");
+      throw SnapshotError("snapshot: a detachable joint has an unknown connection");
 }
 
 }  // namespace cohort::gripping

@@ -12,23 +12,23 @@
 
 namespace cohort::gripping {
 
-/// All detachable joints of a world and whether they hold. Commands come from one thread, between steps and in the
-/// order of the robots; everything const may be asked from any thread between steps.
+/// All detachable joints of a world, and whether they hold. Commands come from one thread, between steps and in the
+/// order of the robots; const functions may be called from any thread between steps.
 class DetachableJoints {
  public:
-  /// Above this a joint is to hold [1].
+  /// A joint is to hold above this value [1].
   static constexpr double holding = 0.5;
 
-  /// What it refers to must outlive it. An object that is not there is never held.
+  /// The arguments must outlive this object. A joint to an unknown object never holds.
   DetachableJoints(const description::World& description, physics::World& world);
 
-  /// A body has come, of one of the description's models: an instance of the description by now.
+  /// Adds a new body with one of the description's models, which is already an instance of the description.
   void add_body(BodyId body, const description::Model& model);
-  /// The number of the joint that is a device of a robot.
+  /// Returns the index of the joint that is a device of a robot.
   std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({body, device}); }
 
-  /// Holds both links as they stand to each other, once both are in the world, or lets go. After what it held was torn
-  /// away, by leaving the world or being moved, it holds again only once it has let go.
+  /// Fixes both links in their current relative pose, once both are in the world, or releases them. If the held object
+  /// leaves the world or is moved away, the joint must be released before it can hold again.
   void command(std::uint32_t joint, double attached);
   bool holds(std::uint32_t joint) const;
 
@@ -45,7 +45,7 @@ class DetachableJoints {
     BodyId child = nobody;
     LinkId child_link{};
     ConnectionId connection = nothing;
-    std::uint32_t is_spent = 0;  // 1: it lost what it held, and has not let go since
+    std::uint32_t is_spent = 0;  // 1: it lost its object, and was not released since
   };
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit);

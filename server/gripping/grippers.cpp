@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A ring may lean by so much against the jaw: the cosine.
+// The limit of a ring's inclination to the jaw, as a cosine.
 constexpr double least_parallel = 0.5;
-// The surface of a grippable collision is looked for along rays: so many at each of three heights.
+// Rays that search for the surface of a grippable collision, at each of three heights.
 constexpr int rays_a_height = 9;
 
 void improve(std::optional<Target>& best, const Target& target) {
@@ -21,7 +21,7 @@ void improve(std::optional<Target>& best, const Target& target) {
   if (!best || key(target) < key(*best)) best = target;
 }
 
-// Axes of a connection: z along `axis_W`, x as near to `forward_W` as may be.
+// Returns the axes of a connection: z along `axis_W`, x as close to `forward_W` as possible.
 Eigen::Quaterniond axes_of(const Vector3d& axis_W, const Vector3d& forward_W) {
   Eigen::Matrix3d R;
   R.col(2) = axis_W;
@@ -128,7 +128,7 @@ std::optional<Target> Grippers::find_target(std::uint32_t number) const {
   return best;
 }
 
-// The nearest place of the circle; aside is where its middle is, as the jaw sees it.
+// Considers the nearest point of each ring. The lateral angle is that of the ring's middle, as seen from the jaw.
 void Grippers::consider_rings(const Gripper& gripper, const Pose& X_WG, BodyId body,
                               std::optional<Target>& best) const {
   const description::Gripper& device = *gripper.device;
@@ -190,9 +190,9 @@ void Grippers::restore(SnapshotReader& reader) {
   visit_state(*this, StateRestorer{reader});
   for (const Gripper& gripper : grippers_) {
     if (gripper.opening < 0.0 || gripper.opening > 1.0 || gripper.is_spent > 1)
-      throw SnapshotError("the snapshot has a gripper that is opened as none can be");
+      throw SnapshotError("snapshot: invalid opening of a gripper");
     if (gripper.connection != nothing && gripper.connection.value >= world_.connections().made())
-      throw SnapshotError("the snapshot has a gripper that holds by a connection that never was");
+      throw SnapshotError("snapshot: a gripper has an unknown connection");
   }
 }
 

@@ -13,46 +13,47 @@
 
 namespace cohort::gripping {
 
-/// What a gripper can grasp now.
+/// An object that a gripper can grasp now.
 struct Target {
   BodyId body;
   LinkId link;
-  Eigen::Vector3d p_W;     ///< what it gives about: the middle of a ring, or the nearest place of a collision
-  Eigen::Vector3d axis_W;  ///< of its ring, or that of the jaw; unit
-  double distance = 0.0;   ///< from the jaw [m]
+  Eigen::Vector3d p_W;     ///< centre of rotation: the middle of a ring, or the nearest point of a collision
+  Eigen::Vector3d axis_W;  ///< unit axis of its ring, or of the jaw
+  double distance = 0.0;   ///< distance from the jaw [m]
 };
 
-/// All grippers of a world and what they hold. Commands come from one thread, between steps and in the order of the
-/// robots; everything const may be asked from any thread between steps.
+/// All grippers of a world and the objects that they hold. Commands come from one thread, between steps and in the
+/// order of the robots; const functions may be called from any thread between steps.
 class Grippers {
  public:
-  /// From this opening on nothing is held [1].
+  /// A gripper releases its object from this opening on [1].
   static constexpr double letting_go = 0.5;
 
-  /// What it refers to must outlive it.
+  /// The arguments must outlive this object.
   Grippers(const description::World& description, physics::World& world);
 
-  /// A body has come, of one of the description's models.
+  /// Adds a new body with one of the description's models.
   void add_body(BodyId body, const description::Model& model);
-  /// The number of the gripper that is a device of a robot.
+  /// Returns the index of the gripper that is a device of a robot.
   std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({body, device}); }
 
-  /// Moves the opening towards `opening` for one step, then grasps, holds or lets go. When it closes past half it
-  /// grasps the nearest that is within its acceptance, and if there is nothing, what comes there while it is closed.
-  /// After what it held was torn away or has left the world it grasps again only once it has been open.
+  /// Moves the opening towards `opening` for one step, then grasps, holds or releases. When it closes beyond half, it
+  /// grasps the nearest object within its acceptance, or the first that arrives there while it is closed. If the held
+  /// object is torn away or leaves the world, the gripper must open before it can grasp again.
   void command(std::uint32_t gripper, double opening);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(grippers_.size()); }
   Eigen::Vector3d place(std::uint32_t gripper) const {
     return jaw_pose(grippers_[gripper]).position;
-  }  ///< of its jaw, p_W
+  }  ///< position of its jaw, p_W
   double opening(std::uint32_t gripper) const { return grippers_[gripper].opening; }
   bool is_gripping(std::uint32_t gripper) const;
-  /// At the connection, over the last step [N]; 0 if it holds nothing.
+  /// Returns the force at the connection over the last step [N]; 0 if it holds nothing.
   double force(std::uint32_t gripper) const;
-  /// The light barrier.
+  /// Returns the state of the light barrier.
   bool is_something_between(std::uint32_t gripper) const;
-  /// The nearest within the acceptance; of two as near, that of the lower body, then link.
+  /// Returns the nearest object within the acceptance; of two at the same distance, the one with the lower body, then
+  /// link.
   std::optional<Target> find_target(std::uint32_t gripper) const;
 
   void hash(StateHash& hash) const;
@@ -66,7 +67,7 @@ class Grippers {
     const description::Gripper* device = nullptr;
     double opening = 1.0;
     ConnectionId connection = nothing;
-    std::uint32_t is_spent = 0;  // 1: it lost what it held, and has not been open since
+    std::uint32_t is_spent = 0;  // 1: it lost its object, and has not opened since
   };
   Pose jaw_pose(const Gripper& gripper) const;
   void grasp(Gripper& gripper, const Target& target);

@@ -8,19 +8,19 @@
 
 namespace cohort::lockstep {
 
-/// How long one client takes from the first sending of a frame to its answer. Frames may overtake each other's answers;
-/// of those without an answer the last 64 are remembered.
+/// The times of one client from the first sending of a frame to its answer. Answers may arrive out of order; the last
+/// 64 unanswered frames are remembered.
 class AnswerTimes {
  public:
   using Time = std::chrono::nanoseconds;
 
-  /// Ticks ascend. A frame that is sent again counts from its first sending.
+  /// Notes a sent frame; ticks ascend. A resent frame counts from its first sending.
   void sent(std::uint64_t tick, Time now) {
     if (!sent_.empty() && sent_.back().first >= tick) return;
     if (sent_.size() == most) sent_.pop_front();
     sent_.emplace_back(tick, now);
   }
-  /// Of a frame that is not remembered it is nothing.
+  /// Notes an answer; ignored if the frame is not remembered.
   void answered(std::uint64_t tick, Time at) {
     for (auto each = sent_.begin(); each != sent_.end(); ++each) {
       if (each->first != tick) continue;

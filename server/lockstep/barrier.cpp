@@ -21,7 +21,7 @@ void Barrier::set_driven(std::uint32_t robot, bool driven) {
   if (r.driven == driven) return;
   r.driven = driven;
   if (driven) {
-    // What it was asked when somebody else drove it is forgotten.
+    // Frames for the previous driver are forgotten.
     for (Answer& answer : r.answers) answer = {Answer::State::none, false, std::move(answer.values)};
     r.answered.reset();
     r.silent = false;
@@ -39,7 +39,7 @@ void Barrier::open(std::uint64_t tick, Time now) {
   opened_at_ = now;
   awaited_count_ = 0;
   for (Robot& robot : robots_) {
-    Answer& answer = answer_of(robot, tick);  // to the frame that goes out now
+    Answer& answer = answer_of(robot, tick);  // to the frame that is sent now
     answer.state = Answer::State::none;
     answer.asked = robot.present && robot.driven && is_asked(robot, tick);
     const auto frame = acting_frame(robot);
@@ -201,7 +201,7 @@ void Barrier::save(SnapshotWriter& writer) const {
 
 void Barrier::restore(SnapshotReader& reader) {
   reader.read(tick_);
-  reader.expect_count(robots_.size(), "robots at its barrier");
+  reader.expect_count(robots_.size(), "robots at the barrier");
   awaited_count_ = 0;
   for (Robot& robot : robots_) {
     for (bool Robot::*const flag : {&Robot::present, &Robot::driven, &Robot::detached, &Robot::silent})
@@ -213,10 +213,10 @@ void Barrier::restore(SnapshotReader& reader) {
     std::uint64_t answered = 0;
     reader.read(answered);
     robot.answered = has_answered ? std::optional(answered) : std::nullopt;
-    reader.expect_count(robot.answers.size(), "answers under way");
+    reader.expect_count(robot.answers.size(), "pending answers");
     for (Answer& answer : robot.answers) {
       reader.read(answer.state);
-      if (answer.state > Answer::State::refused) throw SnapshotError("the snapshot has an answer of no known state");
+      if (answer.state > Answer::State::refused) throw SnapshotError("snapshot: invalid answer state");
       reader.read(answer.asked);
       reader.expect_count(answer.values.size(), "values in an answer");
       reader.read_all(answer.values.data(), answer.values.size());

@@ -12,59 +12,60 @@
 
 namespace cohort::lockstep {
 
-/// A point on whatever clock the caller uses; only differences count.
+/// A time of the caller's clock; only differences count.
 using Time = std::chrono::nanoseconds;
 
-/// Decides, tick by tick, whose answers the world waits for and what it does without them. Pure logic: it reads no
-/// clock, knows no network and never blocks. Not thread-safe.
+/// Decides, tick by tick, which robots' answers the world waits for, and what happens without them. Pure logic: it
+/// reads no clock, uses no network and never blocks. Not thread-safe.
 ///
-/// At tick k a robot's answer to frame k - delay is needed, if that frame was due; up to delay + 1 frames are under
-/// way. A robot that is free is asked too, but nothing is needed of it: the newest answer that has come acts.
+/// At tick k a robot's answer to frame k - delay is required, if that frame was due; up to delay + 1 frames are
+/// pending. A robot in free mode also receives frames, but its answers are not required: its newest answer acts.
 class Barrier {
  public:
-  /// The robot with the next id, which is asked from `tick` on; that is not opened yet. `command_size`: float64 values.
+  /// Adds the robot with the next id, which receives frames from `tick` on; that tick is not opened yet.
+  /// `command_size`: number of float64 values.
   void add(const description::Policy& policy, std::size_t command_size, std::uint64_t tick);
 
-  /// Whether the robot is in the world, from the tick on that is opened next: one that is not is not asked. At first
-  /// all are. Frames under way stay as they are.
+  /// Sets whether the robot is in the world, from the next opened tick on. A robot that is not receives no frames. At
+  /// first all are present. Pending frames stay as they are.
   void set_present(std::uint32_t robot, bool present) { robots_[robot].present = present; }
 
-  /// Whether somebody drives the robot, from the tick on that is opened next; taken away, from now on: then it is no
-  /// longer awaited, and has its neutral values. At first all are driven.
+  /// Sets whether a client drives the robot, from the next opened tick on. If the robot loses its client, this holds at
+  /// once: the barrier no longer waits for it, and it has its neutral values. At first all are driven.
   void set_driven(std::uint32_t robot, bool driven);
 
-  /// Starts tick `tick` at time `now`; the first call has tick 0, or that of the boundary at which what was restored
-  /// was saved, each further one the next tick. The tick before must be complete.
+  /// Opens tick `tick` at time `now`. The first call has tick 0, or the tick of the restored boundary; each further
+  /// call has the next tick. The previous tick must be complete.
   void open(std::uint64_t tick, Time now);
 
   std::uint64_t tick() const { return tick_; }
-  /// Whether nothing was opened yet.
+  /// Returns true if no tick was opened yet.
   bool is_fresh() const { return is_fresh_; }
-  /// Whether the robot is asked at this tick: one that is detached, not driven or not in the world is not.
+  /// Returns true if the robot receives a frame at this tick: not if it is detached, not driven or not in the world.
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
 
   enum class Verdict {
     accepted,
-    repeated,  ///< that frame is answered already
-    stale,     ///< that frame can no longer act
+    repeated,  ///< the frame is already answered
+    stale,     ///< too late to have an effect
     early,     ///< no such frame has been sent
   };
-  /// Whether an answer to the frame of `frame_tick` would be accepted.
+  /// Returns the verdict on an answer to the frame of `frame_tick`.
   Verdict judge(std::uint32_t robot, std::uint64_t frame_tick) const;
-  /// Takes an answer that `judge` accepts. `now` counts for those that are free.
+  /// Takes an answer that `judge` accepts. `now` counts for robots in free mode.
   void answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<const double> values, Time now = Time{0});
-  /// An answer that cannot act: a miss at once. Under `wait` nothing else can come of it, so the run has to stop.
+  /// Handles an invalid answer, which is a miss at once. Under the policy `wait` the run must then stop.
   void refuse(std::uint32_t robot, std::uint64_t frame_tick, Time now = Time{0});
 
   bool complete() const { return awaited_count_ == 0; }
   bool is_awaited(std::uint32_t robot) const { return robots_[robot].awaited; }
-  /// For good, by a policy.
+  /// Returns true if a policy has detached the robot for good.
   bool is_detached(std::uint32_t robot) const { return robots_[robot].detached; }
-  /// Ascending.
+  /// Returns the robots that the tick waits for, ascending.
   std::vector<std::uint32_t> awaited() const;
   Time opened_at() const { return opened_at_; }
 
-  /// Frames sent to the robot and not answered, oldest first: what whoever takes it over has to be given.
+  /// Returns the unanswered frames of the robot, oldest first. A client that takes over the robot must receive them.
   std::vector<std::uint64_t> unanswered(std::uint32_t robot) const;
 
   struct Miss {
@@ -72,30 +73,29 @@ class Barrier {
     std::uint64_t frame_tick;
     description::OnLate consequence;
     Time waited;
-    bool refused = false;  ///< an answer came in time, and cannot act
+    bool refused = false;  ///< an answer arrived in time, but was invalid
   };
-  /// When `expire` has something to do next while the tick is not complete; never if nobody who is awaited has a
-  /// deadline.
+  /// Returns when `expire` is next due while the tick is not complete; nothing if no awaited robot has a deadline.
   std::optional<Time> next_deadline() const;
-  /// Gives up on those whose deadline has passed. Each is a miss, and no longer awaited. One that is free misses once
+  /// Stops waiting for robots whose deadline has passed, and returns a miss for each. A robot in free mode misses once
   /// for each silence.
   std::vector<Miss> expire(Time now);
-  /// The misses of answers that were refused since this was last called; of a free robot, one for each silence.
+  /// Returns the misses by refused answers since the last call; for a robot in free mode, one for each silence.
   std::vector<Miss> take_refused() { return std::exchange(refused_, {}); }
 
   struct Outcome {
     enum class Kind {
-      keep,     ///< nothing was due, or the last command holds
+      keep,     ///< nothing was due, or the last command stays
       command,  ///< `values` act from this tick on
       neutral,  ///< the neutral values act from this tick on
     };
     Kind kind = Kind::keep;
     std::span<const double> values;  ///< valid until the next `open`
   };
-  /// What the tick gives the robot. Once the tick is complete.
+  /// Returns the tick's outcome for the robot. The tick must be complete.
   Outcome outcome(std::uint32_t robot) const;
 
-  /// Calls `visit(robot, values)` for the answers that have come, acted or will act.
+  /// Calls `visit(robot, values)` for the stored answers: new, acting or future.
   template <class Visit>
   void for_each_answer(Visit&& visit) const {
     for (std::uint32_t id = 0; id < robots_.size(); ++id)
@@ -104,29 +104,29 @@ class Barrier {
           visit(id, std::span<const double>(answer.values));
   }
 
-  /// At a boundary: answers that have come and do not act yet, and who is asked no more. Not times.
+  /// Saves, at a boundary, the answers that do not act yet, and the detached robots. Times are not saved.
   void save(SnapshotWriter& writer) const;
-  /// Of a barrier of the same policies and sizes, before the first `open`. Throws SnapshotError.
+  /// Restores a barrier with the same policies and sizes, before the first `open`. Throws SnapshotError.
   void restore(SnapshotReader& reader);
 
  private:
   struct Answer {
     enum class State { none, given, missed, refused } state = State::none;
-    bool asked = false;  // whether the frame goes out
+    bool asked = false;  // the frame is sent
     std::vector<double> values;
   };
   struct Robot {
     description::Policy policy;
     std::vector<Answer> answers;   // by frame tick, modulo delay + 1
-    std::uint64_t first_tick = 0;  // it was not there before
+    std::uint64_t first_tick = 0;  // the robot's first tick
     bool present = true;
     bool driven = true;
     bool awaited = false;
     bool detached = false;
-    // Of a free one.
-    std::optional<std::uint64_t> answered{};  // the frame whose answer acts, in the first of `answers`
-    Time heard_at{0};                         // of the last answer, or the opening before the first
-    bool silent = false;                      // for too long
+    // State of a robot in free mode.
+    std::optional<std::uint64_t> answered{};  // frame of the acting answer, stored first in `answers`
+    Time heard_at{0};                         // time of the last answer, or of the opening before the first
+    bool silent = false;                      // for longer than its deadline
   };
   static Answer& answer_of(Robot& robot, std::uint64_t frame_tick) {
     return robot.answers[place_of(robot, frame_tick)];
@@ -134,28 +134,28 @@ class Barrier {
   static const Answer& answer_of(const Robot& robot, std::uint64_t frame_tick) {
     return robot.answers[place_of(robot, frame_tick)];
   }
-  // Divisions by a number that is mostly 1 would be the better part of a tick's cost here.
+  // Avoids a division by a number that is mostly 1, which would dominate the cost of a tick here.
   static std::size_t place_of(const Robot& robot, std::uint64_t frame_tick) {
     return robot.policy.delay == 0 ? 0 : frame_tick % robot.answers.size();
   }
-  /// The frame whose answer acts at this tick, if there is one.
+  /// Returns the frame whose answer acts at this tick, if there is one.
   std::optional<std::uint64_t> acting_frame(const Robot& robot) const;
   void settle(Robot& robot);
   bool is_too_late(const Robot& robot, Time now) const;
   static bool is_too_silent(const Robot& robot, Time now);
   static bool is_free(const Robot& robot) { return robot.policy.mode == description::Mode::free; }
-  /// By the robot's policy alone, once it is there.
+  /// Considers only the robot's policy and its first tick.
   static bool is_asked(const Robot& robot, std::uint64_t tick) {
     if (tick < robot.policy.phase || tick < robot.first_tick) return false;
     return robot.policy.period == 1 || (tick - robot.policy.phase) % robot.policy.period == 0;
   }
 
   std::vector<Robot> robots_;
-  std::vector<Miss> refused_;  // and not taken yet
+  std::vector<Miss> refused_;  // not taken yet
   std::uint64_t tick_ = 0;
   Time opened_at_{0};
   std::size_t awaited_count_ = 0;
-  bool is_fresh_ = true;  // nothing was opened yet
+  bool is_fresh_ = true;  // no tick was opened yet
 };
 
 }  // namespace cohort::lockstep

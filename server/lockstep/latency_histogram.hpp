@@ -8,7 +8,7 @@
 
 namespace cohort::lockstep {
 
-/// Counts durations in buckets 3 % wide, so that a run of any length takes the same memory.
+/// A histogram of durations with buckets 3 % wide, so that a run of any length takes the same memory.
 class LatencyHistogram {
  public:
   using Duration = std::chrono::nanoseconds;
@@ -20,7 +20,8 @@ class LatencyHistogram {
     max_ = std::max(max_, duration);
   }
 
-  /// The least duration that `share` (0 to 1) of all do not exceed, to within a bucket; zero if there are none.
+  /// Returns the least duration that `share` (0 to 1) of all durations do not exceed, to within a bucket; zero if there
+  /// are none.
   Duration quantile(double share) const {
     if (total_ == 0) return Duration{0};
     const auto rank = static_cast<std::uint64_t>(share * static_cast<double>(total_ - 1));
@@ -35,7 +36,7 @@ class LatencyHistogram {
   std::uint64_t count() const { return total_; }
 
  private:
-  // Exact below 32; above, 32 buckets for each power of two.
+  // Buckets are exact below 32; above, there are 32 for each power of two.
   static std::size_t bucket_of(std::uint64_t value) {
     if (value < 32) return value;
     const int shift = static_cast<int>(std::bit_width(value)) - 6;

@@ -5,7 +5,7 @@
 namespace cohort::lockstep {
 namespace {
 
-constexpr std::chrono::seconds trusted_for{1};  // as long as the lease of liveliness
+constexpr std::chrono::seconds trusted_for{1};  // the lease duration of the DDS liveliness
 constexpr std::size_t most_news = 64;
 
 }  // namespace

@@ -10,12 +10,12 @@
 
 namespace cohort::lockstep {
 
-/// Who drives which robots. One client has one lease for all its robots, with an epoch that is never used again; a
-/// client that loses one robot loses its lease. Pure logic, like the barrier. Not thread-safe.
+/// The leases of clients on robots. One client has one lease for all its robots, with a unique epoch; a client that
+/// loses one robot loses its lease. Pure logic, like the barrier. Not thread-safe.
 ///
-/// A claim on free robots is granted. A claim on a robot that somebody holds waits: it is granted once every holder is
-/// known to be dead, and refused once a holder shows that it lives by answering. So a controller that was killed can be
-/// started again before its death is noticed, and nobody takes robots from a controller that works.
+/// A claim on free robots is granted. A claim on a robot with a holder waits: it is granted once all holders are known
+/// to be dead, and refused once a holder answers. So a killed controller can be restarted before its death is noticed,
+/// and a working controller never loses its robots.
 class Leases {
  public:
   explicit Leases(std::uint32_t robot_count, std::uint64_t first_epoch = 1)
@@ -24,9 +24,9 @@ class Leases {
   struct Lease {
     std::uint64_t epoch = 0;
     std::vector<std::uint32_t> robots;  ///< ascending
-    bool alive = true;                  ///< says liveliness
-    Time heard_until{0};                ///< what liveliness calls dead and yet answers counts as alive until then
-    /// The last answer: when it came, to which frame, and which of the copies that were sent of it.
+    bool alive = true;                  ///< according to DDS liveliness
+    Time heard_until{0};                ///< until then it counts as alive, as it has answered
+    /// The last answer: its time, its frame, and the copy of the frame that it answers.
     Time answered_at{0};
     std::uint64_t answered_tick = 0;
     std::uint32_t answered_copy = 0;
@@ -38,27 +38,27 @@ class Leases {
     std::vector<Answered> news{};  ///< answers since `drain_news`; at most 64
   };
 
-  /// Robots have come: there are so many now.
+  /// Notes added robots; `robot_count` is the new number.
   void note_robots(std::uint32_t robot_count) { holder_.resize(robot_count); }
 
-  /// `robots`: ascending, at least one. A client's new claim stands in for its earlier one that still waits.
+  /// Adds a claim on `robots`: ascending, at least one. It replaces an earlier claim of the client that still waits.
   void claim(std::uint64_t client, std::vector<std::uint32_t> robots);
 
   struct Granted {
     std::uint64_t client;
-    std::vector<std::uint64_t> superseded;  ///< clients whose lease ended by it
-    bool again;                             ///< the client held just these robots before
+    std::vector<std::uint64_t> superseded;  ///< clients that lose their lease by it
+    bool again;                             ///< the client held exactly these robots before
   };
   struct Refused {
     std::uint64_t client;
-    std::uint32_t robot;  ///< one that is held
+    std::uint32_t robot;  ///< a robot with a holder
     std::uint64_t holder;
   };
   struct Decisions {
     std::vector<Granted> granted;
     std::vector<Refused> refused;
   };
-  /// Decides the claims that can be decided now and `may_grant(robots)` allows, in the order they came.
+  /// Decides the claims that can be decided now and that `may_grant(robots)` allows, in order of arrival.
   template <class MayGrant>
   Decisions decide(Time now, MayGrant&& may_grant) {
     Decisions decisions;
@@ -67,18 +67,18 @@ class Leases {
     return decisions;
   }
 
-  /// Null if the client has no lease.
+  /// Returns null if the client has no lease.
   const Lease* lease(std::uint64_t client) const;
   const std::map<std::uint64_t, Lease>& all() const { return leases_; }
   std::optional<std::uint64_t> holder(std::uint32_t robot) const { return holder_[robot]; }
   std::uint64_t next_epoch() const { return next_epoch_; }
   bool has_claims() const { return !claims_.empty(); }
 
-  /// The client, which has a lease, answered a frame. If liveliness called it dead, it lives for a second more: one
-  /// that was stopped and goes on may die for good before liveliness has called it alive again, and then says nothing
-  /// more.
+  /// Notes an answer of the client, which has a lease. A client that DDS liveliness reported dead then counts as alive
+  /// for one more second. A process that was stopped and continues may die for good before it is reported alive again,
+  /// and no further report would follow.
   void note_answer(std::uint64_t client, Time now = Time{0}, std::uint64_t tick = 0, std::uint32_t copy = 0);
-  /// Calls `note` with each answer of the client since this was last called, if it has a lease.
+  /// Calls `note` with each answer of the client since the last call, if it has a lease.
   template <class Note>
   void drain_news(std::uint64_t client, Note&& note) {
     const auto found = leases_.find(client);
@@ -86,16 +86,16 @@ class Leases {
     for (const Lease::Answered& answered : found->second.news) note(answered);
     found->second.news.clear();
   }
-  /// What liveliness says.
+  /// Notes a report of DDS liveliness.
   void set_alive(std::uint64_t client, bool alive);
-  /// The client left for good: its robots are free, its claim is gone.
+  /// Removes a client that has left for good: its robots are free, and its claim is dropped.
   void release(std::uint64_t client);
 
  private:
   struct Claim {
     std::uint64_t client;
     std::vector<std::uint32_t> robots;
-    std::vector<std::uint64_t> answers_before;  // of each robot's holder, when the claim came
+    std::vector<std::uint64_t> answers_before;  // answers of each robot's holder at the time of the claim
   };
   void end_lease(std::uint64_t client);
   static bool is_dead(const Lease& lease, Time now) { return !lease.alive && now >= lease.heard_until; }

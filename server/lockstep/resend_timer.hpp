@@ -9,7 +9,7 @@
 
 namespace cohort::lockstep {
 
-/// How long one client's answers take: the last 31, from the copy of the frame that reached it to its answer.
+/// The last 31 round trips of one client, from the copy of the frame that it received to its answer.
 class RoundTrips {
  public:
   using Time = std::chrono::nanoseconds;
@@ -18,7 +18,7 @@ class RoundTrips {
     values_[next_++ % values_.size()] = duration;
     count_ = std::min(count_ + 1, values_.size());
   }
-  /// Zero before the first.
+  /// Returns zero before the first.
   Time median() const {
     if (count_ == 0) return Time{0};
     auto sorted = values_;
@@ -33,29 +33,29 @@ class RoundTrips {
   std::size_t count_ = 0;
 };
 
-/// When to send a client its unanswered frames again: after max(2 ms, 3 times its usual round trip), then at intervals
-/// that grow by an eighth each, to 0.5 s. Slowly: where a fifth of the packets is lost, a message of several packets may
-/// need ten tries, and a client that is gone costs some 50 of them. DDS's own repair of a lost sample takes 100 ms and
-/// more, since nothing follows it in lockstep.
+/// The times to resend a client's unanswered frames: after max(2 ms, 3 times its usual round trip), then at intervals
+/// that grow by an eighth each, up to 0.5 s. They grow slowly: at 20 % packet loss, a message of several packets may
+/// need ten tries, while a dead client costs only some 50 of them. DDS's own repair of a lost sample takes 100 ms and
+/// more, as no later sample follows it in lockstep.
 class ResendTimer {
  public:
   using Time = std::chrono::nanoseconds;
 
-  /// What is known of the client's last answer; counts if it is to the frame last started. An answer names the copy that
-  /// it is to, so that what was lost before does not seem to be the client's slowness.
+  /// Notes the client's last answer, which counts if it answers the last started frame. An answer names the copy of the
+  /// frame that it answers, so that lost copies do not make the client seem slow.
   void note_answer(std::uint64_t tick, std::uint32_t copy, Time answered_at) {
     if (tick != tick_ || copy >= sent_at_.size() || answered_at <= sent_at_[copy]) return;
     round_trips_.add(answered_at - sent_at_[copy]);
     sent_at_.clear();
   }
-  /// The frame of `tick` is sent for the first time.
+  /// Notes the first sending of the frame of `tick`.
   void start(std::uint64_t tick, Time now) {
     tick_ = tick;
     sent_at_.assign(1, now);
-    interval_ = Time{0};  // found out when it matters: most answers are there before
+    interval_ = Time{0};  // computed when needed, as most answers arrive before
     due_ = now + shortest;
   }
-  /// When `is_due` is worth a look.
+  /// Returns when `is_due` should be checked next.
   Time due() const { return due_; }
   bool is_due(Time now) {
     if (now < due_) return false;
@@ -65,7 +65,7 @@ class ResendTimer {
     }
     return now >= due_;
   }
-  /// They were sent again.
+  /// Notes that the frames were resent.
   void resent(Time now) {
     if (sent_at_.size() < most_copies) sent_at_.push_back(now);
     interval_ = std::min<Time>(longest, interval_ + interval_ / 8);
@@ -78,7 +78,7 @@ class ResendTimer {
   static constexpr std::size_t most_copies = 1000;
   RoundTrips round_trips_;
   std::uint64_t tick_ = 0;
-  std::vector<Time> sent_at_;  // its copies
+  std::vector<Time> sent_at_;  // times of its copies
   Time interval_{0};
   Time due_{0};
 };

@@ -2,7 +2,7 @@
 
 namespace cohort::description {}
 
-/// Files to descriptions and back.
+/// Reading files into descriptions, and writing them.
 namespace cohort::parsing {
-using namespace description;  // it speaks of nothing else
+using namespace description;  // all its names are of descriptions
 }

@@ -17,9 +17,9 @@ std::vector<std::string> names_of(const Things& things) {
   return names;
 }
 
-// Empty if `holder` can hold it.
+// Returns why `holder` cannot hold the child; empty if it can.
 std::string flaw_of(const HeldChild& held, const Instance& holder, const Instance& child, const World& world) {
-  if (&child == &holder) return "expected another object than '" + child.name + "', which holds";
+  if (&child == &holder) return "expected another object than '" + child.name + "', to which it is attached";
   const std::vector<std::string> links = names_of(world.models[child.model].links);
   if (held.child_link.empty() || std::ranges::find(links, held.child_link) != links.end()) return "";
   return "'" + child.name + "' has no link '" + held.child_link + "'" + suggestion(held.child_link, links);
@@ -47,8 +47,8 @@ void check_detachable_joints(World& world, std::vector<Problem>& problems) {
       said.emplace(&device, "");  // the same for all instances of the model
       if (!held->may_be_missing)
         say(device, *held,
-            "no object is called '" + held->child + "'" + suggestion(held->child, names_of(world.instances)) +
-                "; nothing is held",
+            "there is no object '" + held->child + "'" + suggestion(held->child, names_of(world.instances)) +
+                "; nothing is attached",
             world.warnings);
     }
 }

@@ -7,8 +7,9 @@
 
 namespace cohort::placement {
 
-/// What detachable joints of models hold, in a world whose objects are all there: one that is not there is in a warning
-/// of the world, what cannot be held among the problems. Each is said once, however many instances the model has.
+/// Checks the children of the detachable joints of models, in a world whose objects are complete. Adds a warning to the
+/// world for a missing child, and a problem for a child that cannot be held. Each is reported once, for any number of
+/// instances of the model.
 void check_detachable_joints(World& world, std::vector<Problem>& problems);
 
 }  // namespace cohort::placement

@@ -18,15 +18,15 @@ using Eigen::Vector3d;
 // No draw from a normal distribution is further from its mean (RandomStream::normal).
 constexpr double most_deviations = 7.0;
 
-// Draws of an attempt: x, y and heading.
+// Number of draws of an attempt: x, y and heading.
 constexpr std::uint32_t draws = 3;
 
-// Covers the rounding of lengths that are computed in two ways.
+// Covers the rounding errors of lengths that are computed in two ways.
 constexpr double margin = 1.0 + 1e-9;
 
 double direction_of(const Vector2d& vector) { return std::atan2(vector.y(), vector.x()); }
 
-// `along`: where the ring or the line goes at the point.
+// `along`: direction of the ring or the line at the point.
 double heading_at(const Population& population, const RandomStream& random, std::uint64_t instance,
                   std::uint32_t first_draw, const Vector2d& point, double along) {
   switch (population.heading) {
@@ -88,7 +88,7 @@ class GivenPlaces {
   }
   template <class Drawn>
   std::vector<Vector3d> operator()(const Drawn&) {
-    throw std::logic_error("the layout gives no places");
+    throw std::logic_error("the layout has no positions");
   }
 
  private:

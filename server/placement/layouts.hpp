@@ -16,20 +16,21 @@ struct Region {
   Eigen::Vector2d upper = Eigen::Vector2d::Zero();
 };
 
-/// Returns whether places are drawn one by one, as often as needed, rather than given all at once.
+/// Returns whether positions are drawn one by one, as often as needed, instead of all at once.
 bool is_drawn(const Layout& layout);
 
-/// Where an instance is tried, in a layout whose places are drawn. Each attempt has draws of its own.
+/// Returns the position of an attempt to place an instance, in a layout whose positions are drawn. Each attempt has its
+/// own draws.
 Eigen::Vector2d drawn_point(const Layout& layout, const RandomStream& random, std::uint64_t instance,
                             std::uint32_t attempt);
-/// The heading of an instance that is tried at a point.
+/// Returns the heading of an attempt to place an instance at a point.
 double drawn_heading(const Population& population, const RandomStream& random, std::uint64_t instance,
                      std::uint32_t attempt, const Eigen::Vector2d& point);
 
-/// The places of a layout that gives them: x [m], y [m] and heading [rad].
+/// Returns the positions of a layout that lists them: x [m], y [m] and heading [rad].
 std::vector<Eigen::Vector3d> given_places(const Population& population, const RandomStream& random);
 
-/// Returns a rectangle that holds all places, whatever the seed.
+/// Returns a rectangle that contains all positions, for any seed.
 Region region_of(const Population& population);
 
 }  // namespace cohort::placement

@@ -15,10 +15,11 @@ using Eigen::Vector3d;
 
 constexpr double negligible_cell = 1e-3;  // [m]
 
-// Below this share of its length a normal lies in the plane: a wall is no ground.
+// If the z component of a normal is below this fraction of its length, the surface is vertical and does not count as
+// ground.
 constexpr double upright = 1e-9;
 
-// Whether the triangle's shadow holds the point, and the height of the triangle there.
+// Returns the height of the triangle at the point; nothing if the point is outside of its projection.
 std::optional<double> height_at(const Triangle& t, const Vector2d& point) {
   const Vector2d a = t[0].head<2>(), b = t[1].head<2>(), c = t[2].head<2>();
   const double area = cross(b - a, c - a);
@@ -37,7 +38,7 @@ double distance_to_segment(const Vector2d& from, const Vector2d& to, const Vecto
   return (point - from - share * along).norm();
 }
 
-// What of a convex polygon lies on one side of a height: above it if `sign` is 1, below it if -1.
+// Returns the part of a convex polygon on one side of a height: above it if `sign` is 1, below it if -1.
 std::vector<Vector3d> cut(const std::vector<Vector3d>& polygon, double height, double sign) {
   std::vector<Vector3d> rest;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -52,7 +53,7 @@ std::vector<Vector3d> cut(const std::vector<Vector3d>& polygon, double height, d
   return rest;
 }
 
-// Whether each edge belongs to two triangles that go along it in opposite directions.
+// Returns whether each edge belongs to two triangles with opposite directions along it.
 bool is_closed(const TriangleMesh& mesh) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -73,7 +74,7 @@ std::optional<double> highest_on_disc(const Triangle& triangle, const Vector2d& 
     const Vector3d& from = triangle[i];
     const Vector3d& to = triangle[(i + 1) % 3];
     if ((from.head<2>() - centre).norm() <= radius) take(from.z());
-    // Where the edge crosses the circle.
+    // Intersections of the edge with the circle.
     const Vector2d along = (to - from).head<2>();
     const Vector2d offset = from.head<2>() - centre;
     const double a = along.squaredNorm(), b = along.dot(offset), c = offset.squaredNorm() - radius * radius;
@@ -84,7 +85,7 @@ std::optional<double> highest_on_disc(const Triangle& triangle, const Vector2d& 
         take(from.z() + share * (to.z() - from.z()));
   }
   if (const auto middle = height_at(triangle, centre)) take(*middle);
-  // Up the slope from the centre, as far as the disc goes.
+  // The point of the disc that is farthest up the slope from the centre.
   const Vector3d normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
   const double slope = normal.head<2>().norm();
   if (slope > upright * std::abs(normal.z()) && std::abs(normal.z()) > upright * slope) {
@@ -167,7 +168,8 @@ std::optional<double> Occupancy::terrain(const Vector2d& centre, double radius) 
          radius * n.head<2>().norm() / n.z());
   }
   for (const PlacedHeights& map : heights_) {
-    // The column over the disc, in the frame of the map. Of one that leans, all that may be under the disc counts.
+    // The column over the disc, in the frame of the map. For a tilted map, it includes everything that may be under the
+    // disc.
     const HeightGrid& grid = *map.grid;
     const Vector3d middle = map.X_CW * Vector3d(centre.x(), centre.y(), map.X_WC.position.z());
     const double reach = radius + map.sway;
@@ -202,7 +204,7 @@ Cells::Cells(const Vector2d& lower, const Vector2d& upper, double reach, std::si
   const Vector2d size = upper_ - lower_;
   cell_ = std::max({reach, std::sqrt(size.prod() / static_cast<double>(expected + 1)),
                     size.maxCoeff() / static_cast<double>(expected + 1), negligible_cell});
-  // An area may be larger than any number: then there is one cell.
+  // The area may be infinite; then there is one cell.
   const auto cells_along = [&](double length) {
     return std::isfinite(length) ? 1 + static_cast<std::size_t>(length / cell_) : 1;
   };

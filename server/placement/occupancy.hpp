@@ -16,18 +16,19 @@ namespace cohort::placement {
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
-/// The greatest z of a triangle above the disc around `centre`; nothing if they do not meet.
+/// Returns the greatest z of a triangle above the disc around `centre`; nothing if they do not intersect.
 std::optional<double> highest_on_disc(const Triangle& triangle, const Eigen::Vector2d& centre, double radius);
 
-/// From a point to what of a triangle lies between two heights, seen from above; 0 inside, infinite if there is none.
+/// Returns the horizontal distance from a point to the part of a triangle between two heights: 0 inside, infinite if
+/// there is no such part.
 double distance_between_heights(const Triangle& triangle, double lowest, double highest, const Eigen::Vector2d& point);
 
-/// What stands where in a world: the ground, and all that may be in the way of what is to be placed.
+/// The occupied space of a world: the ground, and all obstacles to placement.
 class Occupancy {
  public:
   /// A shape, or a triangle of a static mesh.
   struct Thing {
-    geometry::Footprint footprint;  // of a triangle, the rectangle around it
+    geometry::Footprint footprint;  // bounding rectangle for a triangle
     Triangle triangle = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // only if `mesh`
     std::uint32_t mesh = 0;  // which mesh the triangle belongs to; 0: none
     bool is_closed = false;  // the mesh: what it encloses is solid
@@ -42,7 +43,7 @@ class Occupancy {
   const std::vector<Thing>& things() const { return things_; }
   std::uint32_t next_mesh() const { return next_mesh_; }
 
-  /// The highest point of planes and height maps on the disc; nothing if there are none.
+  /// Returns the highest point of planes and height maps on the disc; nothing if there are none.
   std::optional<double> terrain(const Eigen::Vector2d& centre, double radius) const;
 
  private:
@@ -68,14 +69,14 @@ class Occupancy {
 /// Square cells over a rectangle.
 class Cells {
  public:
-  /// `reach`: how far from a point that is asked for things may matter; `expected`: the approximate number of things.
+  /// `reach`: maximum distance at which objects matter to a queried point; `expected`: approximate number of objects.
   Cells(const Eigen::Vector2d& lower, const Eigen::Vector2d& upper, double reach, std::size_t expected);
 
   std::size_t count() const { return columns_ * rows_; }
   std::size_t cell_of(const Eigen::Vector2d& point) const {
     return index(point.y() - lower_.y(), rows_) * columns_ + index(point.x() - lower_.x(), columns_);
   }
-  /// Calls `visit` with each cell in which there are points within reach of a footprint.
+  /// Calls `visit` with each cell that contains points within reach of a footprint.
   template <class Visit>
   void for_each_near(const geometry::Footprint& footprint, Visit&& visit) const {
     const Eigen::Vector2d reach = footprint.half_extent() + Eigen::Vector2d::Constant(reach_);
@@ -102,7 +103,7 @@ class Cells {
   std::size_t rows_ = 1;
 };
 
-/// Things in the cells that they may matter in: a list for each cell. The things are not copied, and must outlive this.
+/// Lists, for each cell, of the objects that can matter there. The objects are not copied and must outlive this.
 class ThingsInCells {
  public:
   explicit ThingsInCells(const Cells& cells) : first_(cells.count(), none) {}
@@ -112,7 +113,7 @@ class ThingsInCells {
       entries_.push_back({&thing, std::exchange(first_[cell], static_cast<std::uint32_t>(entries_.size()))});
     });
   }
-  /// Calls `visit` for those of a cell until it returns false. Returns whether it never did.
+  /// Calls `visit` for the objects of a cell until it returns false. Returns whether it never did.
   template <class Visit>
   bool for_each_in(std::size_t cell, Visit&& visit) const {
     for (std::uint32_t entry = first_[cell]; entry != none; entry = entries_[entry].next)

@@ -35,7 +35,7 @@ Problem problem_at(Problem place, std::string message) {
   return place;
 }
 
-// Returns false if a name is taken.
+// Makes an instance; returns false if its name is taken.
 bool make_instance(World& world, const Population& population, const Placed& placed, std::set<std::string>& names,
                    std::vector<Problem>& problems) {
   const std::string& model_name = world.models[population.model].name;
@@ -51,7 +51,7 @@ bool make_instance(World& world, const Population& population, const Placed& pla
   return true;
 }
 
-// After a problem the populations that follow get none.
+// Makes the instances of all populations, up to the first problem.
 void make_instances(World& world, const Drawn& drawn, std::set<std::string>& names, std::vector<Problem>& problems) {
   bool goes_on = true;
   for (std::size_t i = 0; i < world.populations.size(); ++i) {
@@ -66,7 +66,7 @@ void make_instances(World& world, const Drawn& drawn, std::set<std::string>& nam
   }
 }
 
-// In a world that has no instances yet that events bring.
+// Finds the objects of breakable joints, in a world that does not yet have the instances that events add.
 void find_joined(World& world, const std::vector<Instance>& before, std::vector<Problem>& problems) {
   if (world.breakable_joints.empty()) return;
   std::map<std::string, std::size_t> places;
@@ -82,7 +82,7 @@ void find_joined(World& world, const std::vector<Instance>& before, std::vector<
       object = found->second;
     else
       problems.push_back(
-          problem_at(place, "no object is called '" + joined.name + "'" + suggestion(joined.name, names)));
+          problem_at(place, "there is no object '" + joined.name + "'" + suggestion(joined.name, names)));
   };
   for (BreakableJoint& joint : world.breakable_joints) {
     find(joint.first, joint.first_place);

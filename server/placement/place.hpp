@@ -10,21 +10,21 @@
 
 namespace cohort::placement {
 
-/// Places the populations of a world by another seed: gives it the instances, robots and warnings that it has when it
-/// is read with this seed. `placer` was made of the world, or of one that differs from it in its seed alone. Returns
-/// whether the instances are the same as before, but for their poses; if not, what refers to instances or robots by
-/// index, outside the world, is out of date. What is wrong is added to `problems`; the world is then of no use.
+/// Places the populations of a world with another seed: sets the instances, robots and warnings that the world has when
+/// it is read with this seed. `placer` must have been made of the world, or of one that differs only in the seed.
+/// Returns whether the instances are the same as before except for their poses; if not, indices of instances or robots
+/// outside of the world are invalid. Adds problems to `problems`; the world is then unusable.
 bool place(World& world, const Placer& placer, std::uint64_t seed, std::vector<Problem>& problems);
 
-/// Makes the instances of populations in a world that has only the instances before them. `names` are those of all
+/// Makes the instances of populations in a world that has only the instances before them. `names` are the names of all
 /// instances.
 void add_populations(World& world, std::uint64_t seed, std::set<std::string>& names, std::vector<Problem>& problems);
 
-/// Sets the robots of a world whose instances are all there.
+/// Sets the robots of a world whose instances are complete.
 void set_robots(World& world);
 
-/// Checks what names instances in a world whose instances are all there, and warns of populations with fewer instances
-/// than they should have.
+/// Checks everything that refers to instances by name, in a world whose instances are complete, and warns of
+/// populations with too few instances.
 void check_instances(World& world, std::vector<Problem>& problems);
 
 }  // namespace cohort::placement

@@ -2,7 +2,7 @@
 
 namespace cohort::description {}
 
-/// Populations to instances, by a seed.
+/// Placement of the instances of populations, by a seed.
 namespace cohort::placement {
-using namespace description;  // it speaks of nothing else
+using namespace description;  // all its names are of descriptions
 }

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr std::uint32_t most_tries = 2000;
 
-// Returns a model with nothing but the collisions that may be in the way.
+// Returns a copy of the model with only the collisions that can be obstacles.
 Model solid_part(const Model& model) {
   Model solid;
   solid.is_static = model.is_static;
@@ -73,7 +73,7 @@ std::vector<Placed> Placer::Prepared::draw(const PreparedPopulation& prepared, s
   const RandomStream random(seed + population.seed_offset, population.name, "placement");
   Room room(prepared.room, earlier, population.count);
   std::vector<Placed> places;
-  // Returns whether there is room.
+  // Places an instance at the point; returns false if there is no room.
   const auto try_at = [&](std::uint64_t number, const Vector2d& point, const auto& heading_of) {
     const std::optional<double> ground = room.find(point);
     if (!ground) return false;
@@ -89,7 +89,7 @@ std::vector<Placed> Placer::Prepared::draw(const PreparedPopulation& prepared, s
     for (std::size_t i = 0; i < given.size(); ++i) try_at(i, given[i].head<2>(), [&] { return given[i].z(); });
     return places;
   }
-  // Rejection sampling. It ends with the first instance that finds no place.
+  // Rejection sampling, until an instance cannot be placed.
   for (std::uint64_t instance = 0; instance < population.count && places.size() == instance; ++instance)
     for (std::uint32_t attempt = 0; attempt < most_tries; ++attempt) {
       const Vector2d point = drawn_point(population.layout, random, instance, attempt);

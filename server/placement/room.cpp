@@ -12,13 +12,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Things that touch by less than this in height stand beside or on each other [m].
+// Objects that overlap by less than this in height are beside or on top of each other [m].
 constexpr double touching = 1e-3;
 
-// Places that are given may leave exactly the gap that is asked for [m].
+// Tolerance for listed positions that leave exactly the required gap [m].
 constexpr double rounding = 1e-12;
 
-// Of the triangles that share an edge one has the points on it, so that a line up through a surface counts it once.
+// Points on an edge belong to only one of the triangles that share it, so a vertical line through a surface counts it
+// once.
 bool is_above(const Triangle& t, const Vector2d& point, double z) {
   bool inside = false;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -107,7 +108,7 @@ bool Room::is_free(const Vector2d& point, std::size_t cell, double ground) const
   const double lowest = ground + touching;
   const double highest = ground + room_.extent_.highest - room_.extent_.lowest - touching;
   const double clearance = room_.clearance_ - rounding;
-  std::map<std::uint32_t, int> surfaces_above;  // of meshes that enclose something
+  std::map<std::uint32_t, int> surfaces_above;  // meshes that enclose a volume
   const bool is_free = for_each_in(cell, [&](const Occupancy::Thing& thing) {
     if (thing.footprint.highest <= lowest) return true;
     if (thing.is_closed && is_above(thing.triangle, point, ground)) ++surfaces_above[thing.mesh];

@@ -11,19 +11,19 @@
 
 namespace cohort::placement {
 
-/// The room that an instance takes.
+/// The space that an instance occupies.
 struct Extent {
-  double radius = 0.0;   ///< of the circle about the model's origin that holds it whatever its heading [m]
-  double lowest = 0.0;   ///< z of what stands on the ground [m]
+  double radius = 0.0;   ///< radius of the circle around the origin of the model that contains it at any heading [m]
+  double lowest = 0.0;   ///< z of the part that touches the ground [m]
   double highest = 0.0;  ///< z [m]
 };
 Extent extent_of(const Model& model);
 
-/// The part of a search for places of one population that does not depend on the seed: all that stands still.
+/// The part of a search for positions of one population that does not depend on the seed: everything static.
 class StaticRoom {
  public:
-  /// `fixed`, which must outlive this, has what stands where the file says; `moving` is the approximate number of other
-  /// things.
+  /// `fixed`, which must outlive this, has the objects with a pose in the file; `moving` is the approximate number of
+  /// other objects.
   StaticRoom(const Population& population, const Extent& extent, const Occupancy& fixed, std::size_t moving);
 
  private:
@@ -36,14 +36,14 @@ class StaticRoom {
   ThingsInCells things_;
 };
 
-/// A search for places of one population: the obstacles to an instance, and the ground under it.
+/// A search for positions of one population: the obstacles to an instance, and the ground under it.
 class Room {
  public:
-  /// `room` and `earlier`, which has what earlier populations have put there, must outlive this; at most `count`
-  /// instances are added.
+  /// `room` and `earlier`, which has the instances of earlier populations, must outlive this; at most `count` instances
+  /// are added.
   Room(const StaticRoom& room, const Occupancy& earlier, std::size_t count);
 
-  /// Returns where the ground is under an instance at a point; nothing if it has no room there.
+  /// Returns the height of the ground under an instance at a point; nothing if there is no room for it.
   std::optional<double> find(const Eigen::Vector2d& point) const;
   /// Adds an instance.
   void occupy(const Eigen::Vector2d& point);
@@ -58,8 +58,8 @@ class Room {
 
   const StaticRoom& room_;
   const Occupancy& earlier_;
-  ThingsInCells things_;                   // of earlier populations, and of this one
-  std::vector<Occupancy::Thing> circles_;  // of this one; they stay where they are
+  ThingsInCells things_;                   // earlier populations and this one
+  std::vector<Occupancy::Thing> circles_;  // this population; their addresses do not change
 };
 
 }  // namespace cohort::placement

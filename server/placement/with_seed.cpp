@@ -20,9 +20,10 @@ Experiment with_seed(const Experiment& experiment, const Placer& placer, std::ui
   if (!problems.empty()) throw InputError(std::move(problems));
   if (has_same_instances) return other;
   if (!other.select_again)
-    throw InputError({{other.file, 0, "",
-                       "seed " + std::to_string(seed) +
-                           " gives other instances, and the experiment was not read from a file that selects them"}});
+    throw InputError(
+        {{other.file, 0, "",
+          "seed " + std::to_string(seed) +
+              " results in different instances, but the experiment was not read from a file that can select them"}});
   other.select_again(other);
   return other;
 }

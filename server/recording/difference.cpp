@@ -15,7 +15,7 @@ constexpr std::size_t most_listed = 20;
 
 bool is_same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
-// Collects what differs, the first value of each thing that has several.
+// A list of differences, with the first differing value of each thing that has several.
 class Differences {
  public:
   using List = std::vector<QuantityDifference>;
@@ -24,7 +24,7 @@ class Differences {
   void add(const std::string& quantity, const std::string& detail, std::string first, std::string second) {
     list_.push_back({object_, quantity, detail, std::move(first), std::move(second)});
   }
-  /// True if they are the same.
+  /// Returns true if the values are equal.
   bool compare(const std::string& quantity, const std::string& detail, double first, double second) {
     if (is_same(first, second)) return true;
     add(quantity, detail, shortest_text(first), shortest_text(second));
@@ -59,7 +59,7 @@ class Differences {
 void compare_object(const Simulation& first, const Simulation& second, std::uint32_t object, Differences& found) {
   const bool is_present = first.objects().is_present(object);
   if (is_present != second.objects().is_present(object)) {
-    const auto text = [](bool present) { return present ? "in the world" : "not in it"; };
+    const auto text = [](bool present) { return present ? "in the world" : "not in the world"; };
     return found.add("presence", "", text(is_present), text(!is_present));
   }
   if (!is_present) return;
@@ -107,7 +107,7 @@ void compare_contacts(const Simulation& first, const Simulation& second, Differe
   }
 }
 
-// A value that acts from this tick on: the new one, or the one that stands. -0.0 and 0.0 are two.
+// Returns the value that acts from this tick on, new or unchanged. -0.0 and 0.0 are different.
 std::string value_at(const Commands& changes, std::uint32_t robot, std::uint32_t place, const Simulation& simulation) {
   for (std::size_t i = 0; i < changes.robots.size(); ++i)
     if (changes.robots[i] == robot && changes.places[i] == place) return shortest_text(changes.values[i]);
@@ -123,9 +123,9 @@ std::string channel_at(const std::vector<cohort::Channel>& channels, std::uint32
   return "";
 }
 
-// The first value of each robot whose new commands differ.
+// Adds the first differing value of each robot whose new commands differ.
 void compare_commands(const Commands& first, const Commands& second, const Simulation& simulation, Differences& found) {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> changed;  // robot and place, in either
+  std::set<std::pair<std::uint32_t, std::uint32_t>> changed;  // robot and place, from both recordings
   for (const Commands* each : {&first, &second})
     for (std::size_t i = 0; i < each->robots.size(); ++i)
       if (each->robots[i] < simulation.robot_count() && each->places[i] < simulation.command(each->robots[i]).size())
@@ -164,7 +164,7 @@ bool has_same_commands(const RecordedTick& first, const RecordedTick& second) {
 }
 
 std::string end_text(const Recording& shorter, const RecordedTick& last) {
-  return shorter.file().string() + " ends at tick " + std::to_string(last.tick) + ", and the other goes on";
+  return shorter.file().string() + " ends at tick " + std::to_string(last.tick) + ", and the other recording is longer";
 }
 
 Parting parting_at(const Recording& first, const Recording& second, const RecordedTick& first_tick,
@@ -187,7 +187,7 @@ Parting parting_at(const Recording& first, const Recording& second, const Record
     if (replay->recorded().state_hash && !replay->is_identical())
       parting.differences.insert(parting.differences.begin(),
                                  {"", "state", recording->file().string() + ", recorded and replayed",
-                                  "differ: it was recorded by another build, or changed", ""});
+                                  "differ: the file was recorded by another build, or modified", ""});
   if (parting.differences.size() > most_listed) {
     parting.more = parting.differences.size() - most_listed;
     parting.differences.resize(most_listed);

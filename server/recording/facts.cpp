@@ -13,7 +13,7 @@
 namespace cohort::recording {
 namespace {
 
-const std::string input_prefix = "inputs";  // before the absolute path, in the name of an attachment
+const std::string input_prefix = "inputs";  // precedes the absolute path in the name of an attachment
 
 std::string cpu_model() {
   std::ifstream info("/proc/cpuinfo");
@@ -34,7 +34,7 @@ std::string utc_now() {
   return {text, size};
 }
 
-// Lists as entries with numbers, so that they keep their order.
+// Returns a numbered name: numbers keep the order of lists that are stored as entries.
 std::string numbered(const std::string& name, std::size_t number) {
   const std::string digits = std::to_string(number);
   return name + "_" + std::string(5 - std::min<std::size_t>(5, digits.size()), '0') + digits;
@@ -110,8 +110,8 @@ description::KeptFiles inputs_of(const McapReader& reader, const std::filesystem
   if (!metadata)
     throw McapError(file, 0,
                     "it has no metadata '" + std::string(inputs_name) +
-                        "', so the world of its run is not known: it was not recorded by Cohort from an "
-                        "experiment's file, or its beginning is lost");
+                        "', so the world of its run is unknown: Cohort did not record it from an "
+                        "experiment file, or its beginning is lost");
   StringMap entries = metadata->entries;
   description::KeptFiles inputs;
   inputs.experiment = entries["experiment"];

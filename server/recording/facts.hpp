@@ -3,22 +3,22 @@
 #include "server/description/experiment.hpp"
 #include "server/recording/mcap/reading/mcap_reader.hpp"
 
-/// What a recording says of its run beside messages: metadata and attachments.
+/// Information about the run in a recording: metadata and attachments.
 namespace cohort::recording {
 
-/// Names of metadata: what ran and where, what it was read from, and how it ended.
+/// Names of metadata records: the run and its machine, its input files, and its end.
 inline constexpr const char* facts_name = "cohort";
 inline constexpr const char* inputs_name = "cohort_inputs";
 inline constexpr const char* end_name = "cohort_end";
 
-/// Returns the facts of the run that begins: version, commit and arithmetic of the build, experiment, seed, step,
-/// duration, robots; machine and time of day.
+/// Returns the facts of the run that starts: version, commit and arithmetic of the build, experiment, seed, step,
+/// duration and robots, and the machine and time of day.
 StringMap facts_of(const description::Experiment& experiment);
 
-/// What an experiment was read from, as metadata and, of each file, an attachment.
+/// The input files of an experiment: a metadata record, and an attachment for each file.
 StringMap entries_of(const description::KeptFiles& inputs);
 Attachment attachment_of(const description::KeptFile& input);
-/// The same again. Throws McapError if the recording has none, or not all.
+/// Reads the input files. Throws McapError if the recording has none, or not all.
 description::KeptFiles inputs_of(const McapReader& reader, const std::filesystem::path& file);
 
 }  // namespace cohort::recording

@@ -11,7 +11,7 @@
 namespace cohort::recording {
 namespace {
 
-// In whole ticks.
+// Returns the period of a rate in whole ticks.
 std::uint64_t ticks_at_rate(double rate, std::chrono::nanoseconds step) {
   if (rate <= 0.0) return 0;
   const double ticks = 1e9 / (rate * static_cast<double>(step.count()));
@@ -30,13 +30,14 @@ std::vector<RecordedChannel> recorded(const std::vector<cohort::Channel>& channe
   return result;
 }
 
-ros::TransformStamped transform(const std::string& frame, const Pose& X_WF, const ros::Time& now) {
-  const auto& p = X_WF.position;
-  const auto& q = X_WF.orientation;
-  return {{now, "world"}, frame, {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}}};
+ros::TransformStamped transform(const std::string& frame, const Pose& X_PF, const ros::Time& now,
+                                const std::string& parent = "world") {
+  const auto& p = X_PF.position;
+  const auto& q = X_PF.orientation;
+  return {{now, parent}, frame, {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-// Of the joints that have one coordinate.
+// Returns the state of the joints with one coordinate.
 ros::JointState joint_state(const description::Model& model, const physics::World& world, std::uint32_t body,
                             ros::Header header) {
   ros::JointState state;
@@ -53,7 +54,7 @@ ros::JointState joint_state(const description::Model& model, const physics::Worl
   return state;
 }
 
-// A message with a field for each channel, whose names ROS allows.
+// Returns the schema of a message with a field for each channel, with names that ROS allows.
 std::string observation_schema(const RobotKind& kind) {
   std::string text = "builtin_interfaces/Time stamp\n";
   for (const cohort::Channel& channel : kind.observation)
@@ -99,13 +100,13 @@ Recorder::Recorder(std::shared_ptr<ByteStore> store, RecordingOptions options,
   for (const description::KeptFile& input : experiment.inputs->files) file_.add_attachment(attachment_of(input));
 }
 
-// Where there is no memory for what is to be recorded the recording ends, and not the run.
+// Running out of memory ends the recording, and not the run.
 template <class Act>
 void Recorder::unless_memory_lacks(const Act& act) {
   try {
     act();
   } catch (const std::bad_alloc&) {
-    file_.end_early("there is no memory for what is to be recorded");
+    file_.end_early("out of memory");
   }
 }
 
@@ -122,10 +123,12 @@ void Recorder::begin(const description::Experiment& experiment, const Simulation
   observation_interval_ = ticks_at_rate(recorded_.observation_rate, step);
   snapshot_interval_ = ticks_every(recorded_.snapshot_interval, step);
   unless_memory_lacks([&] {
-    if (observed_.empty() && observation_interval_ != 0) add_observed();
+    const bool is_first = observed_.empty() && observation_interval_ != 0;
+    if (is_first) add_observed();
     write(world_, WorldBegins{run_, static_cast<std::uint8_t>(reason), experiment.seed, simulation.tick(),
                               experiment.duration.count(), log_offset_.count()});
     write_roster();
+    if (is_first) write_static_places();
     if (reason == Beginning::restored || reason == Beginning::attached) write_snapshot(Importance::essential);
   });
 }
@@ -135,9 +138,14 @@ void Recorder::add_observed() {
   sensors_.resize(kinds.size());
   std::set<std::uint32_t> seen;
   for (std::uint32_t robot = 0; robot < simulation_->robot_count(); ++robot)
-    if (const std::uint32_t kind = simulation_->kind_of(robot); seen.insert(kind).second)
+    if (const std::uint32_t kind = simulation_->kind_of(robot); seen.insert(kind).second) {
       sensors_[kind] =
           messages::device_messages(simulation_->description().robot_model(robot), kinds[kind].observation);
+      // If all joints are recorded, their topic has the true values and not those of the encoders.
+      if (joint_interval_ != 0)
+        std::erase_if(sensors_[kind], [](const auto& sensor) { return sensor.name == "joint_states"; });
+    }
+  static_transforms_ = add_topic<ros::TFMessage>("/tf_static", true);
   std::vector<SchemaId> schemas;
   for (const RobotKind& kind : kinds)
     schemas.push_back(file_.add_schema(observation_type(kind.model), "ros2msg", observation_schema(kind)));
@@ -259,7 +267,8 @@ void Recorder::write_poses() {
   write(transforms_, message, Importance::display);
 }
 
-// Of all that has joints, with the poses of all links but the root's, which is among the poses.
+// Writes the joints of all objects that have some, with the poses of all links except the root, which is among the
+// poses.
 void Recorder::write_joints() {
   const ros::Time now = ros::time(simulation_->time());
   ros::TFMessage places;
@@ -297,27 +306,67 @@ void Recorder::write_observations() {
     cdr_.add(now);
     for (const double value : simulation_->observation(robot)) cdr_.add(value);
     write_bytes(topic, cdr_.bytes(), Importance::display);
-    write_sensors(robot, sensors, places);
+    write_sensors(robot, sensors);
+    add_places(robot, places);
   }
   if (!places.transforms.empty()) write(transforms_, places, Importance::display);
 }
 
-void Recorder::write_sensors(std::uint32_t robot, std::span<Topic> topics, ros::TFMessage& places) {
+void Recorder::write_sensors(std::uint32_t robot, std::span<Topic> topics) {
   const std::vector<messages::DeviceMessage>& sensors = sensors_[simulation_->kind_of(robot)];
-  const std::string* placed = nullptr;  // the device that was placed last
+  const ros::Time now = ros::time(simulation_->time());
   for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const messages::DeviceMessage& sensor = sensors[i];
-    const ros::Header header{ros::time(simulation_->time()), simulation_->robot_name(robot) + "/" + sensor.device};
     cdr_.clear();
-    sensor.add(cdr_, header, simulation_->observation(robot));
+    sensors[i].add(cdr_, {now, frame_of(robot, sensors[i].frame)}, simulation_->observation(robot));
     write_bytes(topics[i], cdr_.bytes(), Importance::display);
-    if (!sensor.place || (placed != nullptr && *placed == sensor.device)) continue;
-    placed = &sensor.device;
-    places.transforms.push_back(transform(header.frame_id, sensor.place([&](std::size_t link) {
-      return simulation_->world().link_pose(simulation_->body_of(robot), LinkId{link});
-    }),
-                                          header.stamp));
   }
+}
+
+std::string Recorder::frame_of(std::uint32_t robot, const std::string& part) const {
+  return simulation_->robot_name(robot) + "/" + part;
+}
+
+// Returns the frame of a link; the root link has the frame of its robot.
+std::string Recorder::frame_of_link(std::uint32_t robot, std::size_t link) const {
+  if (link == 0) return simulation_->robot_name(robot);
+  return frame_of(robot, simulation_->description().robot_model(robot).links[link].name);
+}
+
+// Writes the poses of sensors that are fixed to their links, once.
+void Recorder::write_static_places() {
+  const ros::Time now = ros::time(simulation_->time());
+  ros::TFMessage places;
+  std::set<std::string> known;  // a device may have several messages
+  for (const Observed& observed : observed_)
+    for (const messages::DeviceMessage& sensor : sensors_[simulation_->kind_of(observed.robot)]) {
+      const std::string frame = frame_of(observed.robot, sensor.frame);
+      if (!sensor.place_on_link || !known.insert(frame).second) continue;
+      const auto& [link, X_LS] = *sensor.place_on_link;
+      places.transforms.push_back(transform(frame, X_LS, now, frame_of_link(observed.robot, link)));
+    }
+  write(static_transforms_, places);
+}
+
+// Adds the poses of a robot's links with sensors, and of sensors that are not fixed to a link, unless they are recorded
+// anyway.
+void Recorder::add_places(std::uint32_t robot, ros::TFMessage& places) const {
+  const ros::Time now = ros::time(simulation_->time());
+  const messages::LinkPoses X_WL = [&](std::size_t link) {
+    return simulation_->world().link_pose(simulation_->body_of(robot), LinkId{link});
+  };
+  const std::string& name = simulation_->robot_name(robot);
+  if (pose_interval_ == 0) places.transforms.push_back(transform(name, X_WL(0), now));
+  const Pose X_RW = X_WL(0).inverse();
+  std::set<std::size_t> links;
+  for (const messages::DeviceMessage& sensor : sensors_[simulation_->kind_of(robot)]) {
+    if (sensor.place_on_link && sensor.place_on_link->link != 0)
+      links.insert(sensor.place_on_link->link);
+    else if (sensor.place && !sensor.place_on_link)
+      places.transforms.push_back(transform(frame_of(robot, sensor.frame), X_RW * sensor.place(X_WL), now, name));
+  }
+  if (joint_interval_ != 0) return;
+  for (const std::size_t link : links)
+    places.transforms.push_back(transform(frame_of_link(robot, link), X_RW * X_WL(link), now, name));
 }
 
 std::uint64_t Recorder::dropped() const {

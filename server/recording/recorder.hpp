@@ -19,42 +19,45 @@
 
 namespace cohort::recording {
 
-/// Records a run: an observer, which reads the simulation at its boundaries, changes nothing and never waits for the
-/// disk. Log times are simulated time; where a world begins anew they go on from the last one. The thread that runs
-/// calls everything but `error`.
+/// A recorder of a run. It reads the simulation at boundaries, changes nothing and never waits for the disk. Log times
+/// are simulated time; after a reset they continue from the last one. All functions except `error` are for the thread
+/// of the run.
 class Recorder {
  public:
-  /// Makes the file, and writes down what `experiment` was read from and where it runs. Throws FileError if the file
-  /// cannot be made.
+  /// Creates the file, and writes the input files of `experiment` and the facts of the machine. Throws FileError if the
+  /// file cannot be created.
   Recorder(const std::filesystem::path& file, const description::Experiment& experiment);
-  /// To a store of the caller's, with `recorded` in place of what the experiment says of recordings.
+  /// Records to a store of the caller, with `recorded` instead of the experiment's settings.
   Recorder(std::shared_ptr<ByteStore> store, RecordingOptions options, const description::Experiment& experiment,
            description::Recorded recorded);
 
-  /// From now on it is about this world, which stands at a boundary of which no one has been told yet. Both must
-  /// outlive what is recorded of them.
+  /// Starts to record this world, which is at a boundary that no listener has been told of. Both arguments must outlive
+  /// their recording.
   void begin(const description::Experiment& experiment, const Simulation& simulation, Beginning reason);
 
-  /// These happened at the present boundary.
+  /// Records events and actions of the current boundary.
   void event(std::string_view kind, std::string_view text, std::uint64_t count);
   void miss(const RecordedMiss& miss);
   void action(std::string_view text, std::span<const std::byte> action);
-  /// The state of this tick is complete, with the actions taken at it.
+  /// Records the state of this tick, which includes the actions taken at it.
   void boundary();
-  /// The commands of these robots have changed and act from this boundary on.
+  /// Records the changed commands of these robots, which act from this boundary on.
   void commands(std::span<const std::uint32_t> robots);
 
-  /// Closes the file, and returns when it is closed. `end`: how the run ended, in a word, and why.
+  /// Passes all recorded data to the operating system. Returns when this is done, or `error` says why not.
+  void flush() { file_.flush(); }
+
+  /// Closes the file, and returns when it is closed. `end`: how the run ended, in a word; `reason`: why.
   void finish(std::string_view end, std::string_view reason);
-  /// The same without waiting for it. From here on the world may go.
+  /// Starts `finish` without waiting for it. The world may be destroyed afterwards.
   void begin_finishing(std::string_view end, std::string_view reason);
   bool is_closed() const { return file_.is_closed(); }
 
-  /// Why the recording has ended before its run, if it has. Any thread.
+  /// Returns why the recording ended before its run, if it did. For any thread.
   std::optional<std::string> error() const { return file_.error(); }
-  /// Bytes that wait to be written.
+  /// Returns the number of bytes that wait to be written.
   std::size_t queued() const { return file_.queued(); }
-  /// Poses and observations that were dropped since the disk was too slow.
+  /// Returns the number of poses and observations that were dropped because the disk was too slow.
   std::uint64_t dropped() const;
 
  private:
@@ -77,7 +80,11 @@ class Recorder {
   void write_poses();
   void write_joints();
   void write_observations();
-  void write_sensors(std::uint32_t robot, std::span<Topic> topics, ros::TFMessage& places);
+  void write_sensors(std::uint32_t robot, std::span<Topic> topics);
+  std::string frame_of(std::uint32_t robot, const std::string& part) const;
+  std::string frame_of_link(std::uint32_t robot, std::size_t link) const;
+  void write_static_places();
+  void add_places(std::uint32_t robot, ros::TFMessage& places) const;
   Topic& topic_of_joints(std::uint32_t object);
   void keep_commands();
   bool is_now(std::uint64_t interval) const { return interval != 0 && simulation_->tick() % interval == 0; }
@@ -85,6 +92,7 @@ class Recorder {
   RecordingFile file_;
   description::Recorded recorded_;
   Topic world_, roster_, boundary_, commands_, action_, event_, miss_, snapshot_, clock_, transforms_;
+  Topic static_transforms_{};  // created with the first observed robot
   const description::Experiment* experiment_ = nullptr;
   const Simulation* simulation_ = nullptr;
   std::uint32_t run_ = 0;
@@ -98,17 +106,17 @@ class Recorder {
   struct Observed {
     std::uint32_t robot = 0;
     Topic topic;
-    std::vector<Topic> sensors;  // as those of its kind
+    std::vector<Topic> sensors;  // the topics of its kind's sensors
   };
   std::vector<Observed> observed_;
   std::vector<std::vector<messages::DeviceMessage>> sensors_;  // by kind
   std::map<std::string, Topic> joints_;                        // by object
   SchemaId joint_schema_ = 0;
-  // As they stand at the boundary, robot after robot: an empty battery changes them too.
+  // Commands at the boundary, robot after robot: an empty battery also changes them.
   std::vector<double> commands_before_;
   std::vector<std::size_t> command_offsets_;  // by robot
-  std::uint32_t robots_told_ = 0;             // in the last roster
-  Commands changes_;                          // reused, like the next
+  std::uint32_t robots_told_ = 0;             // number of robots in the last roster
+  Commands changes_;                          // reused, like the next member
   messages::CdrWriter cdr_;
 };
 

@@ -15,7 +15,7 @@ std::vector<ChannelId> channels_of(const McapReader& reader, std::initializer_li
   return channels;
 }
 
-// A query for no channel means all of them, so the topic has to be there.
+// A query for no channel means all of them, so the topic must exist.
 MessageStream messages_of(const McapReader& reader, ChannelId channel) {
   return reader.messages({.channels = {channel}});
 }
@@ -33,7 +33,7 @@ TickStream::TickStream(const McapReader& reader, const std::filesystem::path& fi
 
 std::optional<RecordedTick> TickStream::next() {
   std::optional<RecordedTick> result = std::exchange(waiting_, std::nullopt);
-  // The tick that this message is of; that of another one waits until this one is given out.
+  // Assigns the message to its tick; a message of the next tick waits until this one is returned.
   const auto tick_of = [&](const Message& message, std::uint64_t tick) -> RecordedTick& {
     if (!result) result = RecordedTick{.tick = tick, .log_time = message.log_time};
     if (result->tick == tick && result->log_time == std::chrono::nanoseconds(message.log_time)) return *result;
@@ -63,7 +63,7 @@ std::optional<RecordedTick> TickStream::next() {
       }
     }
   } catch (const messages::CdrError& error) {
-    throw McapError(file_, 0, std::string("a message is not what Cohort records: ") + error.what());
+    throw McapError(file_, 0, std::string("a message is not in Cohort's format: ") + error.what());
   }
   return result;
 }
@@ -73,17 +73,17 @@ Recording::Recording(const std::filesystem::path& file) : file_(file), reader_(f
   const Channel* const worlds = reader_.channel(WorldBegins::topic);
   if (!facts || worlds == nullptr)
     throw McapError(file, 0,
-                    reader_.is_complete() ? "it is an MCAP file, but no recording of Cohort's"
-                                          : "no run can be read in it: " + reader_.damage());
+                    reader_.is_complete() ? "it is an MCAP file, but not a recording of Cohort"
+                                          : "it has no readable run: " + reader_.damage());
   facts_ = facts->entries;
   try {
     MessageStream stream = messages_of(reader_, worlds->id);
     while (const auto message = stream.next())
       worlds_.push_back({messages::decode<WorldBegins>(message->data), message->log_time});
   } catch (const messages::CdrError& error) {
-    throw McapError(file, 0, std::string("what it says of its run is no message of Cohort's: ") + error.what());
+    throw McapError(file, 0, std::string("invalid description of the run: ") + error.what());
   }
-  if (worlds_.empty()) throw McapError(file, 0, "no run can be read in it" + (damage().empty() ? "" : ": " + damage()));
+  if (worlds_.empty()) throw McapError(file, 0, "it has no readable run" + (damage().empty() ? "" : ": " + damage()));
   if (const Channel* const snapshots = reader_.channel(RecordedSnapshot::topic)) {
     MessageStream stream = messages_of(reader_, snapshots->id);
     while (const auto message = stream.next()) snapshots_.push_back(message->log_time);

@@ -12,23 +12,24 @@
 
 namespace cohort::recording {
 
-/// What a recording holds of one boundary.
+/// The recorded data of one boundary.
 struct RecordedTick {
   std::uint64_t tick = 0;
   std::chrono::nanoseconds log_time{0};
-  std::optional<WorldBegins> begins{};         ///< a world begins with it
+  std::optional<WorldBegins> begins{};         ///< a world that begins here
   std::optional<RecordedSnapshot> snapshot{};  ///< after the actions
   std::vector<ActionTaken> actions{};          ///< in their order
-  std::optional<std::uint64_t> state_hash{};   ///< after the actions; none where the recording ends in the midst
-  Commands commands{};                         ///< of the robots whose commands changed
+  std::optional<std::uint64_t> state_hash{};   ///< after the actions; missing if the recording ends within the tick
+  Commands commands{};                         ///< for the robots whose commands changed
 };
 
-/// The boundaries of a recording, in their order. One thread at a time.
+/// The boundaries of a recording, in order. For one thread at a time.
 class TickStream {
  public:
   TickStream(const McapReader& reader, const std::filesystem::path& file, Timestamp from);
 
-  /// The next one; none at the end. Throws McapError for what cannot be read, or is not what a recorder writes.
+  /// Returns the next boundary, or nothing at the end. Throws McapError for data that cannot be read, or that a
+  /// recorder does not write.
   std::optional<RecordedTick> next();
 
  private:
@@ -38,36 +39,36 @@ class TickStream {
   std::optional<RecordedTick> waiting_;
 };
 
-/// A recording of Cohort's. Any thread, but for its streams.
+/// A recording made by Cohort. For any thread, except for its streams.
 class Recording {
  public:
-  /// Throws FileError if the file cannot be opened, McapError if it is no recording of Cohort's.
+  /// Throws FileError if the file cannot be opened, and McapError if it is not a recording of Cohort.
   explicit Recording(const std::filesystem::path& file);
 
   const std::filesystem::path& file() const { return file_; }
   const McapReader& reader() const { return reader_; }
-  /// A sentence, if not everything can be read.
+  /// Returns a sentence if parts cannot be read.
   const std::string& damage() const { return reader_.damage(); }
-  /// Of `facts_of`.
+  /// Returns the facts that `facts_of` wrote.
   const StringMap& facts() const { return facts_; }
-  /// How the run ended, in a word; empty if the file does not know.
+  /// Returns how the run ended, in a word; empty if unknown.
   std::string end() const;
 
-  /// A world that begins.
+  /// The start of a world.
   struct World {
     WorldBegins begins;
     std::chrono::nanoseconds log_time{0};
   };
-  /// In their order, at least one.
+  /// Returns the worlds in order; there is at least one.
   const std::vector<World>& worlds() const { return worlds_; }
-  /// The experiment of a world, read from what the recording keeps. Throws McapError, or InputError if another version
-  /// of Cohort takes it for wrong.
+  /// Returns the experiment of a world, read from the input files in the recording. Throws McapError, or InputError if
+  /// another version of Cohort rejects it.
   description::Experiment experiment(const World& world) const;
 
-  /// Log times of the snapshots, ascending.
+  /// Returns the log times of the snapshots, ascending.
   const std::vector<std::chrono::nanoseconds>& snapshots() const { return snapshots_; }
 
-  /// From the first boundary on whose log time is not before this.
+  /// Returns the boundaries from the first whose log time is not before `from`.
   TickStream ticks(std::chrono::nanoseconds from = std::chrono::nanoseconds(0)) const;
 
  private:

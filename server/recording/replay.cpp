@@ -30,12 +30,12 @@ bool Replay::advance() {
     if (recorded_->snapshot)
       simulation_->restore(std::as_bytes(std::span(recorded_->snapshot->data)));
     else if (recorded_->tick != simulation_->tick())
-      fail("its world begins at tick " + std::to_string(recorded_->tick) + " without a snapshot");
+      fail("the world begins at tick " + std::to_string(recorded_->tick) + " without a snapshot");
   } else {
-    if (simulation_ == nullptr) fail("the beginning of its world is lost");
+    if (simulation_ == nullptr) fail("the beginning of the world is lost");
     if (before && recorded_->tick != before->tick + 1)
       fail("after tick " + std::to_string(before->tick) + " comes tick " + std::to_string(recorded_->tick) +
-           ": what was between is lost, so the run cannot be replayed beyond");
+           ": the ticks between are lost, so the replay ends here");
     simulation_->step();
   }
   take_actions();
@@ -50,19 +50,19 @@ void Replay::apply_commands() {
   const std::size_t count = changes.robots.size();
   for (std::size_t i = 0; i < count;) {
     const std::uint32_t robot = changes.robots[i];
-    if (robot >= simulation_->robot_count()) fail(" are not for the robots of its world");
+    if (robot >= simulation_->robot_count()) fail(" do not match the robots of the world");
     const std::span<const double> before = simulation_->command(robot);
     std::vector<double> command(before.begin(), before.end());
     for (; i < count && changes.robots[i] == robot; ++i) {
-      if (changes.places[i] >= command.size()) fail(" are not for the robots of its world");
+      if (changes.places[i] >= command.size()) fail(" do not match the robots of the world");
       command[changes.places[i]] = changes.values[i];
     }
-    if (const auto fault = simulation_->check_command(robot, command)) fail(" cannot act: " + fault->text);
+    if (const auto fault = simulation_->check_command(robot, command)) fail(" are invalid: " + fault->text);
     simulation_->set_command(robot, command);
   }
 }
 
-// Those that were refused when they were recorded change nothing here either.
+// Actions that were refused when they were recorded are refused again, and change nothing.
 void Replay::take_actions() {
   std::vector<cohort::Action> actions;
   actions.reserve(recorded_->actions.size());
@@ -77,7 +77,7 @@ void Replay::take_actions() {
 }
 
 bool Replay::seek(std::chrono::nanoseconds log_time) {
-  // Where it can begin: at a world, or at a snapshot of one.
+  // Finds the start: the beginning of a world, or a snapshot.
   const Recording::World* world = &recording_.worlds().front();
   for (const Recording::World& each : recording_.worlds())
     if (each.log_time <= log_time) world = &each;

@@ -10,29 +10,29 @@
 
 namespace cohort::recording {
 
-/// Runs the world of a recording again, from what the barrier gave out and what was done to it: no controller, no
-/// policy, no wall clock. One thread.
+/// A replay of a recording's world, from the recorded commands and actions: without controllers, policies or wall
+/// clock. For one thread.
 class Replay {
  public:
-  /// Stands before the first boundary. `recording` must outlive this.
+  /// Starts before the first boundary. `recording` must outlive this object.
   Replay(const Recording& recording, unsigned threads);
   ~Replay();
 
-  /// Goes on to the last boundary before `log_time` at which a world begins or a snapshot was taken, if it is before
-  /// it, and from there to the first one that is not before it. False if there is none.
+  /// Goes to the first boundary that is not before `log_time`. If that is faster, it starts from the last beginning of
+  /// a world or snapshot before it. Returns false if there is no such boundary.
   bool seek(std::chrono::nanoseconds log_time);
 
-  /// Goes on to the next boundary. False at the end. Throws McapError for a recording that cannot be read or replayed
-  /// from here on, and what Simulation throws.
+  /// Goes to the next boundary. Returns false at the end. Throws McapError for a recording that cannot be read or
+  /// replayed from here on, and the exceptions of Simulation.
   bool advance();
 
-  /// What is recorded of this boundary, and the world as it is there. To be asked only where `seek` or `advance` has
-  /// returned true: after an exception there may be no world, and `seek` is the way back.
+  /// Returns the recorded data of this boundary, and below the replayed world. Valid only where `seek` or `advance` has
+  /// returned true: after an exception there may be no world, and `seek` restores one.
   const RecordedTick& recorded() const { return *recorded_; }
   const Simulation& simulation() const { return *simulation_; }
   const description::Experiment& experiment() const { return *experiment_; }
 
-  /// Whether what is recorded and what is replayed have the same state here.
+  /// Returns true if the recorded and the replayed state are the same here.
   bool is_identical() const { return recorded_->state_hash == simulation_->state_hash(); }
 
  private:
@@ -48,21 +48,21 @@ class Replay {
   std::unique_ptr<Simulation> simulation_;
 };
 
-/// What a replay found.
+/// The result of a replay.
 struct Verification {
-  std::uint64_t boundaries = 0;  ///< compared, and the same
+  std::uint64_t boundaries = 0;  ///< compared and identical
   struct Difference {
     std::uint64_t tick = 0;
     std::chrono::nanoseconds log_time{0};
     std::uint64_t recorded = 0;
     std::uint64_t replayed = 0;
   };
-  std::optional<Difference> difference{};  ///< the first
-  std::string problem{};                   ///< why the replay ended before the recording did; empty if it did not
+  std::optional<Difference> difference{};  ///< the first difference
+  std::string problem{};                   ///< why the replay ended before the recording; empty if it did not
 };
 
 /// Replays and compares the state of every boundary from one log time to another, up to the first that differs.
-/// `progress` is called at each of them with its log time; if it returns false the replay ends.
+/// `progress` is called at each boundary with its log time; if it returns false, the replay ends.
 Verification verify(Replay& replay, std::chrono::nanoseconds from, std::chrono::nanoseconds to,
                     const std::function<bool(std::chrono::nanoseconds)>& progress);
 

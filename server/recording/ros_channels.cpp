@@ -3,8 +3,8 @@
 namespace cohort::recording {
 
 StringMap ros_channel_metadata(bool is_latched) {
-  // By number, as rosbag2 reads them in files that name no version of it: unknown history, reliable, transient local or
-  // volatile, automatic liveliness, and no deadlines.
+  // The QoS profile in numbers, as rosbag2 reads it in files without a version: unknown history, reliable, transient
+  // local or volatile, automatic liveliness, and no deadlines.
   const std::string endless = "\n    sec: 9223372036\n    nsec: 854775807\n";
   return {{"offered_qos_profiles",
            "- history: 3\n  depth: 0\n  reliability: 1\n  durability: " + std::string(is_latched ? "1" : "2") +

@@ -20,7 +20,7 @@ Commands decode_commands(ByteView bytes) {
   return commands;
 }
 
-// Lower case, digits and single underscores, a letter first.
+// Returns a name of lower-case letters, digits and single underscores that starts with a letter.
 std::string ros_field_name(std::string_view channel) {
   std::string name;
   for (const char letter : channel) {

@@ -90,7 +90,7 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
     expected_size += simulation_.kinds()[simulation_.kind_of(robot)].command_size;
   }
   if (!std::ranges::equal(due_, robots)) {
-    reject("malformed", frame_text() + " is not for the robots of that frame");
+    reject("malformed", frame_text() + " is for other robots than its frame");
     return taken;
   }
   const bool sizes_fit = values.size() == expected_size;
@@ -140,14 +140,14 @@ void Exchange::save(SnapshotWriter& writer) const {
 void Exchange::restore(SnapshotReader& reader) {
   barrier_.restore(reader);
   if (barrier_.tick() > simulation_.tick() || barrier_.tick() + 1 < simulation_.tick())
-    throw SnapshotError("the snapshot's world stands at tick " + std::to_string(simulation_.tick()) +
-                        ", and its barrier at " + std::to_string(barrier_.tick()));
+    throw SnapshotError("snapshot: the world is at tick " + std::to_string(simulation_.tick()) +
+                        ", but the barrier is at tick " + std::to_string(barrier_.tick()));
   barrier_.for_each_answer([&](std::uint32_t robot, std::span<const double> values) {
     if (const auto fault = simulation_.check_command(robot, values))
-      throw SnapshotError("the snapshot has an answer that cannot act: " + fault->text);
+      throw SnapshotError("snapshot: invalid answer: " + fault->text);
   });
   for (std::vector<double>& observations : history_) {
-    reader.expect_count(observations.size(), "observed values under way");
+    reader.expect_count(observations.size(), "observed values of pending frames");
     reader.read_all(observations.data(), observations.size());
   }
 }

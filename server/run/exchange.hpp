@@ -11,7 +11,8 @@
 
 namespace cohort::session {
 
-/// The meeting of a simulation and its barrier: observations out, commands in, whatever carries them. Not thread-safe.
+/// The connection of a simulation and its barrier: it passes observations out and commands in, for any transport. Not
+/// thread-safe.
 class Exchange {
  public:
   explicit Exchange(Simulation& simulation);
@@ -19,18 +20,18 @@ class Exchange {
   lockstep::Barrier& barrier() { return barrier_; }
   const lockstep::Barrier& barrier() const { return barrier_; }
 
-  /// Robots that have come to the simulation since, at this boundary.
+  /// Adds robots that have joined the simulation since, at this boundary.
   void add_newcomers();
 
-  /// Opens the simulation's current tick and keeps the observations of all robots due.
+  /// Opens the simulation's current tick and keeps the observations of all due robots.
   void open(lockstep::Time now);
 
-  /// The robots of `robots` that are due at `tick`, and their observations in a row. `tick` is the current one or one
-  /// of the delay before it.
+  /// The due robots among `robots` at `tick`, with their observations in a row. `tick` is the current one or one within
+  /// the delay before it.
   struct Frame {
     std::vector<std::uint32_t> robots{};
-    std::span<const double> values{};  ///< good until the next step, or the next `fill_frame` of this frame
-    std::vector<double> gathered{};    ///< where they are, unless they lie in a row elsewhere
+    std::span<const double> values{};  ///< valid until the next step, or the next `fill_frame` of this frame
+    std::vector<double> gathered{};    ///< storage of the values, unless they are contiguous elsewhere
   };
   void fill_frame(Frame& frame, std::span<const std::uint32_t> robots, std::uint64_t tick) const;
 
@@ -39,23 +40,23 @@ class Exchange {
     std::string text;
   };
   struct Taken {
-    std::size_t accepted = 0;            ///< robots whose answer was taken
-    std::optional<Rejection> rejection;  ///< the first thing wrong, if anything is
-    bool is_fault = false;               ///< the values cannot act on some robot: a miss at once
-    bool ends_run = false;               ///< and that robot's policy has no way to go on
+    std::size_t accepted = 0;            ///< number of robots whose answer was taken
+    std::optional<Rejection> rejection;  ///< the first fault, if there is any
+    bool is_fault = false;               ///< the values are invalid for some robot, which counts as a miss at once
+    bool ends_run = false;               ///< and that robot's policy ends the run
   };
-  /// Takes the answer to a frame that was sent to the holder of `held`, at time `now`.
+  /// Takes the answer to a frame that was sent to the holder of the robots `held`, at time `now`.
   Taken take(std::span<const std::uint32_t> held, std::uint64_t frame_tick, std::span<const std::uint32_t> robots,
              std::span<const double> values, lockstep::Time now = lockstep::Time{0});
 
-  /// Gives the complete tick's outcomes to the simulation, in the order of the robots. The robots whose commands are
-  /// others than before, good until the next call.
+  /// Passes the outcomes of the complete tick to the simulation, in the order of the robots. Returns the robots whose
+  /// commands have changed, valid until the next call.
   std::span<const std::uint32_t> apply();
 
-  /// At a boundary: the barrier, and the observations of frames whose answers do not act yet.
+  /// Saves, at a boundary, the barrier and the observations of frames whose answers have no effect yet.
   void save(SnapshotWriter& writer) const;
-  /// Of an exchange of the same experiment, right after the construction of this one, with the simulation restored.
-  /// Throws SnapshotError.
+  /// Restores a state of an exchange of the same experiment. Call it right after the construction, with the simulation
+  /// restored. Throws SnapshotError.
   void restore(SnapshotReader& reader);
 
  private:
@@ -64,10 +65,11 @@ class Exchange {
 
   Simulation& simulation_;
   lockstep::Barrier barrier_;
-  // By robot: delay + 1 observations, by tick modulo delay + 1. None without a delay: the simulation has the only one.
+  // By robot: delay + 1 observations, by tick modulo delay + 1. Empty without a delay: then the simulation has the only
+  // one.
   std::vector<std::vector<double>> history_;
   std::vector<std::uint32_t> due_;      // reused
-  std::vector<std::uint32_t> changed_;  // of the last tick
+  std::vector<std::uint32_t> changed_;  // robots of the last tick
 };
 
 }  // namespace cohort::session

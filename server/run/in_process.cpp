@@ -17,7 +17,7 @@ namespace cohort::session {
 
 namespace {
 
-// Those of `robots` that are due at `tick`.
+// Asks those of `robots` that are due at `tick`.
 Exchange::Taken ask(Exchange& exchange, Exchange::Frame& frame, const description::Experiment& experiment,
                     std::span<const std::uint32_t> robots, std::uint64_t tick, FrameHandler& host) {
   exchange.fill_frame(frame, robots, tick);
@@ -31,7 +31,7 @@ Exchange::Taken ask(Exchange& exchange, Exchange::Frame& frame, const descriptio
   return exchange.take(robots, tick, frame.robots, answer, RunMonitor::Clock::now().time_since_epoch());
 }
 
-// What a snapshot has of frames without an answer: others were asked, and had not answered when it was taken.
+// Repeats the unanswered frames of a snapshot, whose controllers had not answered when it was taken.
 void ask_again(Exchange& exchange, const description::Experiment& experiment, std::span<const std::uint32_t> robots,
                std::uint64_t now, FrameHandler& host) {
   std::map<std::uint64_t, std::vector<std::uint32_t>> robots_of;  // by tick
@@ -42,14 +42,14 @@ void ask_again(Exchange& exchange, const description::Experiment& experiment, st
   for (const auto& [tick, unanswered] : robots_of) ask(exchange, frame, experiment, unanswered, tick, host);
 }
 
-// Controllers of robots of one team that came together: at first, or later at one boundary.
+// The controllers of robots of one team that joined together, at the start or later at one boundary.
 struct Driven {
   std::size_t team = 0;
   std::vector<std::uint32_t> robots;
   std::unique_ptr<FrameHandler> host;
 };
 
-// Of each team, its robots from the id `first` on, if there are any.
+// Starts the controllers of each team's robots with ids from `first` on, if there are any.
 std::vector<Driven> start_controllers(const Simulation& simulation, std::uint32_t first,
                                       const std::vector<ControllerKind>& controllers, wire::StartReason reason) {
   const std::vector<wire::RobotDescription> descriptions = describe_kinds(simulation);
@@ -92,7 +92,7 @@ void offer_snapshot(const RunListener& listener, const std::function<SessionSnap
   try {
     listener.can_save(take);
   } catch (const SnapshotError&) {
-    // The run has an event of it, and goes on.
+    // The run notes an event, and continues.
   }
 }
 
@@ -127,7 +127,7 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
     Exchange::Frame frame;  // reused
     while (!monitor.is_over()) {
       if (stop) return monitor.finish(RunResult::End::interrupted);
-      if (simulation.robot_count() > admitted) {  // some have come
+      if (simulation.robot_count() > admitted) {  // robots have joined
         exchange.add_newcomers();
         std::ranges::move(start_controllers(simulation, admitted, controllers, wire::StartReason::first),
                           std::back_inserter(all));

@@ -8,10 +8,10 @@
 
 namespace cohort::session {
 
-/// Runs an experiment with its controllers in this process, without a network: the same barrier, the same frames and
-/// the same answers as over DDS. `controllers`: one for each team, in order. Robots that come while it runs are
-/// admitted at that boundary: `RunListener::stepped` may spawn them by `Simulation::act`. Returns when the run is over
-/// or soon after `stop` is set.
+/// Runs an experiment with its controllers in this process, without a network: the same barrier, frames and answers as
+/// over DDS. `controllers`: one for each team, in order. Robots that join during the run are admitted at that boundary:
+/// `RunListener::stepped` may spawn them with `Simulation::act`. Returns when the run is over or soon after `stop` is
+/// set.
 RunResult run_in_process(const description::Experiment& experiment, Simulation& simulation,
                          const std::vector<ControllerKind>& controllers, const RunOptions& options,
                          const RunListener& listener, const std::atomic<bool>& stop);

@@ -8,18 +8,18 @@
 #include "server/description/experiment.hpp"
 #include "server/simulation/simulation.hpp"
 
-/// The robots of a simulation in the words of the wire.
+/// The description of a simulation's robots in protocol messages.
 namespace cohort::session {
 
-/// One for each kind of robot; RobotDescription::description is its index in Simulation::kinds().
+/// Returns one for each kind of robot; RobotDescription::description is its index in Simulation::kinds().
 std::vector<wire::RobotDescription> describe_kinds(const Simulation& simulation);
 
-/// Returns a number made from the contents of a description, `description` itself left out: any server gives the same
-/// description the same number, and another one another number, but for one chance in four billion.
+/// Returns a hash of the contents of a description without `description` itself: all servers give equal descriptions
+/// the same number. Different descriptions get the same number with a probability of one in four billion.
 std::uint32_t number_of(const wire::RobotDescription& kind);
 
-/// Gives an Admit its robots, with what their teams say of them. The seed for a controller's own randomness depends on
-/// the experiment's seed and the robot's name only.
+/// Adds the robots to an Admit, with the settings of their teams. The seed for a controller's own randomness depends
+/// only on the experiment's seed and the robot's name.
 void admit_robots(wire::Admit& admit, const description::Experiment& experiment, const Simulation& simulation,
                   std::span<const std::uint32_t> robots);
 

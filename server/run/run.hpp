@@ -16,59 +16,59 @@
 #include "server/run/session_snapshot.hpp"
 #include "server/simulation/simulation.hpp"
 
-/// What a run over DDS and a run in one process have in common.
+/// The common parts of runs over DDS and in one process.
 namespace cohort::session {
 
-/// What whoever controls a run wants in its place.
+/// A request of a client to replace the run.
 struct NextRun {
   std::uint64_t seed = 0;
-  std::shared_ptr<const SessionSnapshot> snapshot{};  ///< where it goes on from; none: from the beginning
+  std::shared_ptr<const SessionSnapshot> snapshot{};  ///< the snapshot to continue from; null: from the beginning
   PlaybackState state = PlaybackState::playing;
   double speed = 0.0;
-  std::string rewound{};  ///< why the server itself went back to the snapshot; empty: somebody asked for this run
+  std::string rewound{};  ///< why the server itself went back to the snapshot; empty: a client requested this run
 };
 
 struct RunOptions {
-  double speed = 0.0;  ///< simulated seconds per wall second at the most; 0: as fast as it goes
-  PlaybackState state = PlaybackState::playing;  ///< at first
-  /// The simulation was restored from it, and the exchange has to be too; none: the run begins at the beginning.
+  double speed = 0.0;                            ///< maximum simulated seconds per wall second; 0: as fast as possible
+  PlaybackState state = PlaybackState::playing;  ///< initial state
+  /// The snapshot that the simulation was restored from, to restore the exchange too; null: the run starts at the
+  /// beginning.
   std::shared_ptr<const SessionSnapshot> from{};
-  /// Simulated time between snapshots that stay in memory, so that whoever controls the run can go back; 0: none do.
+  /// Simulated time between snapshots in memory, which clients can go back to; 0: no snapshots.
   std::chrono::nanoseconds keep_interval{0};
-  /// Whether it ends with an error when its recording does.
+  /// End the run with an error when its recording fails.
   bool needs_recording = false;
-  std::string rewound{};  ///< as in NextRun
-  /// Makes the world of a reset or of a snapshot, before this run is ended for it. What it throws is the answer to
-  /// whoever asked, and the run goes on. Empty: there are neither resets nor snapshots to load.
+  std::string rewound{};  ///< see NextRun
+  /// Builds the world of a reset or of a snapshot, before this run is ended for it. Its exceptions are the reply to the
+  /// client, and the run continues. Empty: resets and loading of snapshots are not supported.
   std::function<void(const NextRun&)> prepare{};
 };
 
-/// Something that somebody did to a running world at a boundary, before its frames went out: docs/protocol.md,
-/// "Control".
+/// A client's operation on a running world at a boundary, before its frames were sent: docs/protocol.md, "Control".
 struct ControlEvent {
   std::uint64_t tick = 0;
   std::string operation;          ///< its name, such as `SpawnEntity`
-  std::string text;               ///< a sentence for people: who, and what
-  std::vector<std::byte> action;  ///< of one that changes the world: what Simulation::act was given, for replay
+  std::string text;               ///< a sentence for people: what was done, and who requested it
+  std::vector<std::byte> action;  ///< for an action on the world: the bytes for Simulation::act
 };
 
-/// How far a run is.
+/// The progress of a run.
 struct Progress {
-  std::chrono::nanoseconds time{0};      ///< simulated
-  std::chrono::nanoseconds duration{0};  ///< simulated, of the whole run
+  std::chrono::nanoseconds time{0};      ///< simulated time
+  std::chrono::nanoseconds duration{0};  ///< simulated time of the whole run
   double real_time_factor = 0.0;         ///< over the last report's interval
   bool started = false;                  ///< false while controllers are missing at the start
-  bool unrecorded = false;               ///< it was to be recorded, and is no more
-  bool paused = false;                   ///< until whoever controls the run lets it go on
-  std::vector<std::string> awaited;      ///< names of the robots that are waited for, in order
-  std::string awaited_from;              ///< who drives the first of them, if anybody does
-  std::chrono::nanoseconds waiting{0};   ///< wall time since the wait began
+  bool unrecorded = false;               ///< its recording has ended early
+  bool paused = false;                   ///< until a client continues the run
+  std::vector<std::string> awaited;      ///< names of the robots that the run waits for, in order
+  std::string awaited_from;              ///< the client that drives the first of them, if any
+  std::chrono::nanoseconds waiting{0};   ///< wall time since the start of the wait
 };
 
 /// An answer that missed its deadline.
 struct Miss {
-  std::uint64_t tick = 0;        ///< at which it was needed
-  std::uint64_t frame_tick = 0;  ///< of the frame that it would have answered
+  std::uint64_t tick = 0;        ///< tick at which it was needed
+  std::uint64_t frame_tick = 0;  ///< tick of the frame that it would have answered
   std::uint32_t robot = 0;
   description::OnLate consequence = description::OnLate::hold;
   std::chrono::nanoseconds waited{0};  ///< wall time
@@ -76,55 +76,62 @@ struct Miss {
 
 struct RunResult;
 
-/// Told what happens, on the thread that runs. Each may be empty.
+/// Callbacks of a run, on its thread. Each may be empty.
 struct RunListener {
   std::function<void(const Progress&)> progress{};  ///< a few times a second, also while waiting
-  std::function<void(const RunEvent&)> event{};     ///< each time; its count is that of this time
-  std::function<void(const RunEvent&)> news{};      ///< the first event of its kind and text
+  std::function<void(const RunEvent&)> event{};     ///< each event; its count is the number of new occurrences
+  std::function<void(const RunEvent&)> news{};      ///< the first event of each kind and text
   std::function<void(const Miss&)> miss{};
-  /// A step is done, or the run begins: no frame of this tick is out.
+  /// Called after each step and at the start of the run, before the frames of this tick are sent.
   std::function<void()> stepped{};
-  /// The state of a tick is complete and its frames are out: once for each tick, from the run's first to its last.
+  /// Called when the state of a tick is complete and its frames are sent: once for each tick, from the run's first to
+  /// its last.
   std::function<void()> boundary{};
-  /// Of a run in one process: at each boundary, before its frames go out. `take` makes a snapshot of the run as it is.
+  /// Only for a run in one process: called at each boundary, before its frames are sent. `take` takes a snapshot of the
+  /// current run.
   std::function<void(const std::function<SessionSnapshot()>& take)> can_save{};
-  /// Of a run in one process: once, before it calls its controllers. `fail` ends the run where it is, and makes its
-  /// result: for a controller that ends the process. It is good until the run returns.
+  /// Only for a run in one process: called once, before its controllers are called. `fail` ends the run at its current
+  /// state, and makes its result; for a controller that ends the process. It is valid until the run returns.
   std::function<void(std::function<RunResult(const std::string& why)> fail)> can_fail{};
-  /// A tick has its answers: the wall time since its first frame was sent.
+  /// Called when a tick has its answers, with the wall time since its first frame was sent.
   std::function<void(std::chrono::nanoseconds)> barrier{};
-  /// The commands of a tick are with the simulation, which is about to step: those of these robots have changed.
+  /// Called when the simulation has the commands of a tick, before it steps, with the robots whose commands have
+  /// changed.
   std::function<void(std::span<const std::uint32_t>)> commands{};
   std::function<void(const ControlEvent&)> control{};
-  /// Asked at each boundary, and while the run waits: why it is recorded no more, if it was to be.
+  /// Called at each boundary, and while the run waits. Returns why a required recording has ended, if it has.
   std::function<std::optional<std::string>()> unrecorded{};
-  std::function<void()> stopped{};  ///< the last step is done, or there will be none
+  /// Called after the last step, or when there will be none. `unrecorded` is called once more afterwards.
+  std::function<void()> stopped{};
 };
 
 struct RunResult {
   enum class End {
-    finished,     ///< the whole duration was simulated, or a stop condition of the experiment holds
-    interrupted,  ///< asked to stop
+    finished,     ///< the whole duration was simulated, or a stop condition of the experiment was met
+    interrupted,  ///< stopped by a signal or `stop`
     failed,       ///< `error` says why
-    shut_down,    ///< whoever controls it wanted an end
-    reset,        ///< `next` is to be run in its place, from the beginning
-    restored,     ///< the same from a snapshot
+    shut_down,    ///< ended by a client
+    reset,        ///< `next` replaces it, from the beginning
+    restored,     ///< `next` replaces it, from a snapshot
   };
   End end = End::finished;
   std::string error;
-  std::optional<NextRun> next{};  ///< of reset and restored
-  std::string stop_reason;        ///< the stop condition that ended it; empty if none did
+  std::optional<NextRun> next{};  ///< for `reset` and `restored`
+  std::string unrecorded{};       ///< why the recording ended before its run; empty if it did not
+  std::string stop_reason;        ///< the stop condition that was met; empty if none was
   std::uint64_t ticks = 0;
   std::chrono::nanoseconds sim_time{0};
   std::chrono::nanoseconds wall_time{0};  ///< from the first frame to the last step
   std::uint64_t state_hash = 0;
   std::uint32_t robots = 0;
-  std::vector<std::string> newcomers;   ///< of these the names of those that came in mid-run, by their ids
-  lockstep::LatencyHistogram barrier;   ///< from the first frame of a tick sent to the last answer needed
+  std::vector<std::string> newcomers;   ///< names of the robots that joined during the run, by id
+  lockstep::LatencyHistogram barrier;   ///< from the first sent frame of a tick to the last required answer
   std::uint64_t late = 0;               ///< answers that missed their deadline
-  std::uint64_t resent = 0;             ///< frames that were sent again
-  std::vector<Miss> misses;             ///< of these the first million, in order
-  lockstep::LatencyHistogram lateness;  ///< at the asked speed, how late each tick began; empty if none is asked
+  std::uint64_t resent = 0;             ///< frames that were resent
+  std::uint64_t repeated = 0;           ///< answers to frames that already had one, or that have ended
+  std::vector<Miss> misses;             ///< the first million missed answers, in order
+  lockstep::LatencyHistogram lateness;  ///< start of each tick relative to the requested speed; empty without one
+  std::uint64_t late_ticks = 0;         ///< ticks that started more than one step late at that speed
   TouchCounts touches;
   std::vector<RunEvent> events;
 };

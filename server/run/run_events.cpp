@@ -18,7 +18,7 @@ bool EventLog::add(std::uint64_t tick, const std::string& kind, const std::strin
     ++of_kind;
   }
   if (of_kind == most_of_kind) {
-    add(tick, "more", "further events of the kind '" + kind + "' are only counted", count);
+    add(tick, "more", "further events of the kind '" + kind + "' are counted but not listed", count);
     return false;
   }
   events_.push_back({tick, kind, text, count, tick});

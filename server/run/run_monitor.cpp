@@ -34,13 +34,14 @@ void RunMonitor::stop() {
   if (std::exchange(stopped_, true)) return;
   if (started_) result_.wall_time = Clock::now() - start_;
   if (listener_.stopped) listener_.stopped();
+  see_whether_recorded();
 }
 
 void RunMonitor::stepped() {
   for (const std::string& body : simulation_.quarantined()) add_event("quarantined", body);
   for (const std::string& text : simulation_.happened()) add_event("event", text);
   if (listener_.stepped) listener_.stepped();
-  if (is_over()) at_boundary();  // no frame goes out any more
+  if (is_over()) at_boundary();  // no more frames are sent
 }
 
 void RunMonitor::at_boundary() {
@@ -50,7 +51,7 @@ void RunMonitor::at_boundary() {
   see_whether_recorded();
 }
 
-// A person who waits for a recording learns at once that there will be none.
+// Reports a failed recording at once to a user who waits for it.
 void RunMonitor::see_whether_recorded() {
   if (unrecorded_ || !listener_.unrecorded) return;
   unrecorded_ = listener_.unrecorded();
@@ -60,7 +61,7 @@ void RunMonitor::see_whether_recorded() {
 std::optional<RunMonitor::Clock::time_point> RunMonitor::due_time() const {
   if (options_.speed <= 0.0) return std::nullopt;
   const std::chrono::nanoseconds simulated = simulation_.time() - pace_start_time_;
-  constexpr double never = 1e18;  // [ns], 30 years: at a speed of next to nothing
+  constexpr double never = 1e18;  // [ns], 30 years: for a speed of almost zero
   const double wall = std::min(static_cast<double>(simulated.count()) / options_.speed, never);
   return pace_start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::nano>(wall));
 }
@@ -108,7 +109,7 @@ void RunMonitor::controlled(ControlEvent event) {
 }
 
 void RunMonitor::add_unsaved(const std::string& whose, const std::string& why) {
-  add_event("unsaved", "there is no snapshot: " + unsaved_.try_emplace(whose, why).first->second);
+  add_event("unsaved", "no snapshot could be taken: " + unsaved_.try_emplace(whose, why).first->second);
 }
 
 void RunMonitor::add_miss(const lockstep::Barrier::Miss& miss) {
@@ -118,7 +119,7 @@ void RunMonitor::add_miss(const lockstep::Barrier::Miss& miss) {
   if (result_.misses.size() < most_misses) result_.misses.push_back(noted);
   if (listener_.miss) listener_.miss(noted);
   add_event("missed", simulation_.robot_name(miss.robot) +
-                          (miss.refused ? " gave an answer that cannot act" : " did not answer in time"));
+                          (miss.refused ? " gave an invalid answer" : " did not answer in time"));
 }
 
 RunResult RunMonitor::finish(RunResult::End end, const std::string& error) {
@@ -126,6 +127,7 @@ RunResult RunMonitor::finish(RunResult::End end, const std::string& error) {
   const bool needs_more = unrecorded_ && options_.needs_recording && end == RunResult::End::finished;
   result_.end = needs_more ? RunResult::End::failed : end;
   result_.error = printable(needs_more ? *unrecorded_ : error, std::string::npos, Lines::kept);
+  result_.unrecorded = printable(unrecorded_.value_or(""), std::string::npos, Lines::kept);
   result_.stop_reason = printable(simulation_.stop_reason().value_or(""));
   result_.ticks = simulation_.tick();
   result_.sim_time = simulation_.time();

@@ -12,7 +12,7 @@
 
 namespace cohort::session {
 
-/// Watches one run and makes its result: wall time, pace, progress reports, events. Not thread-safe.
+/// A monitor of one run, which makes its result: wall time, pace, progress reports, events. Not thread-safe.
 class RunMonitor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -20,20 +20,21 @@ class RunMonitor {
   RunMonitor(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
              RunListener listener);
 
-  /// The whole duration is simulated, a stop condition holds, or the recording that it needs has ended.
+  /// Returns true if the whole duration is simulated, a stop condition is met, or a required recording has ended.
   bool is_over() const {
     return simulation_.tick() >= total_ticks_ || simulation_.stop_reason() || (unrecorded_ && options_.needs_recording);
   }
-  void start();  ///< the first frame is about to go out
-  void stop();   ///< the last step is done, or there will be none
-  /// A step is done.
+  void start();  ///< before the first frame is sent
+  void stop();   ///< after the last step
+  /// Notes a completed step.
   void stepped();
-  /// The frames of this tick are out.
+  /// Notes that the frames of this tick were sent.
   void at_boundary();
   void commanded(std::span<const std::uint32_t> changed) const {
     if (listener_.commands) listener_.commands(changed);
   }
-  /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.
+  /// Reports progress if the last report is old enough, or if `now_anyway`. `complete` fills in the robots that the run
+  /// waits for.
   template <class Complete>
   void report(bool now_anyway, Complete&& complete) {
     const Clock::time_point now = Clock::now();
@@ -44,12 +45,12 @@ class RunMonitor {
     listener_.progress(progress);
   }
   Clock::time_point next_report() const { return last_report_ + report_interval; }
-  /// When the next tick may begin at the asked speed; nothing if none is asked. From the run's beginning or its last
-  /// change of pace, so that simulated and wall time never drift apart.
+  /// Returns when the next tick may begin at the requested speed; nothing if there is none. Counted from the start of
+  /// the run or its last change of pace, so that simulated and wall time never drift apart.
   std::optional<Clock::time_point> due_time() const;
-  /// A change of pace, without a gap where the run was at its pace before.
+  /// Changes the pace, without a gap if the run kept its pace before.
   void set_speed(double speed);
-  /// The wall time until now does not count for the pace.
+  /// Excludes the wall time until now from the pace.
   void resume();
   double speed() const { return options_.speed; }
   const RunOptions& options() const { return options_; }
@@ -61,20 +62,26 @@ class RunMonitor {
     result_.barrier.add(latency);
     if (listener_.barrier) listener_.barrier(latency);
   }
-  /// What a snapshot that is taken, or that the run goes on from, has not of its controllers; and that it is of a build
-  /// with other results.
+  /// Notes what a snapshot that is taken or restored lacks of its controllers' state, and that it is from a build with
+  /// other results.
   void note_left_out(const SessionSnapshot& snapshot) {
     if (const std::string why = why_results_differ(snapshot.build); !why.empty())
       add_event("other_build", "the snapshot: " + why);
     for (const std::string& sentence : what_is_left_out(snapshot, simulation_.experiment()))
       add_event("unsaved", sentence);
   }
-  /// A snapshot cannot be taken. `whose`: controllers that cannot save; each is told with its first reason, once.
+  /// Notes that a snapshot cannot be taken. `whose`: controllers that cannot save; only the first reason of each is
+  /// reported.
   void add_unsaved(const std::string& whose, const std::string& why);
   void add_resent(std::uint64_t frames) { result_.resent += frames; }
-  void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
+  void add_repeated(std::uint64_t answers) { result_.repeated += answers; }
+  void add_lateness(std::chrono::nanoseconds lateness) {
+    result_.lateness.add(lateness);
+    if (static_cast<double>(lateness.count()) * options_.speed > static_cast<double>(step_.count()))
+      ++result_.late_ticks;
+  }
   void add_miss(const lockstep::Barrier::Miss& miss);
-  /// The result, which is complete now. A second time if what ended the run went wrong.
+  /// Completes and returns the result. May be called again if ending the run failed.
   RunResult finish(RunResult::End end, const std::string& error = {});
 
  private:
@@ -90,16 +97,16 @@ class RunMonitor {
   std::uint64_t total_ticks_;
   bool started_ = false;
   bool stopped_ = false;
-  std::optional<std::string> unrecorded_;       // why not
-  std::optional<std::uint64_t> last_boundary_;  // that the listener was told of
+  std::optional<std::string> unrecorded_;       // reason
+  std::optional<std::uint64_t> last_boundary_;  // the last one that the listener was told of
   Clock::time_point start_;
-  // The pace is counted from here.
+  // Reference point of the pace.
   Clock::time_point pace_start_;
-  std::chrono::nanoseconds pace_start_time_{0};  // simulated
+  std::chrono::nanoseconds pace_start_time_{0};  // simulated time
   Clock::time_point last_report_;
-  std::chrono::nanoseconds last_report_time_{0};  // simulated
+  std::chrono::nanoseconds last_report_time_{0};  // simulated time
   EventLog log_;
-  std::map<std::string, std::string> unsaved_;  // why, by whose
+  std::map<std::string, std::string> unsaved_;  // first reason, by controllers
   RunResult result_;
 };
 

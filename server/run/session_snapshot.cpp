@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t mark = 0x544f485354524843;  // "CHRTSHOT"
 constexpr std::uint32_t format = 4;
-constexpr std::uint32_t format_without_commit = 3;  // is read too
+constexpr std::uint32_t format_without_commit = 3;  // can also be read
 constexpr std::size_t hash_size = sizeof(std::uint64_t);
 
 std::uint64_t hash_of(std::span<const std::byte> bytes) {
@@ -65,8 +65,8 @@ ControllerStates read_states(SnapshotReader& reader) {
     state->controller = read_bytes<std::string>(reader);
     state->bytes = read_bytes<std::vector<std::byte>>(reader);
     if (state->bytes.size() > largest_state)
-      throw SnapshotError("the snapshot has " + std::to_string(state->bytes.size()) +
-                          " bytes of one controller's state, and " + std::to_string(largest_state) + " are the most");
+      throw SnapshotError("snapshot: the state of a controller has " + std::to_string(state->bytes.size()) +
+                          " bytes, expected at most " + std::to_string(largest_state));
   }
   return states;
 }
@@ -98,8 +98,8 @@ std::vector<std::string> what_is_left_out(const SessionSnapshot& snapshot, const
   if (snapshot.tick == 0) return sentences;
   for (const description::Team& team : experiment.teams)
     if (states_of(snapshot, team.robots).size() < team.robots.size())
-      sentences.push_back("the snapshot has nothing of what the controllers of team '" + team.name + "' (" +
-                          team.controller + ") remember: whoever goes on from it starts them anew");
+      sentences.push_back("the snapshot has no state of the controllers of team '" + team.name + "' (" +
+                          team.controller + "): a run from this snapshot starts them without state");
   return sentences;
 }
 
@@ -128,22 +128,22 @@ SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes) {
     reader.read(its_mark);
     reader.read(its_format);
   } catch (const SnapshotError&) {
-    throw SnapshotError("this is no snapshot of a session: it has only " + std::to_string(bytes.size()) + " bytes");
+    throw SnapshotError("this is not a snapshot of a session: it has only " + std::to_string(bytes.size()) + " bytes");
   }
-  if (its_mark != mark) throw SnapshotError("this is no snapshot of a session: it begins otherwise");
+  if (its_mark != mark) throw SnapshotError("this is not a snapshot of a session: wrong first bytes");
   if (its_format != format && its_format != format_without_commit)
-    throw SnapshotError("the snapshot has format " + std::to_string(its_format) + ", and this program reads format " +
+    throw SnapshotError("the snapshot has format " + std::to_string(its_format) + ", but this program reads format " +
                         std::to_string(format));
   SessionSnapshot snapshot;
   snapshot.build = {read_bytes<std::string>(reader), "", ""};
   const std::string& version = snapshot.build.version;
   if (version != COHORT_VERSION)
-    throw SnapshotError("the snapshot is of version '" + printable(version, 20) + "' of Cohort, and this is version " +
+    throw SnapshotError("the snapshot is of version '" + printable(version, 20) + "' of Cohort, but this is version " +
                         COHORT_VERSION);
   const std::span<const std::byte> hashed = bytes.first(bytes.size() - hash_size);
   std::uint64_t hash = 0;
   std::memcpy(&hash, bytes.data() + hashed.size(), sizeof hash);
-  if (hash != hash_of(hashed)) throw SnapshotError("the snapshot is damaged or cut short: its hash does not fit");
+  if (hash != hash_of(hashed)) throw SnapshotError("the snapshot is damaged or incomplete: its hash does not match");
   if (its_format == format) {
     snapshot.build.commit = read_bytes<std::string>(reader);
     snapshot.build.arithmetic = read_bytes<std::string>(reader);
@@ -155,7 +155,7 @@ SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes) {
   snapshot.exchange = read_bytes<std::vector<std::byte>>(reader);
   snapshot.controllers = read_states(reader);
   reader.read(hash);
-  if (!reader.is_at_end()) throw SnapshotError("the snapshot goes on after its end");
+  if (!reader.is_at_end()) throw SnapshotError("the snapshot has extra bytes at its end");
   return snapshot;
 }
 
@@ -168,17 +168,17 @@ void expect_same_experiment(const SessionSnapshot& snapshot, const description::
 void restore(const SessionSnapshot& snapshot, Simulation& simulation) {
   simulation.restore(snapshot.simulation);
   if (simulation.tick() != snapshot.tick)
-    throw SnapshotError("the snapshot says that it is of tick " + std::to_string(snapshot.tick) +
-                        ", and its world of tick " + std::to_string(simulation.tick()));
+    throw SnapshotError("snapshot: the header has tick " + std::to_string(snapshot.tick) + ", but the world has tick " +
+                        std::to_string(simulation.tick()));
   if (!snapshot.controllers.empty() && snapshot.controllers.size() != simulation.robot_count())
     throw SnapshotError("the snapshot has the controllers of " + std::to_string(snapshot.controllers.size()) +
-                        " robots, and its world " + std::to_string(simulation.robot_count()) + " robots");
+                        " robots, but its world has " + std::to_string(simulation.robot_count()) + " robots");
 }
 
 void restore(const SessionSnapshot& snapshot, Exchange& exchange) {
   SnapshotReader reader(snapshot.exchange);
   exchange.restore(reader);
-  if (!reader.is_at_end()) throw SnapshotError("the snapshot's barrier goes on after its end");
+  if (!reader.is_at_end()) throw SnapshotError("snapshot: the barrier has extra bytes at its end");
 }
 
 SessionSnapshot read_snapshot(const std::filesystem::path& file) {

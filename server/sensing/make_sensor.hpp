@@ -6,7 +6,7 @@
 
 namespace cohort::sensing {
 
-/// The sensor of the device at `mount`, or null if it senses nothing.
+/// Returns the sensor of the device at `mount`, or null if the device has none.
 std::unique_ptr<Sensor> make_sensor(const Mount& mount);
 
 }  // namespace cohort::sensing

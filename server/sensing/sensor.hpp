@@ -19,48 +19,47 @@
 
 namespace cohort::sensing {
 
-/// Where a sensor is mounted, and what it senses. All that it refers to must outlive the sensor.
+/// The mount of a sensor, and the objects that it senses. They must outlive the sensor.
 struct Mount {
   const physics::World& world;
   const emission::Emitters& emitters;
   const description::World& description;
   const gripping::Grippers& grippers;
   SharedViews& views;
-  BodyId body;         ///< the robot's, which is its index among the description's instances
-  DeviceId device;     ///< of the robot's model
-  std::uint64_t seed;  ///< of the experiment; with the robot's name it fixes what is random
+  BodyId body;         ///< the robot's body; also its index among the description's instances
+  DeviceId device;     ///< index in the robot's model
+  std::uint64_t seed;  ///< seed of the experiment; with the robot's name it determines all random numbers
 
   const std::string& robot_name() const { return description.instances[body.value].name; }
   const description::Model& model() const { return description.models[description.instances[body.value].model]; }
   const description::Joint& joint(std::size_t index) const { return model().joints[index]; }
 };
 
-/// Reads the world. One object for each device of each robot.
+/// A sensor that reads the world: one object for each device of each robot.
 class Sensor {
  public:
   virtual ~Sensor() = default;
-  /// The channels that `sense` fills, in order.
+  /// Returns the channels that `sense` fills, in order.
   virtual std::vector<Channel> channels() const = 0;
-  /// Writes one value for each float64 of the channels, as they are: what disturbs them comes after (SignalChain). A
-  /// pure function of the state of the world and of the sensor, and of the tick; runs at once with other sensors, from
-  /// any thread.
+  /// Writes one exact value for each float64 of the channels; errors are added later (SignalChain). A pure function of
+  /// the state of the world and of the sensor, and of the tick. May run concurrently with other sensors, on any thread.
   virtual void sense(std::uint64_t tick, std::span<double> values) const = 0;
 
-  /// Whether it asks for joint_wrench or link_acceleration of its robot's body, which the world then has to keep.
+  /// Returns true if it uses joint_wrench or link_acceleration of its robot's body, which the world then has to record.
   virtual bool needs_record() const { return false; }
 
-  /// Of a sensor with a shared view: tells the view that `sense` will need it. Called for those that measure at a tick,
-  /// on one thread and in the order of the robots, before the views are updated and any sensor senses there.
+  /// For a sensor with a shared view: tells the view that `sense` will need it. Called for sensors that measure at a
+  /// tick, on one thread and in the order of the robots, before the views are updated and any sensor senses there.
   virtual bool has_shared_view() const { return false; }
   virtual void ask_shared_view() {}
 
-  /// Of a sensor with a memory: takes note of this tick, before it senses and whether it is asked or not.
-  /// `was_delivered`: the robot was given what was sensed at the tick before. Called again at the same tick, when
-  /// something has been changed from outside, it takes note of this tick anew.
+  /// For a sensor with a memory: notes this tick, before it senses and even if the robot is not due. `was_delivered`:
+  /// the robot received the readings of the previous tick. If called again at the same tick after a change from
+  /// outside, it replaces its note.
   virtual void remember(std::uint64_t /*tick*/, bool /*was_delivered*/) {}
-  /// Whether the robot can do nothing in the step to come but what is neutral.
+  /// Returns true if the robot can only have its neutral command in the next step.
   virtual bool disables_robot() const { return false; }
-  /// What it remembers.
+  /// Adds its memory to the hash.
   virtual void hash(StateHash& /*hash*/) const {}
   virtual void save(SnapshotWriter& /*writer*/) const {}
   virtual void restore(SnapshotReader& /*reader*/) {}

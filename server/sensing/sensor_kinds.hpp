@@ -6,19 +6,18 @@
 
 namespace cohort::sensing {
 
-/// What a kind of sensor builds on: a device as the model has it, and where it is mounted.
+/// The base of a kind of sensor: a device of a model, and its mount.
 template <class Device>
 class SensorOf : public Sensor {
  public:
   SensorOf(const Device& device, const Mount& mount) : device_(device), mount_(mount) {}
 
  protected:
-  const Device& device_;  // of the model
+  const Device& device_;  // in the model
   Mount mount_;
 };
 
-// The register of sensors, by what a model says of them: each stands in a file of its own, and a new kind is one more
-// line here.
+// The register of sensors, by their type in a model. Each has a file of its own, and a new kind adds one line here.
 std::unique_ptr<Sensor> make_sensor(const description::Accelerometer& sensor, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::AirPressureSensor& sensor, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::Altimeter& altimeter, const Mount& mount);
@@ -36,6 +35,7 @@ std::unique_ptr<Sensor> make_sensor(const description::LightSensors& sensors, co
 std::unique_ptr<Sensor> make_sensor(const description::LogicalCamera& camera, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::Magnetometer& sensor, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::Microphones& microphones, const Mount& mount);
+std::unique_ptr<Sensor> make_sensor(const description::NavSat& sensor, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::OmnidirectionalCamera& camera, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::PanoramicCamera& camera, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::ProximityRing& ring, const Mount& mount);

@@ -8,19 +8,20 @@
 
 namespace cohort::sensing {
 
-/// What sensors of many robots find out together, before any of them senses: for less than each would on its own.
+/// A computation that is shared by the sensors of many robots, before any of them senses, as that is faster than
+/// separate ones.
 class SharedView {
  public:
   virtual ~SharedView() = default;
-  /// For the sensors that have asked since the last update (Sensor::ask_shared_view). After `Emitters::update`; what is
-  /// found holds until the next one. The same for any number of threads.
+  /// Computes for the sensors that requested it since the last update (Sensor::ask_shared_view). Must follow
+  /// `Emitters::update`; the result is valid until the next update. It is the same for any number of threads.
   virtual void update(WorkerPool& workers) = 0;
 };
 
-/// The shared views of one world: one of each kind that its sensors need. One thread calls it.
+/// The shared views of one world: one of each kind that its sensors need. For one thread.
 class SharedViews {
  public:
-  /// The one of this kind, which is made of `parts`, references that must outlive this, the first time.
+  /// Returns the view of this kind. The first call creates it from `parts`, references that must outlive this object.
   template <class View, class... Parts>
   View& get(const Parts&... parts) {
     for (const auto& view : views_)

@@ -68,7 +68,7 @@ void AttachedClient::write_frame(ServedRun& run, std::uint64_t tick, bool resent
     resend.start(tick, now);
     answer_times.sent(tick, now);
   }
-  send(observation, message, &run);  // again, if it is lost
+  send(observation, message, &run);  // sent again if it is lost
 }
 
 void AttachedClient::send_state(wire::ControllerState message, ServedRun& run) {
@@ -77,7 +77,7 @@ void AttachedClient::send_state(wire::ControllerState message, ServedRun& run) {
   message.epoch = epoch;
   try {
     if (!states_) states_.emplace(participant_, wire::partition_of(id()));
-    send(*states_, message, &run);  // what is lost is asked for again
+    send(*states_, message, &run);  // the client asks again for lost parts
   } catch (const wire::WireError& error) {
     run.monitor.add_event("unsent", label + ": " + error.what());
   }

@@ -18,41 +18,41 @@
 
 namespace cohort::session {
 
-/// A client of a server: who it is, what it asked for, and what it is sent. On the thread of the run.
+/// A client of a server: its identity, the robots it asked for, and the messages it is sent. For the thread of the run.
 struct AttachedClient {
-  /// `place`: in the order in which clients came.
+  /// `place`: position in the order in which clients arrived.
   AttachedClient(const Inbox::Arrival& arrival, std::uint64_t place);
 
   wire::Join join;
   std::uint64_t place;
-  const std::optional<wire::Identity>& identity;  // of whoever it is, not of whom it says to be
+  const std::optional<wire::Identity>& identity;  // authenticated by DDS, not claimed by the client
   std::string label;                              // for people: controller, process and host
   wire::Writer<wire::Admit> admit;
   wire::Writer<wire::Observation> observation;
   wire::Writer<wire::Report> report;
   bool alive = true;
   bool is_known = false;  // its Join was read
-  bool drove = false;     // in the run before, so that a new one is a reset to it
-  // Of this run.
-  std::vector<std::uint32_t> robots{};        // that it asked for
-  bool claims = false;                        // and was neither granted nor refused
-  std::vector<std::uint32_t> drives_first{};  // robots of its lease that nobody drove before it
+  bool drove = false;     // drove robots in the previous run, so a new run resets it
+  // State in this run.
+  std::vector<std::uint32_t> robots{};        // requested robots
+  bool claims = false;                        // its claim is neither granted nor refused yet
+  std::vector<std::uint32_t> drives_first{};  // robots of its lease that no client drove before
   lockstep::ResendTimer resend{};
   std::uint32_t times_resent = 0;
-  Exchange::Frame frame{};                      // reused: the last one
-  std::uint64_t epoch = 0;                      // of the lease that it went to
-  std::set<std::string> reported_rejections{};  // reasons that it was told of
+  Exchange::Frame frame{};                      // the last frame; reused
+  std::uint64_t epoch = 0;                      // the epoch of that lease
+  std::set<std::string> reported_rejections{};  // reasons that were reported to it
   lockstep::AnswerTimes answer_times{};
-  std::uint64_t late = 0;  // answers
+  std::uint64_t late = 0;  // late answers
   std::uint64_t rejected = 0;
-  std::uint64_t resent_count = 0;  // frames
+  std::uint64_t resent_count = 0;  // resent frames
   StateTransfer state{};
 
   std::uint64_t id() const { return join.client; }
-  /// Another run begins: nothing is claimed of it yet.
+  /// Resets the state for a new run, in which nothing is claimed yet.
   void begin_run();
-  /// What DDS cannot take is lost: trouble with one client is never trouble of the run, which only has an event of it.
-  /// `run`: null between runs.
+  /// Sends a message. A message that DDS cannot send is lost: a problem of one client never stops the run, which only
+  /// notes an event. `run`: null between runs.
   template <class Message>
   void send(wire::Writer<Message>& writer, const Message& message, ServedRun* run) {
     try {
@@ -62,21 +62,21 @@ struct AttachedClient {
     }
   }
   void refuse(ServedRun& run, const std::string& reason);
-  /// Its frame of this tick, if it has robots that are due. Under the lock.
+  /// Fills in the client's frame of this tick, if any of its robots is due. Requires the lock.
   void fill_frame(ServedRun& run, std::uint64_t tick, bool resent);
   void write_frame(ServedRun& run, std::uint64_t tick, bool resent);
-  /// Whether it knows of ControllerState.
+  /// Returns true if the client supports ControllerState.
   bool has_state() const { return join.minor >= wire::first_minor_with_state; }
-  /// To it, of its lease's epoch.
+  /// Sends a message to the client, with the epoch of its lease.
   void send_state(wire::ControllerState message, ServedRun& run);
-  /// Of one that drives robots, for whoever controls the run. Under the lock.
+  /// Returns the status of a client that drives robots, for clients that control the run. Requires the lock.
   wire::ControllerStatus status(ServedRun& run);
 
  private:
   void note_answers(ServedRun& run);
 
   wire::Participant& participant_;
-  std::optional<wire::Writer<wire::ControllerState>> states_{};  // made when it is needed: writers cost discovery
+  std::optional<wire::Writer<wire::ControllerState>> states_{};  // created on first use, as writers cost discovery
 };
 
 }  // namespace cohort::session

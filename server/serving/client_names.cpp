@@ -4,20 +4,20 @@ namespace cohort::session {
 namespace {
 
 std::string too_many(std::size_t most, const std::string& of) {
-  return "flood: there are " + std::to_string(most) + " clients" + of + " already";
+  return "flood: the limit of " + std::to_string(most) + " clients" + of + " is reached";
 }
 
 }  // namespace
 
 std::string ClientNames::enter(std::uint64_t client, const wire::Sender& sender,
                                const std::optional<wire::Identity>& identity) {
-  if (client == 0) return "malformed: a Join has client id 0, which is nobody's";
+  if (client == 0) return "malformed: a Join has client id 0, which is invalid";
   const auto known = names_.find(client);
   if (known != names_.end() && known->second.participant != sender.participant)
-    return "foreign: a Join comes in the name of another client";
+    return "foreign: a Join has the id of another client";
   const auto last = client_of_participant_.find(sender.participant);
   if (last != client_of_participant_.end() && last->second != client && !names_.at(last->second).gone)
-    return "foreign: a participant that has joined joins under another id";
+    return "foreign: a participant that has joined sent a Join with another id";
   const std::string name = identity ? identity->name : "";
   if (known == names_.end()) {
     if (names_.size() >= most_clients) return too_many(most_clients, "");

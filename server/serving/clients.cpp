@@ -10,7 +10,7 @@
 namespace cohort::session {
 namespace {
 
-// What a client may ask for, so that no stranger costs a tick's time.
+// Limits of a client's requests, so that no client can use up the time of a tick.
 constexpr std::size_t most_selectors = 4096;
 
 }  // namespace
@@ -56,11 +56,11 @@ void Clients::join(const Inbox::Arrival& arrival) {
   client->is_known = true;
   client->join = arrival.join;
   set_alive(*client, true);
-  // Clients join once a second, which only says that they live.
+  // Clients repeat their Join once a second as a sign of life.
   if (is_news) claim(*client);
 }
 
-// The client of this Join, with its writers. Null if it may not be attached, or cannot.
+// Returns the client of this Join, with its writers. Null if it may not or cannot be attached.
 AttachedClient* Clients::attach(const Inbox::Arrival& arrival) {
   const std::uint64_t id = arrival.join.client;
   std::string refusal;
@@ -87,15 +87,15 @@ void Clients::note_liveliness(const Inbox::Liveliness& change) {
     const std::lock_guard lock(mutex_);
     id = client_of(change.sender);
   }
-  // Of the writer of its last Join: one that was lost and found again has another, and the end of the former comes
-  // late.
+  // Only the writer of the last Join counts: a client that was lost and found again has a new writer, and the end of
+  // the old one is reported late.
   if (id) set_alive(clients_.at(*id), change.alive);
 }
 
 void Clients::note_process_end(std::uint32_t process) {
   static const std::string here = host_name();
   for (auto next = clients_.begin(); next != clients_.end();) {
-    AttachedClient& client = (next++)->second;  // which may be forgotten
+    AttachedClient& client = (next++)->second;  // may be erased below
     if (client.join.process == process && client.join.host == here) set_alive(client, false);
   }
 }
@@ -110,13 +110,13 @@ void Clients::set_alive(AttachedClient& client, bool alive) {
       run_->leases.set_alive(client.id(), alive);
       run_->monitor.add_event(alive ? "back" : "lost", client.label + " with " + run_->robots_text(lease->robots) +
                                                            (alive ? " is back" : " is gone or does not respond"));
-      // Nobody waits for a robot that does not need its controller.
+      // The run does not wait for a robot that does not require its controller.
       for (const std::uint32_t robot : lease->robots)
         if (!alive && !run_->simulation.policy(robot).required) run_->exchange.barrier().set_driven(robot, false);
       return;
     }
     if (client.claims) {
-      // A claim counts only while its client lives; a stopped process that goes on has it back.
+      // A claim counts only while its client is alive; a stopped process that continues gets it back.
       if (alive) run_->leases.claim(client.id(), client.robots);
       if (!alive) run_->leases.release(client.id());
       return;
@@ -140,12 +140,17 @@ void Clients::tell(AttachedClient& client, wire::ReportKind kind, const std::str
 void Clients::note_rejections(const Inbox::Rejected& rejected) {
   for (const auto& [key, rejections] : rejected) {
     const auto& [id, reason] = key;
-    run_->monitor.add_event("rejected", reason + " from " + label_of(id) + ": " + rejections.text, rejections.count);
+    // Such answers are expected after a frame was resent.
+    const bool is_repeat = reason == "repeated" || reason == "stale";
+    if (is_repeat)
+      run_->monitor.add_repeated(rejections.count);
+    else
+      run_->monitor.add_event("rejected", reason + " from " + label_of(id) + ": " + rejections.text, rejections.count);
     const auto found = clients_.find(id);
     if (found == clients_.end()) continue;
     AttachedClient& client = found->second;
     client.rejected += rejections.count;
-    if (reason == "repeated" || reason == "stale") continue;  // what a resent frame may bring about is no news to it
+    if (is_repeat) continue;
     if (client.reported_rejections.insert(reason).second)
       tell(client, wire::ReportKind::rejected, reason, rejections.text, rejections.tick);
   }
@@ -170,12 +175,12 @@ bool Clients::refuse_unfit(const wire::Report& report) {
   return true;
 }
 
-// What a client's selectors select in this run.
+// Claims the robots of this run that match the client's selectors.
 void Clients::claim(AttachedClient& client) {
   std::set<std::uint32_t> robots;
   std::string refusal;
   if (client.join.robots.size() > most_selectors)
-    refusal = "it asks with more than " + std::to_string(most_selectors) + " selectors: ranges say more in one";
+    refusal = "it asks with more than " + std::to_string(most_selectors) + " selectors; use ranges";
   for (const std::string& selector : client.join.robots) {
     if (!refusal.empty()) break;
     try {
@@ -194,13 +199,13 @@ void Clients::claim(AttachedClient& client) {
   run_->leases.claim(client.id(), client.robots);
 }
 
-// Empty if its identity may drive them all, or if there is no security.
+// Returns an empty text if the client's identity may drive all these robots, or if there is no security.
 std::string Clients::why_forbidden(const AttachedClient& client, const std::set<std::uint32_t>& robots) const {
   if (!client.identity) return {};
   const std::vector<std::string>& selectors = client.identity->robots;
   const std::string who = "its identity '" + client.identity->name + "' may ";
-  if (selectors.empty()) return who + "look on, and drive no robot";
-  // The same identities may serve several experiments, of which this one need not have all their robots.
+  if (selectors.empty()) return who + "observe, but not drive robots";
+  // The same identities may be used with several experiments, so this one need not have all their robots.
   const auto allowed = description::select_robots_of_any(run_->simulation.description(), selectors);
   const auto forbidden =
       std::ranges::find_if(robots, [&](std::uint32_t robot) { return !std::ranges::binary_search(allowed, robot); });
@@ -231,17 +236,17 @@ void Clients::decide_claims() {
 void Clients::admit(const lockstep::Leases::Granted& granted) {
   AttachedClient& client = clients_.at(granted.client);
   for (const std::uint64_t loser : granted.superseded) {
-    const std::string text = client.label + " has taken its robots over";
+    const std::string text = client.label + " has taken over its robots";
     tell(clients_.at(loser), wire::ReportKind::superseded, "superseded", text);
     run_->monitor.add_event("superseded", label_of(loser) + ": " + text);
   }
 
-  std::vector<std::uint64_t> frames;  // under way: asked of whoever had the robots before, and not answered
+  std::vector<std::uint64_t> frames;  // unanswered frames of the robots' previous controllers
   wire::Admit answer;
   {
     const std::lock_guard lock(mutex_);
     const lockstep::Leases::Lease& lease = *run_->leases.lease(granted.client);
-    // Of a restored run there are some before its first tick.
+    // A restored run may have unanswered frames before its first tick.
     if (run_->started || run_->monitor.options().from) frames = run_->frames_under_way(lease.robots);
     answer.client = granted.client;
     answer.run = run_->number;
@@ -267,32 +272,32 @@ void Clients::admit(const lockstep::Leases::Granted& granted) {
   client.times_resent = 0;
 }
 
-// Under the lock.
+// Requires the lock.
 wire::StartReason Clients::why_it_starts(const std::vector<std::uint32_t>& robots, const AttachedClient& client) const {
   const auto& from = run_->monitor.options().from;
-  // The state in a snapshot is that of its tick, so it also serves one who takes robots over there.
+  // The state in a snapshot is valid at its tick, so it also serves a client that takes over robots at that tick.
   if (from && from->tick == run_->simulation.tick()) return wire::StartReason::restored;
   const bool takes_over = std::ranges::any_of(robots, [&](auto robot) { return run_->was_driven[robot]; });
   if (run_->started && takes_over) return wire::StartReason::takeover;
   return client.drove ? wire::StartReason::reset : wire::StartReason::first;
 }
 
-// Whether the run goes back for it. Under the lock.
+// Returns true if the run goes back because of the lost state. Requires the lock.
 bool Clients::note_lost_state(const AttachedClient& client, const std::vector<std::uint32_t>& robots) {
   const bool is_unwanted = std::ranges::any_of(
       robots, [&](auto robot) { return run_->simulation.policy(robot).on_lost == description::OnLost::rewind; });
   const std::string lost =
-      "the state of the controllers of " + run_->robots_text(robots) + " was lost with their process";
+      "the state of the controllers of " + run_->robots_text(robots) + " was lost when their process ended";
   if (is_unwanted && run_->can_rewind && run_->can_rewind()) {
     run_->rewinds_for = lost;
     return true;
   }
-  run_->monitor.add_event("forgotten", lost + "; " + client.label + " starts them without it" +
+  run_->monitor.add_event("forgotten", lost + "; " + client.label + " starts them without state" +
                                            (is_unwanted ? ", as there is no snapshot to go back to" : ""));
   return false;
 }
 
-// Whether the snapshot that the run goes on from has something for it. Under the lock.
+// Returns true if the initial snapshot of the run has state for the client. Requires the lock.
 bool Clients::give_state(AttachedClient& client, std::span<const std::uint32_t> robots) {
   const std::vector<RobotState> states = states_of(*run_->monitor.options().from, robots);
   if (states.empty()) return false;
@@ -300,12 +305,13 @@ bool Clients::give_state(AttachedClient& client, std::span<const std::uint32_t> 
     client.state.to_load = pack(states);
     return true;
   }
-  run_->monitor.add_event("unsaved", client.label + " begins anew: it does not take what its controllers remembered, " +
-                                         "which is in the snapshot");
+  run_->monitor.add_event(
+      "unsaved",
+      client.label + " starts without state: it does not load the state of its controllers " + "that the snapshot has");
   return false;
 }
 
-// All are filled before the first is sent, so that nobody who takes its answers has to wait for the lock.
+// All frames are filled in before the first is sent, so that threads that receive answers need not wait for the lock.
 void Clients::send_frames() {
   const std::uint64_t tick = run_->simulation.tick();
   {
@@ -356,7 +362,7 @@ RunMonitor::Clock::time_point Clients::next_resend(RunMonitor::Clock::time_point
 
 void Clients::tell_detached(std::uint64_t client) {
   tell(clients_.at(client), wire::ReportKind::superseded, "detached",
-       "it missed a deadline or gave an answer that cannot act, and its policy is to detach it");
+       "it missed a deadline or gave an invalid answer, and its policy is 'detach'");
 }
 
 std::vector<wire::ControllerStatus> Clients::status() {

@@ -13,65 +13,68 @@
 
 namespace cohort::session {
 
-/// Who is attached, from one run to the next: joining, leaving, taking over, who may drive what, and what each client
-/// is told. On the thread of the run; functions take the server's lock themselves, and must not be called with it, but
-/// for those that say that they are called under it.
+/// The clients that are attached, from one run to the next: joining, leaving, takeover, permissions and messages. For
+/// the thread of the run. Functions lock the server's mutex themselves and must be called without it, unless their
+/// comment says that they require the lock.
 class Clients {
  public:
   /// `mutex`: the server's lock, which must outlive this.
   explicit Clients(std::mutex& mutex) : mutex_(mutex) {}
 
-  /// A run begins: those who drove or waited claim what they asked for when they came, in the order of their coming.
+  /// Starts a run: clients that drove robots or waited claim their requested robots again, in order of arrival.
   void begin(ServedRun& run);
-  /// It ends. Under the lock.
+  /// Ends the run. Requires the lock.
   void end();
-  /// There will be no further run after the one of this number: tells all who drive how it ended. Those of them who can
-  /// hear it.
+  /// Tells all clients that drive robots how the last run ended, with its number. Returns the clients that can receive
+  /// it.
   std::set<std::uint64_t> dismiss(const RunResult& last, std::uint32_t run);
 
-  // What came in.
+  // Handlers of received messages.
   void join(const Inbox::Arrival& arrival);
   void note_liveliness(const Inbox::Liveliness& change);
-  void note_process_end(std::uint32_t process);  ///< of this machine
+  void note_process_end(std::uint32_t process);  ///< on this machine
   void note_rejections(const Inbox::Rejected& rejected);
-  /// Refuses a client that reports that its controllers fail in `start`: its robots are free as before it came. False
-  /// if it drives none, has answered in its lease, or reports something else.
+  /// Refuses a client that reports that its controllers fail in `start`: its robots are free again. Returns false if it
+  /// drives none, has answered in its lease, or reports something else.
   bool refuse_unfit(const wire::Report& report);
 
-  /// Claims are granted at boundaries, and in the midst of a tick to whoever takes over a robot that it waits for.
-  /// If a claim calls for the run to go back, `ServedRun::rewinds_for` says why, and it counts again in the next run.
+  /// Decides on claims: at boundaries, and within a tick for a client that takes over a robot that the tick waits for.
+  /// If a claim requires that the run goes back, `ServedRun::rewinds_for` says why, and the claim counts again in the
+  /// next run.
   void decide_claims();
-  /// The frames of the current tick.
+  /// Sends the frames of the current tick.
   void send_frames();
-  /// Those that are unanswered for long.
+  /// Resends frames that have been unanswered for too long.
   void resend_frames(RunMonitor::Clock::time_point now);
-  /// When `resend_frames` is due for somebody who is awaited, at the latest `latest`. Under the lock.
+  /// Returns when `resend_frames` is next due for a client that the run waits for, at the latest `latest`. Requires the
+  /// lock.
   RunMonitor::Clock::time_point next_resend(RunMonitor::Clock::time_point latest) const;
-  // At a boundary of a run that has started: what controllers remember, for a snapshot. Whoever gives nothing for 5 s,
-  // or dies, is left out.
-  /// Begins to gather it.
+  // Functions that collect the state of controllers for a snapshot, at a boundary of a run that has started. A client
+  // that sends nothing for 5 s, or dies, is left out.
+  //
+  // Starts the collection.
   void begin_states();
-  /// Asks for what is missing; false if nothing more will come.
+  /// Requests the missing parts. Returns false if no more will arrive.
   bool gather_states(RunMonitor::Clock::time_point now);
-  /// What came of it, by robot. Throws SnapshotError if controllers cannot save.
+  /// Returns the collected states, by robot. Throws SnapshotError if controllers cannot save.
   ControllerStates end_states();
-  /// Parts that were gathered, and questions of those who go on from a snapshot.
+  /// Handles collected parts, and requests for state from clients that continue from a snapshot.
   void take_states(const Inbox::States& states);
 
-  /// An answer of the client has missed its deadline.
+  /// Counts an answer of the client that has missed its deadline.
   void note_miss(std::uint64_t client) { ++clients_.at(client).late; }
-  /// Its policy has ended the client's lease.
+  /// Tells the client that its policy has ended its lease.
   void tell_detached(std::uint64_t client);
 
-  /// Of those who drive. Under the lock.
+  /// Returns the status of the clients that drive robots. Requires the lock.
   std::vector<wire::ControllerStatus> status();
   std::string label_of(std::uint64_t client) const;
-  /// Whose last Join came from this writer, if anybody's.
+  /// Returns the client whose last Join came from this writer, if any.
   std::optional<std::uint64_t> client_of(const wire::Sender& sender) const {
     return names_.client_of_writer(sender.writer);
   }
-  /// Whether DDS says that this comes from the process that joined under that id, so that nobody can speak in another's
-  /// name. Any thread, under the lock.
+  /// Returns true if the sample comes from the process that joined under this id, according to DDS, so that no client
+  /// can use another's id. For any thread. Requires the lock.
   bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const {
     return names_.is_in_own_name(client, sender);
   }
@@ -80,7 +83,7 @@ class Clients {
   AttachedClient* attach(const Inbox::Arrival& arrival);
   void set_alive(AttachedClient& client, bool alive);
   void forget(std::uint64_t client);
-  /// `tick`: the run's, unless it is about a frame.
+  /// `tick`: the run's tick, or that of the frame that the message refers to.
   void tell(AttachedClient& client, wire::ReportKind kind, const std::string& reason, const std::string& text,
             std::optional<std::uint64_t> tick = {});
   void claim(AttachedClient& client);
@@ -98,7 +101,7 @@ class Clients {
   ServedRun* run_ = nullptr;  // null between runs
   std::uint64_t arrivals_ = 0;
   std::map<std::uint64_t, AttachedClient> clients_;  // by id
-  ClientNames names_;                                // under the lock
+  ClientNames names_;                                // guarded by the lock
 };
 
 }  // namespace cohort::session

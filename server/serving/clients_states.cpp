@@ -81,7 +81,7 @@ void Clients::refuse_state(AttachedClient& client, const std::string& why) {
   run_->monitor.add_event("rejected", "malformed from " + client.label + ": its controllers' state: " + why);
 }
 
-// Of all whose controllers cannot save; empty if there are none.
+// Returns the reasons of all controllers that cannot save; empty if there are none.
 std::string Clients::note_unsaved() {
   std::string all;
   for (auto& [id, client] : clients_) {
@@ -101,7 +101,7 @@ std::string Clients::note_unsaved() {
 ControllerStates Clients::end_states() {
   ControllerStates states(run_->simulation.robot_count());
   const auto& from = run_->monitor.options().from;
-  // Nobody who drove no robot remembers anything of one.
+  // A client that drove no robot has no state of one.
   for (std::uint32_t robot = 0; robot < states.size(); ++robot)
     if (!run_->was_driven[robot])
       states[robot] = from && robot < from->controllers.size() ? from->controllers[robot] : ControllerState{};
@@ -116,7 +116,7 @@ ControllerStates Clients::end_states() {
       std::vector<RobotState> saved = unpack(client.state.bytes());
       for (const auto& [robot, state] : saved)
         if (!std::ranges::binary_search(robots, robot))
-          throw StateError("robot " + std::to_string(robot) + " is not its own");
+          throw StateError("robot " + std::to_string(robot) + " is not driven by this client");
       for (auto& [robot, state] : saved) {
         if (state) state->controller = printable(state->controller, longest_controller_name);
         states[robot] = std::move(state);

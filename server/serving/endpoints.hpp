@@ -9,17 +9,17 @@
 
 namespace cohort::session {
 
-/// What a server reads and writes in one DDS domain, or by one identity's way into it; not what it writes to one
+/// The readers and writers of a server in one DDS domain, or for one identity in it, without the writers for a single
 /// client.
 struct Endpoints {
-  /// On threads of DDS: see wire::Reader.
+  /// Called on threads of DDS; see wire::Reader.
   struct Callbacks {
     wire::Reader<wire::Join>::Callbacks joins;
     wire::Reader<wire::Command>::Callbacks commands;
     wire::Reader<wire::Report>::Callbacks reports;
     wire::Reader<wire::Request>::Callbacks requests;
     wire::Reader<wire::ControllerState>::Callbacks states;
-    std::function<void(std::uint32_t)> foreign_version;  ///< major, of the protocol
+    std::function<void(std::uint32_t)> foreign_version;  ///< major version of the protocol
   };
   Endpoints(wire::Participant& participant, Callbacks callbacks)
       : descriptions(participant),
@@ -30,9 +30,9 @@ struct Endpoints {
         states(participant, std::move(callbacks.states)),
         versions(participant, std::move(callbacks.foreign_version)) {}
 
-  static constexpr int answers_kept = 8;  ///< of each client, by DDS, until they are taken
+  static constexpr int answers_kept = 8;  ///< answers of each client that DDS keeps until they are taken
 
-  // Readers last, so that no callback comes before all else is there.
+  // Readers come last, so that all other members exist before the first callback.
   wire::Writer<wire::RobotDescription> descriptions;
   wire::Reader<wire::Join> joins;
   wire::Reader<wire::Command> commands;

@@ -13,7 +13,7 @@ std::size_t size_of(const wire::Join& join) {
 
 std::size_t size_of(const wire::Report& report) { return sizeof report + report.reason.size() + report.text.size(); }
 
-// Make what a client says fit to be shown. Documents, which are parsed, stay as they are.
+// Make a client's texts printable. Documents, which are parsed, stay unchanged.
 wire::Join cleaned(wire::Join join) {
   join.controller = printable(join.controller, Inbox::longest_label);
   join.host = printable(join.host, Inbox::longest_label);
@@ -43,7 +43,7 @@ bool Inbox::add_arrival(const wire::Join& join, const wire::Sender& sender, wire
     return false;
   }
   if (contents_.arrivals.size() >= most_arrivals || arrival_bytes_ + bytes > most_arrival_bytes) {
-    reject(sender.participant, "flood", "more Joins than can be read");
+    reject(sender.participant, "flood", "too many Joins");
     return false;
   }
   arrival_bytes_ += bytes;
@@ -63,7 +63,7 @@ bool Inbox::add_report(const wire::Report& report, const wire::Sender& sender) {
     return false;
   }
   if (contents_.reports.size() >= most_reports || report_bytes_ + bytes > most_report_bytes) {
-    reject(sender.participant, "flood", "more Reports than can be read");
+    reject(sender.participant, "flood", "too many Reports");
     return false;
   }
   report_bytes_ += bytes;
@@ -85,7 +85,7 @@ bool Inbox::add_request(const wire::Request& request, const wire::Sender& sender
   std::size_t& of_sender = requests_of_[sender.participant];
   if (of_sender >= wire::requests_under_way || contents_.requests.size() >= most_requests ||
       request_bytes_ + bytes > most_request_bytes) {
-    reject(sender.participant, "flood", "more Requests than can be read");
+    reject(sender.participant, "flood", "too many Requests");
     return false;
   }
   ++of_sender;
@@ -95,13 +95,13 @@ bool Inbox::add_request(const wire::Request& request, const wire::Sender& sender
 }
 
 bool Inbox::add_state(const wire::ControllerState& message, const wire::Sender& sender) {
-  if (message.kind > wire::StateKind::unsaved) return false;  // of a later minor version
+  if (message.kind > wire::StateKind::unsaved) return false;  // from a later minor version
   if (message.data.size() > wire::largest_state_part) {
     reject(sender.participant, "malformed", "a ControllerState is larger than 256 KiB");
     return false;
   }
   if (state_bytes_ + message.data.size() > most_state_bytes) {
-    reject(sender.participant, "flood", "more state of controllers than can be read");
+    reject(sender.participant, "flood", "too much controller state");
     return false;
   }
   state_bytes_ += message.data.size();

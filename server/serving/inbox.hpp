@@ -16,9 +16,9 @@
 
 namespace cohort::session {
 
-/// What DDS's threads leave for the thread of the run. What strangers can fill is bounded: beyond that, messages are
-/// counted as rejected and dropped. This is the door for text: what it holds of clients' is fit to be shown. Pure
-/// logic. Not thread-safe: under the server's lock.
+/// Messages that the threads of DDS leave for the thread of the run. Its size is bounded: messages beyond the limits
+/// are counted as rejected and dropped. Texts from clients enter here, and are made printable. Pure logic. Not
+/// thread-safe: use it under the server's lock.
 class Inbox {
  public:
   static constexpr std::size_t most_arrivals = 4096;
@@ -28,12 +28,12 @@ class Inbox {
   static constexpr std::size_t most_report_bytes = std::size_t{16} << 20;
   static constexpr std::size_t largest_report = std::size_t{64} << 10;
   static constexpr std::size_t most_foreign_versions = 100;
-  // Of requests between two looks at them; each participant may have wire::requests_under_way.
+  // Limits of requests between two readings of the inbox. Each participant may have wire::requests_under_way.
   static constexpr std::size_t most_requests = 1024;
   static constexpr std::size_t most_request_bytes = std::size_t{64} << 20;
   static constexpr std::size_t largest_request = std::size_t{4} << 20;
 
-  // Of texts for people [bytes].
+  // Limits of texts for people [bytes].
   static constexpr std::size_t longest_label = 100;
   static constexpr std::size_t longest_text = 4096;
 
@@ -42,22 +42,22 @@ class Inbox {
   struct Arrival {
     wire::Join join;
     wire::Sender sender;
-    wire::Participant* participant = nullptr;  ///< that it came in by
+    wire::Participant* participant = nullptr;  ///< the server's participant that received it
   };
   struct Liveliness {
     wire::Sender sender;
     bool alive = false;
   };
   struct Rejections {
-    std::string text;                     ///< of the first
-    std::optional<std::uint64_t> tick{};  ///< that the first answers, if it is an answer
+    std::string text;                     ///< text of the first one
+    std::optional<std::uint64_t> tick{};  ///< that the first one answers, if it is an answer
     std::uint64_t count = 0;
   };
-  /// By who, or what participant, and reason.
+  /// By client or participant, and by reason.
   using Rejected = std::map<std::pair<std::uint64_t, std::string>, Rejections>;
-  /// By client and kind: the last of each, since both sides ask again.
+  /// By client and kind: the last of each, as both sides repeat their messages.
   using States = std::map<std::pair<std::uint64_t, wire::StateKind>, KeptStateMessage>;
-  /// Each in the order of coming.
+  /// Each list is in the order of arrival.
   struct Contents {
     std::vector<Arrival> arrivals{};
     std::vector<Liveliness> liveliness{};
@@ -66,12 +66,13 @@ class Inbox {
     std::vector<ReceivedRequest> requests{};
     std::vector<wire::Sender> gone_requesters{};
     States states{};
-    std::string failure{};                       ///< of something outside: the first
-    std::set<std::uint32_t> foreign_versions{};  ///< of the protocol, that clients have
+    std::string failure{};                       ///< the first error of another component
+    std::set<std::uint32_t> foreign_versions{};  ///< protocol versions of such clients
     Rejected rejected{};
   };
 
-  // True if the thread of the run has to look at it. `participant`: of the server, that it came in by.
+  // These functions return true if the thread of the run has to read the inbox. `participant`: the server's participant
+  // that received the message.
   bool add_arrival(const wire::Join& join, const wire::Sender& sender, wire::Participant* participant);
   bool add_liveliness(const wire::Sender& sender, bool alive);
   bool add_report(const wire::Report& report, const wire::Sender& sender);
@@ -81,18 +82,18 @@ class Inbox {
   bool add_gone_requester(const wire::Sender& sender);
   bool add_failure(const std::string& error);
   bool add_foreign_version(std::uint32_t major);
-  /// Of something that is not in here.
+  /// Notes news that the inbox does not hold itself.
   bool note_news() { return has_news_ = true; }
-  /// Only counted, and told when the thread of the run next looks: a flood must not wake it for each message.
-  /// `tick`: of the frame that a rejected answer answers.
+  /// Counts a rejected message, for the next reading of the inbox: a flood must not wake the thread of the run for each
+  /// message. `tick`: of the frame that a rejected answer answers.
   void reject(std::uint64_t who, const char* reason, std::string_view text, std::optional<std::uint64_t> tick = {});
 
-  /// Whether anything but rejections was put aside since `take`.
+  /// Returns true if anything but rejections was added since `take`.
   bool has_news() const { return has_news_; }
-  /// All of it; it is empty then.
+  /// Removes and returns everything.
   Contents take();
   bool has_liveliness() const { return !contents_.liveliness.empty(); }
-  /// That alone; the rest stays.
+  /// Removes and returns only the liveliness changes.
   std::vector<Liveliness> take_liveliness() { return std::exchange(contents_.liveliness, {}); }
 
  private:

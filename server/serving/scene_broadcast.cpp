@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 constexpr auto interval = 33ms;
 constexpr auto watcher_count_interval = 200ms;
 constexpr int share_of_time = 20;
-// What is only of use in small worlds is left out of a larger message.
+// Larger messages omit data that is only useful in small worlds.
 constexpr std::size_t largest_extra = 128 << 10;
 
 std::span<const std::uint8_t> bytes_of(const messages::Bytes& bytes) {
@@ -67,9 +67,9 @@ void SceneBroadcast::publish(const Shown& shown, When when) {
   next_ = end + std::max<Clock::duration>(interval, share_of_time * (end - begin));
 }
 
-// Also for those who come later, as long as the server is there.
+// The message also reaches viewers that connect later, as long as the server runs.
 void SceneBroadcast::end(const std::string& how, const std::string& why) {
-  maker_.reset();  // its simulation may be gone
+  maker_.reset();  // its simulation may be destroyed
   messages::Scene scene;
   scene.revision = ++revision_;
   scene.end = how;

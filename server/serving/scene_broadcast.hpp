@@ -10,24 +10,24 @@
 
 namespace cohort::session {
 
-/// Shows a run to viewers: docs/protocol.md, "Scenes". Does nothing while nobody looks, is never waited for, and takes
-/// no more than a twentieth of the time. The thread that steps.
+/// Publishes a run to viewers: docs/protocol.md, "Scenes". Does nothing without viewers, never blocks the run, and
+/// takes at most a twentieth of its time. For the thread that steps.
 class SceneBroadcast {
  public:
   SceneBroadcast(wire::Participant& participant, const std::string& partition);
 
   struct Shown {
     const Simulation& simulation;
-    std::uint32_t run;  ///< another one for each simulation
+    std::uint32_t run;  ///< changes with each simulation
   };
   enum class When {
-    due,            ///< if it is time for another picture
-    at_once,        ///< something may have changed that would not be shown otherwise
-    for_newcomers,  ///< if somebody has come since the last one
+    due,            ///< if the next frame is due
+    at_once,        ///< something may have changed that would otherwise not be shown
+    for_newcomers,  ///< if a viewer has connected since the last one
   };
-  /// At a boundary whose frames are out.
+  /// Publishes a boundary whose frames were sent.
   void publish(const Shown& shown, When when);
-  /// There will be no further run, and the last one ended so: a word, and maybe a sentence.
+  /// Publishes the end of the last run: a word, and an optional sentence.
   void end(const std::string& how, const std::string& why);
 
  private:

@@ -76,7 +76,7 @@ std::vector<std::uint64_t> ServedRun::frames_under_way(const std::vector<std::ui
   return {ticks.begin(), ticks.end()};
 }
 
-// At a boundary the frames of its tick are not.
+// At a boundary, the frames of its tick were not sent yet.
 bool ServedRun::is_out(std::uint64_t tick) const {
   return tick < simulation.tick() || (!exchange.barrier().is_fresh() && tick <= exchange.barrier().tick());
 }

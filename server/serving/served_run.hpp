@@ -12,11 +12,11 @@
 
 namespace cohort::session {
 
-/// One run whose controllers are clients: its robots, who drives them, and who is waited for. `exchange`, `leases`,
-/// `error`, and so all functions but `robots_text` and `teams_text`, under the server's lock; else on the thread of the
-/// run.
+/// One run whose controllers are clients: its robots, the clients that drive them, and the robots that it waits for.
+/// `exchange`, `leases`, `error`, and all functions except `robots_text` and `teams_text`, require the server's lock;
+/// the rest is for the thread of the run.
 struct ServedRun {
-  /// `first_epoch`: of its leases. Experiment and simulation must outlive it.
+  /// `first_epoch`: epoch of its first lease. Experiment and simulation must outlive this object.
   ServedRun(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
             const RunListener& listener, std::uint32_t number, std::uint64_t first_epoch);
 
@@ -26,39 +26,40 @@ struct ServedRun {
   RunMonitor monitor;
   Exchange exchange;
   lockstep::Leases leases;
-  std::string error;                        // the first
+  std::string error;                        // the first error
   bool started = false;                     // from the first frame on
   std::vector<std::uint32_t> undemanding;   // robots that do not require a controller
-  std::vector<bool> was_driven;             // by robot, whether somebody drove it in this run
-  std::vector<std::uint32_t> descriptions;  // on the wire, by kind
-  std::uint32_t robots_at_first;            // of the experiment: those beyond have come in mid-run
-  std::function<bool()> can_rewind{};       // to where the state of all controllers is known
-  std::string rewinds_for{};                // whose state is lost, where a team wants the run to go back for that
+  std::vector<bool> was_driven;             // by robot: a client drove it in this run
+  std::vector<std::uint32_t> descriptions;  // ids on the wire, by kind
+  std::uint32_t robots_at_first;            // robots of the experiment; later ones joined during the run
+  std::function<bool()> can_rewind{};       // to a tick at which the state of all controllers was saved
+  std::string rewinds_for{};                // reason to go back: lost state that a team's policy does not accept
 
   void fail(const std::string& why) {
     if (error.empty()) error = why;
   }
-  /// At a boundary: robots may have come to the simulation. Whether any have.
+  /// Adds robots that joined the simulation at a boundary. Returns true if there were any.
   bool add_newcomers();
-  /// Whether no robot that requires a controller is without one.
+  /// Returns true if every robot that requires a controller has one.
   bool is_ready() const;
-  /// Robots that have come in mid-run, require a controller and have never had one: the run stands still until they do.
+  /// Returns the robots that joined during the run, require a controller and have never had one: the run is paused
+  /// until they have.
   std::vector<std::uint32_t> undriven_newcomers() const;
-  /// Robots that the run waits for: for their answers, or before it starts for their controllers. `is_held`: by whoever
-  /// controls it.
+  /// Returns the robots that the run waits for: for their answers, or before the start for their controllers.
+  /// `is_held`: a client that controls the run holds it.
   std::vector<std::uint32_t> awaited(bool is_held) const;
-  /// Since the frames of this tick went out.
+  /// Returns the time since the frames of this tick were sent.
   std::chrono::nanoseconds waiting() const;
   bool is_awaited(std::uint64_t client) const;
-  /// Ticks of unanswered frames whose answers can still act.
+  /// Returns the ticks of unanswered frames whose answers can still have an effect.
   std::vector<std::uint64_t> frames_under_way(const std::vector<std::uint32_t>& robots) const;
-  /// Whether the frames of this tick were sent.
+  /// Returns true if the frames of this tick were sent.
   bool is_out(std::uint64_t tick) const;
-  /// Of the oldest frame without an answer, or of the next one.
+  /// Returns the tick of the oldest unanswered frame, or of the next frame.
   std::uint64_t due_tick_of(const std::vector<std::uint32_t>& robots) const;
-  /// At a boundary: robots that do not require a controller are asked from now on if they have one.
+  /// Updates, at a boundary, which robots without a required controller have one and receive frames from now on.
   void see_who_drives();
-  /// Names of the teams that these robots belong to.
+  /// Returns the names of the teams of these robots.
   std::string teams_text(const std::vector<std::uint32_t>& robots) const;
   std::string robots_text(const std::vector<std::uint32_t>& robots) const;
 };

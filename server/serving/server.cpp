@@ -10,12 +10,12 @@
 namespace cohort::session {
 namespace {
 
-constexpr std::chrono::milliseconds longest_sleep{200};  // `stop` may be set by a signal, which wakes nobody
+constexpr std::chrono::milliseconds longest_sleep{200};  // a signal may set `stop` without waking any thread
 constexpr std::chrono::seconds farewell{2};
 const std::string view_partition = "view";
 
-// Returns the epoch of a server's first lease: its start in microseconds since 1970. The lowest bits are random, since
-// clocks go back and machines without a battery begin at the same time again.
+// Returns the epoch of a server's first lease: its start in microseconds since 1970. The lowest bits are random, as
+// clocks can go back, and machines without a battery start at the same time again.
 std::uint64_t first_epoch() {
   constexpr std::uint64_t random_bits = 1023;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -132,7 +132,7 @@ bool Server::wait_for_controllers(const std::atomic<bool>& stop) {
   }
 }
 
-// At a boundary: robots may have come. Whether one lacks a controller that it requires.
+// Adds robots that joined at a boundary. Returns true if one of them lacks a required controller.
 bool Server::welcome_newcomers() {
   bool has_newcomers = false;
   bool lacks_controllers = false;
@@ -145,8 +145,8 @@ bool Server::welcome_newcomers() {
   return lacks_controllers;
 }
 
-// At the boundary before a tick: does what was requested, and waits while the run is paused or ahead of its pace, or a
-// robot that has come lacks a controller. False if the run has to end.
+// Carries out requests at the boundary before a tick. Waits while the run is paused or ahead of its pace, or while a
+// new robot lacks a required controller. Returns false if the run has to end.
 bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
   RunMonitor& monitor = run_->monitor;
   control_.reach_boundary();
@@ -166,7 +166,7 @@ bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
       return true;
     }
     if (control_.holds() || lacks_controllers) {
-      if (!was_held || had_work) publish_world_state();  // no tick is about to
+      if (!was_held || had_work) publish_world_state();  // no tick will publish it
       publish_scene(was_held && !had_work ? SceneBroadcast::When::for_newcomers : SceneBroadcast::When::at_once);
       was_held = true;
       if (!decide_claims()) return false;
@@ -179,7 +179,7 @@ bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
   }
 }
 
-// From boundary k to the complete set of commands for it. False if the run has to end.
+// Runs from boundary k until all its commands are complete. Returns false if the run has to end.
 bool Server::run_tick(const std::atomic<bool>& stop) {
   if (!decide_claims()) return false;
   const Clock::time_point opened_at = Clock::now();
@@ -189,17 +189,19 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
     run_->exchange.open(opened_at.time_since_epoch());
   }
   clients_.send_frames();
+  control_.grant_time();
   run_->monitor.at_boundary();
   publish_world_state();
   publish_scene(SceneBroadcast::When::due);
   if (!give_up_on_late(opened_at)) return false;
   std::vector<lockstep::Barrier::Miss> refused;
+  const auto is_complete = [&] { return run_->exchange.barrier().complete() && !control_.holds_time(); };
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_until(lock, next_wake(), [&] { return run_->exchange.barrier().complete() || inbox_.has_news(); });
+      wake_.wait_until(lock, next_wake(), [&] { return is_complete() || inbox_.has_news(); });
       if (!run_->error.empty() || stop) return false;
-      if (run_->exchange.barrier().complete()) {
+      if (is_complete()) {
         run_->monitor.add_barrier(Clock::now() - opened_at);
         refused = run_->exchange.barrier().take_refused();
         break;
@@ -209,6 +211,7 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
     handle_inbox();
     if (!control_.perform(Control::Moment::midst) || !decide_claims()) return false;
     if (!give_up_on_late(now)) return false;
+    control_.grant_time();
     clients_.resend_frames(now);
     report_progress(false);
   }
@@ -223,7 +226,7 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
   return true;
 }
 
-// False if the run goes back, since the state of a controller is lost.
+// Returns false if the run goes back because the state of a controller is lost.
 bool Server::decide_claims() {
   clients_.decide_claims();
   if (run_->rewinds_for.empty()) return true;
@@ -231,7 +234,7 @@ bool Server::decide_claims() {
   return false;
 }
 
-// Under the lock.
+// Requires the lock.
 Server::Clock::time_point Server::next_wake() const {
   Clock::time_point wake = std::min(Clock::now() + longest_sleep, run_->monitor.next_report());
   if (const auto deadline = run_->exchange.barrier().next_deadline())
@@ -251,7 +254,8 @@ void Server::handle_inbox() {
   for (const wire::Report& report : inbox.reports) {
     if (clients_.refuse_unfit(report)) continue;
     const std::lock_guard lock(mutex_);
-    if (run_->leases.lease(report.client) == nullptr) continue;  // it drives nothing: its troubles are its own
+    if (run_->leases.lease(report.client) == nullptr)
+      continue;  // it drives no robot, so its failure does not concern the run
     run_->monitor.add_event("failed", clients_.label_of(report.client) + ": " + report.text);
     run_->fail(report.text);
   }
@@ -260,9 +264,10 @@ void Server::handle_inbox() {
     run_->fail(inbox.failure);
   }
   for (const std::uint32_t major : inbox.foreign_versions)
-    run_->monitor.add_event("version", "a client speaks version " + std::to_string(major) +
-                                           " of the protocol, and this server version 1: they never meet. Install the "
-                                           "same major version of Cohort on both sides");
+    run_->monitor.add_event("version",
+                            "a client speaks version " + std::to_string(major) +
+                                " of the protocol, and this server version 1: they cannot connect. Install the "
+                                "same major version of Cohort on both sides");
   clients_.note_rejections(inbox.rejected);
   clients_.take_states(inbox.states);
   for (const wire::Sender& sender : inbox.gone_requesters) control_.lose(sender);
@@ -311,10 +316,14 @@ void Server::report_progress(bool now_anyway) {
     for (const std::uint32_t robot : awaited) progress.awaited.push_back(run_->simulation.robot_name(robot));
     if (!awaited.empty())
       if (const auto holder = run_->leases.holder(awaited.front())) progress.awaited_from = clients_.label_of(*holder);
+    if (awaited.empty() && run_->started && !progress.paused && control_.holds_time()) {
+      progress.awaited.emplace_back("the time");
+      progress.awaited_from = control_.time_holder();
+    }
   });
 }
 
-// Tells of the robots' kinds. An id is never used for two things, since clients keep what they were told in earlier
+// Publishes the descriptions of the kinds of robots. An id is never reused, as clients keep the descriptions of earlier
 // runs.
 void Server::publish_descriptions() {
   run_->descriptions.clear();
@@ -334,7 +343,7 @@ void Server::publish_descriptions() {
 
 void Server::publish_scene(SceneBroadcast::When when) { scenes_.publish({run_->simulation, run_->number}, when); }
 
-// The run has ended. Whoever fetches nothing is not waited for.
+// Waits until the recordings of the ended run are fetched, but not for idle clients.
 void Server::let_recordings_be_fetched() {
   constexpr std::chrono::seconds longest_idle{2};
   std::uint64_t fetched = recordings_.fetched();
@@ -356,13 +365,17 @@ void Server::fill_status(wire::SimulationStatus& status) {
   status.awaited_count = static_cast<std::uint32_t>(awaited.size());
   for (std::size_t i = 0; i < std::min(awaited.size(), most_names); ++i)
     status.awaited.push_back(run_->simulation.robot_name(awaited[i]));
-  if (!awaited.empty()) status.waiting_ns = run_->waiting().count();
+  if (awaited.empty() && run_->started && !control_.holds() && control_.holds_time())
+    status.awaited.push_back("the time: " + control_.time_holder());
+  if (!status.awaited.empty()) status.waiting_ns = run_->waiting().count();
   status.controllers = clients_.status();
 }
 
-// What is not delivered when the participant goes is lost: hence the wait.
+// Messages that are not delivered before the participant is destroyed are lost, hence the wait.
 void Server::dismiss(const RunResult& last) {
-  scenes_.end(word_of(last.end), last.end == RunResult::End::finished ? last.stop_reason : last.error);
+  std::string why = last.end == RunResult::End::finished ? last.stop_reason : last.error;
+  if (why != last.unrecorded) why += (why.empty() || last.unrecorded.empty() ? "" : ". ") + last.unrecorded;
+  scenes_.end(word_of(last.end), why);
   std::set<std::uint64_t> staying = clients_.dismiss(last, run_number_);
   const Clock::time_point until = Clock::now() + farewell;
   std::unique_lock lock(mutex_);

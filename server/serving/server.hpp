@@ -22,36 +22,36 @@
 
 namespace cohort::session {
 
-/// Runs experiments whose controllers are DDS clients: docs/protocol.md, the server's side. Clients stay attached from
-/// one run to the next. Callbacks of DDS put control messages aside and take answers at once under one lock; everything
-/// else happens on the thread of `run`, which alone creates and destroys entities and steps the world.
+/// Runs experiments whose controllers are DDS clients; the server's side of docs/protocol.md. Clients stay attached
+/// from one run to the next. DDS callbacks store control messages and take answers at once, under one lock. All else
+/// happens on the thread of `run`, which alone creates and destroys entities and steps the world.
 class Server {
  public:
-  /// `participants`: one for each DDS domain that is served, and with security one for each identity in each of them,
-  /// at least one; a client may be in any of them, observers are in the first. They must outlive this.
+  /// `participants`: at least one; one for each served DDS domain, or with security one for each identity in each
+  /// domain. They must outlive this object. A client may be in any of them; observers are in the first.
   explicit Server(std::span<wire::Participant> participants);
   ~Server();
 
-  /// Waits for a controller for every robot that requires one, and runs. Clients that were attached before are admitted
-  /// to the new run, as far as their selectors select robots of it. Returns soon after `stop` is set, also while it
-  /// waits, or when whoever controls the run wants an end or another run. Experiment and simulation must outlive this
-  /// call only.
+  /// Waits for a controller for every robot that requires one, then runs. Clients that are already attached are
+  /// admitted to the new run if their selectors match robots of it. Returns soon after `stop` is set, even while it
+  /// waits, or when a client ends or restarts the run. Experiment and simulation need to outlive only this call.
   RunResult run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
                 const RunListener& listener, const std::atomic<bool>& stop);
 
-  /// Tells all who drive robots that there will be no further run, how the last one ended, and waits a little until
-  /// they have left.
+  /// Tells all clients that drive robots that no further run follows and how the last one ended. Waits a short time
+  /// until they have left.
   void dismiss(const RunResult& last);
 
-  /// From any thread: ends the run with this error, unless a controller has reported one before.
+  /// Ends the run with this error, unless a controller has reported one before. For any thread.
   void fail(const std::string& error);
-  /// From any thread: a process of this machine has ended, so the client in it is dead, whatever liveliness says.
+  /// Notes that a process of this machine has ended: the client in it counts as dead, even before DDS liveliness
+  /// reports it. For any thread.
   void note_process_end(std::uint32_t process);
 
  private:
   using Clock = RunMonitor::Clock;
 
-  // On DDS's threads.
+  // Functions for DDS's threads.
   Endpoints::Callbacks callbacks(wire::Participant& participant);
   template <class Add>
   void put_aside(const Add& add);
@@ -59,10 +59,10 @@ class Server {
   void on_state(const wire::ControllerState& state, const wire::Sender& sender);
   void on_command(const wire::Command& command, const wire::Sender& sender);
   bool take_answer(const wire::Command& command, const wire::Sender& sender);
-  // On the thread that reads texts of models: control has something to do.
+  // Called on the thread that reads model texts: the control has work.
   void note_news();
 
-  // On the thread of `run`; those that take the lock must not hold it.
+  // Functions for the thread of `run`; those that take the lock must be called without it.
   void begin_run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
                  const RunListener& listener, const std::atomic<bool>& stop);
   RunResult end_run(RunResult::End how, const std::string& error = {});
@@ -81,7 +81,7 @@ class Server {
   void publish_world_state() { world_state_.publish(run_->simulation, run_->number); }
   void publish_scene(SceneBroadcast::When when);
   void let_recordings_be_fetched();
-  // For control.
+  // Callbacks for the control.
   SessionSnapshot take_snapshot(const std::atomic<bool>& stop);
   ControllerStates gather_states(const std::atomic<bool>& stop);
   void fill_status(wire::SimulationStatus& status);
@@ -92,16 +92,15 @@ class Server {
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  Inbox inbox_;  // under the lock
+  Inbox inbox_;  // guarded by the lock
 
   Clients clients_{mutex_};
-  std::map<std::uint32_t, wire::RobotDescription> descriptions_;  // on the wire so far, by number
+  std::map<std::uint32_t, wire::RobotDescription> descriptions_;  // published so far, by id
   LiveRecordings recordings_;
   Control control_;
   WorldStateBroadcast world_state_;
   SceneBroadcast scenes_;
-  // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they
-  // are.
+  // Last, so that all other members outlive every callback. A list, as the elements must not move.
   std::list<Endpoints> endpoints_;
 };
 

@@ -1,7 +1,7 @@
 #include "server/serving/server.hpp"
 
-// What a server does on other threads than that of its run: those of DDS, those that tell it of ended processes, and the
-// one that reads texts of models.
+// The server's functions on other threads than that of the run: those of DDS, those that report ended processes, and
+// the one that reads model texts.
 namespace cohort::session {
 namespace {
 
@@ -9,7 +9,7 @@ std::string answer_to(std::uint64_t tick) { return "an answer to tick " + std::t
 
 }  // namespace
 
-// `add` is true if the thread of the run has to look.
+// `add` returns true if the thread of the run has to read the inbox.
 template <class Add>
 void Server::put_aside(const Add& add) {
   const std::lock_guard lock(mutex_);
@@ -39,10 +39,10 @@ Endpoints::Callbacks Server::callbacks(wire::Participant& participant) {
 }
 
 void Server::on_report(const wire::Report& report, const wire::Sender& sender) {
-  if (report.kind != wire::ReportKind::failed) return;  // a client has nothing else to report
+  if (report.kind != wire::ReportKind::failed) return;  // clients report nothing else
   put_aside([&] {
     if (clients_.is_in_own_name(report.client, sender)) return inbox_.add_report(report, sender);
-    inbox_.reject(sender.participant, "foreign", "a Report comes in the name of " + wire::partition_of(report.client));
+    inbox_.reject(sender.participant, "foreign", "a Report has the id of " + wire::partition_of(report.client));
     return false;
   });
 }
@@ -50,8 +50,7 @@ void Server::on_report(const wire::Report& report, const wire::Sender& sender) {
 void Server::on_state(const wire::ControllerState& state, const wire::Sender& sender) {
   put_aside([&] {
     if (clients_.is_in_own_name(state.client, sender)) return inbox_.add_state(state, sender);
-    inbox_.reject(sender.participant, "foreign",
-                  "a ControllerState comes in the name of " + wire::partition_of(state.client));
+    inbox_.reject(sender.participant, "foreign", "a ControllerState has the id of " + wire::partition_of(state.client));
     return false;
   });
 }
@@ -61,21 +60,21 @@ void Server::on_command(const wire::Command& command, const wire::Sender& sender
     const std::lock_guard lock(mutex_);
     if (!take_answer(command, sender)) return;
   }
-  wake_.notify_all();  // without the lock, which the one who wakes up needs
+  wake_.notify_all();  // without the lock, which the woken thread needs
 }
 
-// Under the lock. True if the run's thread has to go on.
+// Requires the lock. Returns true if the run's thread has to continue.
 bool Server::take_answer(const wire::Command& command, const wire::Sender& sender) {
   const auto reject = [&](std::uint64_t who, const char* reason, std::string_view text) {
     inbox_.reject(who, reason, text, command.tick);
     return false;
   };
-  // By who sent it, not by whose name it has: strangers may have as many names as they like.
+  // Counts by the actual sender and not by the claimed id, as a stranger can claim any number of ids.
   if (!clients_.is_in_own_name(command.client, sender))
     return reject(sender.participant, "foreign",
-                  "commands come from a client that has not joined, or in another's name");
+                  "commands from a client that has not joined, or with another client's id");
   const lockstep::Leases::Lease* lease = run_ == nullptr ? nullptr : run_->leases.lease(command.client);
-  if (lease == nullptr) return reject(command.client, "foreign", "commands come from a client that drives no robot");
+  if (lease == nullptr) return reject(command.client, "foreign", "commands from a client that drives no robot");
   ServedRun& run = *run_;
   if (command.run != run.number) return reject(command.client, "stale", answer_to(command.tick) + " of another run");
   if (command.epoch != lease->epoch)

@@ -15,7 +15,7 @@ SessionSnapshot Server::take_snapshot(const std::atomic<bool>& stop) {
   return snapshot;
 }
 
-// At a boundary. Meanwhile the inbox is read, but nothing is done that was requested.
+// Collects the states at a boundary. Meanwhile the inbox is read, but no request is carried out.
 ControllerStates Server::gather_states(const std::atomic<bool>& stop) {
   if (!run_->started) {
     const auto& from = run_->monitor.options().from;

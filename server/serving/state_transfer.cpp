@@ -5,7 +5,7 @@
 namespace cohort::session {
 namespace {
 
-// A snapshot does without the state of whoever gives nothing for so long.
+// A snapshot omits the state of a client that sends nothing for so long.
 constexpr std::chrono::seconds longest_silence{5};
 
 }  // namespace

@@ -13,16 +13,16 @@
 
 namespace cohort::session {
 
-/// What one client's controllers remember, on its way from it into a snapshot and from a snapshot to it:
-/// docs/protocol.md, "State of controllers". On the thread of the run.
+/// The state of one client's controllers, on its way into a snapshot or from a snapshot: docs/protocol.md, "State of
+/// controllers". For the thread of the run.
 class StateTransfer {
  public:
   using Time = StateParts::Time;
 
   enum class Phase {
-    idle,     ///< nothing is wanted of it
-    answers,  ///< its answers to frames under way are awaited
-    parts,    ///< it is asked for parts
+    idle,     ///< nothing is requested
+    answers,  ///< waiting for its answers to unanswered frames
+    parts,    ///< requesting parts
     done,
     given_up,
     unsaved,  ///< its controllers cannot save
@@ -30,23 +30,23 @@ class StateTransfer {
   Phase phase() const { return phase_; }
   bool is_under_way() const { return phase_ == Phase::answers || phase_ == Phase::parts; }
 
-  /// A boundary: what it remembers is wanted, of at most so many robots.
+  /// Starts the transfer of the state of at most `robots` robots, at a boundary.
   void begin(std::size_t robots, Time now);
-  void note_answers();  ///< there are no frames without an answer any more
+  void note_answers();  ///< no unanswered frames are left
   void give_up() { phase_ = Phase::given_up; }
-  /// Its controllers cannot save, for this reason.
+  /// Notes why its controllers cannot save.
   void note_unsaved(const std::string& why);
   const std::string& why_unsaved() const { return why_unsaved_; }
   void end() { phase_ = Phase::idle; }
-  /// Whether it has given nothing for too long.
+  /// Returns true if it has sent nothing for too long.
   bool is_silent(Time now) const;
-  /// The question that has to be asked now, if one has to be; its head is up to the caller.
+  /// Returns the request that is due now, if any; the caller fills in its head.
   std::optional<wire::ControllerState> question(Time now);
-  /// Throws StateError.
+  /// Takes a part; throws StateError.
   void take(const KeptStateMessage& part, Time now);
   std::span<const std::byte> bytes() const { return parts_.bytes(); }
 
-  /// What it can fetch; nothing if there is none.
+  /// The state that the client can fetch; empty if there is none.
   std::vector<std::byte> to_load{};
 
  private:

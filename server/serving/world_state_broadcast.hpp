@@ -10,13 +10,13 @@
 
 namespace cohort::session {
 
-/// Tells observers of each tick's state hash and poses: docs/protocol.md, "WorldState". Does nothing while nobody
-/// listens. The thread that steps.
+/// Publishes each tick's state hash and poses to observers: docs/protocol.md, "WorldState". Does nothing without
+/// observers. For the thread that steps.
 class WorldStateBroadcast {
  public:
   WorldStateBroadcast(wire::Participant& participant, const std::string& partition) : writer_(participant, partition) {}
 
-  /// At a boundary.
+  /// Publishes a boundary.
   void publish(const Simulation& simulation, std::uint32_t run);
 
  private:

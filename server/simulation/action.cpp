@@ -10,9 +10,9 @@
 namespace cohort {
 namespace {
 
-// Each kind's members in the order in which they are written; a kind's number is its place in the variant. But a spawn
-// says by its number what its model is. Recordings of older versions have its place in the variant instead, and either
-// a name or a text.
+// The members of each kind, in their order in the bytes. A kind's number is its place in the variant, except for a
+// spawn, whose number says what its model is. Older recordings have its place in the variant, and either a name or a
+// text.
 constexpr std::uint8_t spawn_of_name_or_text = 0;
 constexpr std::uint8_t spawn_of_name = 0x80;
 constexpr std::uint8_t spawn_of_text = 0x81;
@@ -69,7 +69,7 @@ struct Writer {
     (*this)(value.has_value());
     if (value) (*this)(*value);
   }
-  // At the end of a kind that had no such member at first.
+  // Adds a member at the end of a kind that did not have it in earlier versions.
   void if_any(const std::string& text) const {
     if (!text.empty()) (*this)(text);
   }
@@ -115,7 +115,7 @@ template <std::size_t... Kinds>
 Action empty_action(std::size_t kind, std::index_sequence<Kinds...>) {
   Action action;
   const bool is_known = ((kind == Kinds && (action.emplace<Kinds>(), true)) || ...);
-  if (!is_known) throw SnapshotError("there is no kind " + std::to_string(kind));
+  if (!is_known) throw SnapshotError("unknown action kind " + std::to_string(kind));
   return action;
 }
 
@@ -126,17 +126,17 @@ std::uint8_t number_of(const Action& action) {
 }
 
 void read_text(ModelChoice& model, const description::ModelReader& read_model) {
-  if (!read_model) throw std::invalid_argument("the model is a text, and this experiment reads none");
+  if (!read_model) throw std::invalid_argument("the model is a text, which this experiment does not accept");
   model = read_model(std::get<std::string>(model));
 }
 
-// What was done was one of the two. No name has these characters but by intention.
+// Reads a recorded name or text. Names do not contain these characters, except on purpose.
 void read_name_or_text(ModelChoice& model, const description::ModelReader& read_model) {
   if (std::get<std::string>(model).find_first_of("<:\n{") == std::string::npos) return;
   try {
     read_text(model, read_model);
   } catch (const std::invalid_argument&) {
-    // a name, then
+    // it is a name
   }
 }
 
@@ -158,9 +158,9 @@ Action action_from_bytes(std::span<const std::byte> bytes, const description::Mo
     const bool is_spawn = number == spawn_of_name || number == spawn_of_text;
     action = empty_action(is_spawn ? 0 : number, std::make_index_sequence<std::variant_size_v<Action>>());
     std::visit([&](auto& empty) { visit_members(empty, Reader{reader}); }, action);
-    if (!reader.is_at_end()) throw SnapshotError("they go on after its end");
+    if (!reader.is_at_end()) throw SnapshotError("extra bytes at the end");
   } catch (const SnapshotError& error) {
-    throw std::invalid_argument(std::string("these bytes are no action: ") + error.what());
+    throw std::invalid_argument(std::string("invalid action: ") + error.what());
   }
   if (number == spawn_of_text) read_text(std::get<SpawnObject>(action).model, read_model);
   if (number == spawn_of_name_or_text) read_name_or_text(std::get<SpawnObject>(action).model, read_model);

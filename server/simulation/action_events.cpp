@@ -13,7 +13,7 @@
 namespace cohort {
 namespace {
 
-constexpr double furthest = 1e6;  // beyond it a body has left the world [m]
+constexpr double furthest = 1e6;  // a body farther away has left the world [m]
 constexpr double unit_tolerance = 1e-3;
 constexpr std::chrono::nanoseconds longest_push = std::chrono::hours(24 * 365);
 
@@ -73,7 +73,7 @@ description::Event event_of_kind(const ApplyForce& apply, const ActionScope& sco
   if (model.is_static) refuse(quoted(apply.name) + " is static");
   check_finite(apply.force_W, "force");
   check_finite(apply.torque_W, "torque");
-  if (apply.duration.count() < 0 || apply.duration > longest_push) refuse("expected a duration from 0 s to a year");
+  if (apply.duration.count() < 0 || apply.duration > longest_push) refuse("expected a duration from 0 s to one year");
   std::size_t link = 0;
   if (!apply.link.empty()) {
     check_name(apply.link, "the name of the link");
@@ -96,7 +96,7 @@ std::vector<std::size_t> lights_of(const description::Model& model) {
   return lights;
 }
 
-// `object/light`, where either may have slashes of its own; nothing if there is no such object.
+// Parses `object/light`, where both parts may contain slashes; returns nothing if there is no such object.
 std::optional<std::pair<std::uint32_t, std::size_t>> find_light(const std::string& name, const ActionScope& scope) {
   for (std::size_t slash = name.rfind('/'); slash != std::string::npos && slash > 0;
        slash = name.rfind('/', slash - 1)) {
@@ -164,12 +164,13 @@ Pose checked_pose(const Pose& X_WM) {
 std::string name_of_new(const SpawnObject& spawn, const std::string& model, const Objects& objects) {
   const std::string& wanted = spawn.name.empty() ? model : spawn.name;
   check_name(wanted, "the name of the object");
-  if (!is_object_name(wanted)) refuse(quoted(wanted) + " is no name: expected parts with a slash between them");
+  if (!is_object_name(wanted)) refuse(quoted(wanted) + " is not a valid name: expected parts separated by slashes");
   if (!objects.find(wanted)) return wanted;
   if (!spawn.allow_renaming)
-    refuse(objects.is_present(*objects.find(wanted)) ? "another object has the name " + quoted(wanted)
-                                                     : "an object that is not in the world has the name " +
-                                                           quoted(wanted) + "; names are not used twice in a run");
+    refuse(objects.is_present(*objects.find(wanted))
+               ? "another object has the name " + quoted(wanted)
+               : "an object that has left the world, or joins it later, has the name " + quoted(wanted) +
+                     "; names are not reused in a run");
   for (std::size_t number = 1;; ++number)
     if (std::string name = wanted + "_" + std::to_string(number); !objects.find(name)) return name;
 }
@@ -180,7 +181,7 @@ std::optional<std::size_t> team_of_new(const SpawnObject& spawn, std::size_t mod
   const std::string& model_name = world.models[model].name;
   check_name(spawn.team, "the name of the team");
   if (!world.models[model].is_robot()) {
-    if (!spawn.team.empty()) refuse("the model " + quoted(model_name) + " is no robot, so it is in no team");
+    if (!spawn.team.empty()) refuse("the model " + quoted(model_name) + " is not a robot, so it cannot join a team");
     return std::nullopt;
   }
   std::vector<std::string> names;
@@ -196,19 +197,20 @@ std::optional<std::size_t> team_of_new(const SpawnObject& spawn, std::size_t mod
     if (found == names.end()) refuse("there is no team " + quoted(spawn.team) + suggestion(spawn.team, names));
     return static_cast<std::size_t>(found - names.begin());
   }
-  if (names.empty()) refuse(quoted(model_name) + " is a robot, and the experiment has no team that says who drives it");
+  if (names.empty()) refuse(quoted(model_name) + " is a robot, but the experiment has no team that it can join");
   if (names.size() == 1) return 0;
   if (of_this_model.size() == 1) return of_this_model.front();
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  refuse(quoted(model_name) + " is a robot: say which team it joins, of " + list);
+  refuse(quoted(model_name) + " is a robot: expected one of the teams " + list);
 }
 
 description::Event event_of(const Action& action, const ActionScope& scope) {
-  return std::visit(
-      Overloaded{[](const SpawnObject&) -> description::Event { throw std::logic_error("a new object is no event"); },
-                 [&](const auto& kind) { return event_of_kind(kind, scope); }},
-      action);
+  return std::visit(Overloaded{[](const SpawnObject&) -> description::Event {
+                                 throw std::logic_error("a new object is not an event");
+                               },
+                               [&](const auto& kind) { return event_of_kind(kind, scope); }},
+                    action);
 }
 
 }  // namespace cohort

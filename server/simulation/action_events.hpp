@@ -13,27 +13,27 @@
 
 namespace cohort {
 
-/// What an action looks names up in.
+/// The names that an action may refer to.
 struct ActionScope {
   const description::World& description;
   const physics::World& world;
   const Objects& objects;
 };
 
-/// An action that does not bring anything new, as an event of now. Throws std::invalid_argument with the reason if it
-/// makes no sense: no such object, one that is not in the world or is quarantined, not free to move, a number that is
-/// not finite.
+/// Converts an action that adds nothing into an immediate event. Throws std::invalid_argument with the reason if it is
+/// invalid: an unknown, absent or quarantined object, one that is not free to move, or a number that is not finite.
 description::Event event_of(const Action& action, const ActionScope& scope);
 
-/// The name that a new object gets. Throws std::invalid_argument if it is no name, or is taken.
+/// Returns the name of a new object. Throws std::invalid_argument if it is invalid or taken.
 std::string name_of_new(const SpawnObject& spawn, const std::string& model, const Objects& objects);
 
-/// The team, by its index, that a new object of `model` joins; nothing if it is no robot. Throws std::invalid_argument
-/// if it is not clear which, or there is none of that name.
+/// Returns the index of the team that a new object of `model` joins; nothing if it is not a robot. Throws
+/// std::invalid_argument if the team is ambiguous or unknown.
 std::optional<std::size_t> team_of_new(const SpawnObject& spawn, std::size_t model,
                                        const description::Experiment& experiment);
 
-/// With a unit quaternion. Throws std::invalid_argument if it is no pose, or beyond what is simulated.
+/// Returns the pose with a normalized quaternion. Throws std::invalid_argument if it is invalid, or out of the
+/// simulated range.
 Pose checked_pose(const Pose& X_WM);
 
 }  // namespace cohort

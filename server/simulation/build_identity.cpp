@@ -38,7 +38,7 @@ description::Model one_link(const char* name, const description::Shape& shape) {
   return model;
 }
 
-// A hub with an arm on a joint that has a motor.
+// Returns a model of a hub with an arm on a motorized joint.
 description::Model driven() {
   description::Model model = one_link("driven", description::Cylinder{0.1, 0.1});
   model.links.push_back({"arm",
@@ -109,8 +109,8 @@ std::string why_results_differ(const BuildIdentity& other) {
     return "version " + build.version.substr(0, 20) + ", commit " +
            (build.commit.empty() ? "unknown" : build.commit.substr(0, 60));
   };
-  return "it is of another build of Cohort (" + name(other) + "; this is " + name(own) + "): " +
-         (is_other_arithmetic ? "its arithmetic is another one, and results will differ" : "results may differ");
+  return "it is from another build of Cohort (" + name(other) + "; this is " + name(own) +
+         "): " + (is_other_arithmetic ? "its arithmetic differs, so results will differ" : "results may differ");
 }
 
 }  // namespace cohort

@@ -4,23 +4,22 @@
 
 namespace cohort {
 
-/// Which build of Cohort ran: recordings and snapshots have it. What a file does not say is empty.
+/// The build of Cohort that made a recording or snapshot. Unknown members are empty.
 struct BuildIdentity {
   std::string version;
-  std::string commit;      ///< `unknown` where no git told it; `-dirty` at its end if files had changed
+  std::string commit;      ///< `unknown` without git; with `-dirty` if files had changed
   std::string arithmetic;  ///< `arithmetic_fingerprint`
 };
 
-/// Of this program. Any thread.
+/// Returns the identity of this program. For any thread.
 const BuildIdentity& this_build();
 
-/// Returns a hash, as 16 hexadecimal digits, of what this build computes of fixed inputs: the portable functions,
-/// random numbers, and bodies that fall, roll, turn and are driven, with every solver. The same on every CPU, as runs
-/// are; two builds that differ in it give different results. Takes some milliseconds.
+/// Returns a hash, as 16 hexadecimal digits, of this build's results for fixed inputs: the portable functions, random
+/// numbers, and falling, rolling, turning and driven bodies with every solver. It is the same on every CPU, like runs.
+/// Two builds with different hashes produce different results. Takes some milliseconds.
 std::string arithmetic_fingerprint();
 
-/// Returns a sentence if runs of that build have other results than those of this one, as far as is known; otherwise
-/// nothing.
+/// Returns a sentence if runs of that build are known to have other results than those of this one; otherwise nothing.
 std::string why_results_differ(const BuildIdentity& other);
 
 }  // namespace cohort

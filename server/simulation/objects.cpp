@@ -49,7 +49,7 @@ void Objects::set_present(std::uint32_t object, bool present) {
 std::uint32_t Objects::add(const std::string& name, std::size_t model, const Pose& X_WM) {
   if (find(name)) throw std::invalid_argument("another object has the name '" + name + "'");
   if (size() - described_ == most_added)
-    throw std::invalid_argument("no more than " + std::to_string(most_added) + " objects come in one run");
+    throw std::invalid_argument("at most " + std::to_string(most_added) + " objects can be added in one run");
   experiment_.edit();
   const BodyId body = world_.add_body(model, X_WM);
   add_instance({name, model, X_WM});
@@ -74,7 +74,7 @@ const std::deque<PastPose>& Objects::history(std::uint32_t object) const {
   return histories_[static_cast<std::size_t>(place - asked_for.begin())];
 }
 
-// What is as it was at first, or when it came, adds nothing else.
+// Unchanged members add nothing else to the hash.
 void Objects::hash(StateHash& hash) const {
   const std::vector<description::Instance>& instances = experiment_->world.instances;
   for (std::uint32_t object = 0; object < size(); ++object) {
@@ -105,10 +105,10 @@ void Objects::save_added(SnapshotWriter& writer) const {
 }
 
 void Objects::restore_added(SnapshotReader& reader) {
-  reader.expect_count(described_, "models in its world");
+  reader.expect_count(described_, "models in the world");
   constexpr std::size_t least_bytes = 1;
   const std::size_t count = reader.read_count(least_bytes);
-  if (count > most_added) throw SnapshotError("the snapshot has more objects than can come in a run");
+  if (count > most_added) throw SnapshotError("snapshot: too many objects");
   for (std::size_t left = count; left > 0; --left) {
     description::Instance instance;
     instance.name.resize(reader.read_count(least_bytes));
@@ -117,13 +117,12 @@ void Objects::restore_added(SnapshotReader& reader) {
     reader.read(model);
     instance.model = static_cast<std::size_t>(model);
     restore_pose(reader, instance.X_WM);
-    if (instance.model >= experiment_->world.models.size())
-      throw SnapshotError("the snapshot has a model that is not there");
+    if (instance.model >= experiment_->world.models.size()) throw SnapshotError("snapshot: unknown model");
     try {
       experiment_.edit();
       world_.add_body(instance.model, instance.X_WM, physics::Arrival::restored);
     } catch (const std::invalid_argument& error) {
-      throw SnapshotError("the snapshot has an object that cannot be simulated: " + std::string(error.what()));
+      throw SnapshotError("snapshot: invalid object: " + std::string(error.what()));
     }
     add_instance(std::move(instance));
   }

@@ -23,7 +23,7 @@ void append(std::vector<Channel>& channels, const std::vector<Channel>& more) {
   channels.insert(channels.end(), more.begin(), more.end());
 }
 
-// The number of teams if it is in none, as in a world without any.
+// Returns the number of teams if the robot is in none, as in a world without teams.
 std::uint32_t find_team(const description::Experiment& experiment, std::uint32_t robot) {
   const auto has_it = [&](const description::Team& team) { return std::ranges::binary_search(team.robots, robot); };
   return static_cast<std::uint32_t>(std::ranges::find_if(experiment.teams, has_it) - experiment.teams.begin());
@@ -35,13 +35,13 @@ std::vector<double> neutral_values(const RobotKind& kind) {
   return values;
 }
 
-// What a sensor observes at a tick, through its signal chain; `values` are those of the last tick at which the robot
-// was due.
+// Computes a sensor's observation at a tick, through its signal chain; `values` are those of the last tick at which the
+// robot was due.
 void observe(const sensing::Sensor& sensor, sensing::SignalChain& chain, std::uint64_t tick, bool is_due,
              std::span<double> values, std::vector<double>& scratch) {
   if (chain.is_immediate()) {
     if (!chain.measures_at(tick, is_due)) return;
-    // What wanders goes on between the ticks at which the robot is asked, whose readings stay.
+    // Random walks also advance at ticks at which the robot is not due, but then its readings stay.
     scratch.resize(values.size());
     const std::span<double> measured = is_due ? values : std::span<double>(scratch);
     sensor.sense(tick, measured);
@@ -188,7 +188,7 @@ CommandFault Robots::unfit(std::uint32_t robot, const Channel& channel, double v
 
 bool Robots::set_command(std::uint32_t robot, std::span<const double> values) {
   std::vector<double>& command = robots_[robot].command;
-  // As they are hashed: 0.0 and -0.0 differ.
+  // Compares bits, as the hash does: 0.0 and -0.0 differ.
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
   if (std::ranges::equal(command, values, {}, bits, bits)) return false;
   std::ranges::copy(values, command.begin());
@@ -269,7 +269,7 @@ void Robots::restore(SnapshotReader& reader) {
     reader.expect_count(robot.command.size(), "commanded values of a robot");
     reader.read_all(robot.command.data(), robot.command.size());
     const auto fault = check_command(static_cast<std::uint32_t>(&robot - robots_.data()), robot.command);
-    if (fault) throw SnapshotError("the snapshot has a command that cannot act: " + fault->text);
+    if (fault) throw SnapshotError("snapshot: invalid command: " + fault->text);
     for (SensorOfRobot& each : robot.sensors) {
       each.sensor->restore(reader);
       each.signal_chain.restore(reader);

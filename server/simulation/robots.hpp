@@ -19,33 +19,33 @@
 
 namespace cohort {
 
-/// Robots of one model: what they observe and how they are commanded.
+/// The robots of one model: their observation and command channels.
 struct RobotKind {
   std::string model;
   std::vector<Channel> observation;
   std::vector<Channel> command;
-  std::size_t observation_size = 0;  ///< float64 values
+  std::size_t observation_size = 0;  ///< number of float64 values
   std::size_t command_size = 0;
 };
 
-/// Why a command cannot act.
+/// The reason why a command is invalid.
 struct CommandFault {
   enum class Reason { wrong_size, not_finite, out_of_range };
   Reason reason;
   std::string channel;  ///< empty for wrong_size
-  std::string text;     ///< a sentence that says what was found and what was expected
+  std::string text;     ///< a sentence with the found and the expected value
 };
 
-/// The robots of a world, by their ids: their sensors and what these observe, their actuators and what commands them.
-/// Knows no kind of either. One thread calls it, but for `hash`, which may be called from any between changes.
+/// The robots of a world, by id: their sensors and observations, their actuators and commands. Independent of the kinds
+/// of both. For one thread, except `hash`, which any thread may call between changes.
 class Robots {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  /// What robots sense and act on; all of it must outlive them.
+  /// The objects that sensors and actuators use. They must outlive the robots.
   struct Surroundings {
     const description::Experiment& experiment;
-    std::uint64_t seed;  ///< of the run
+    std::uint64_t seed;  ///< seed of the run
     physics::World& world;
     emission::Emitters& emitters;
     gripping::Grippers& grippers;
@@ -54,21 +54,21 @@ class Robots {
     const Objects& objects;
     WorkerPool& workers;
   };
-  /// Those of the experiment. `like`: of another world of it, with which they share what is the same; null: none.
+  /// Adds the robots of the experiment. `like`: the robots of another world of it, for sharing common data; null: none.
   explicit Robots(const Surroundings& around, const Robots* like = nullptr);
 
-  /// The next robot of the experiment's world, which has come to it and to one of its teams, and which all others that
-  /// know of bodies were told of. Nobody has asked it yet.
+  /// Adds the next robot of the experiment's world. It must already be in the world and in a team, and known to
+  /// everything else that knows its body. It has not received a frame yet.
   void add();
   std::uint32_t size() const { return static_cast<std::uint32_t>(robots_.size()); }
   const std::string& name(std::uint32_t robot) const { return around_.experiment.world.robot(robot).name; }
   std::span<const RobotKind> kinds() const { return kinds_->described; }
   std::uint32_t kind_of(std::uint32_t robot) const { return robots_[robot].kind; }
-  /// By its index in the experiment.
+  /// Returns the team's index in the experiment.
   std::uint32_t team_of(std::uint32_t robot) const { return robots_[robot].team; }
   const description::Policy& policy(std::uint32_t robot) const { return robots_[robot].policy; }
   BodyId body_of(std::uint32_t robot) const { return robots_[robot].body; }
-  /// `none` of a body that is no robot's.
+  /// Returns `none` if the body is not a robot's.
   std::uint32_t of_body(BodyId body) const { return body.value < of_body_.size() ? of_body_[body.value] : none; }
   bool is_present(std::uint32_t robot) const { return around_.objects.is_present(robots_[robot].body.value); }
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
@@ -77,15 +77,16 @@ class Robots {
   bool set_command(std::uint32_t robot, std::span<const double> values);
   bool set_neutral_command(std::uint32_t robot);
   std::span<const double> command(std::uint32_t robot) const { return robots_[robot].command; }
-  /// All do what they are commanded, in their order; one that a sensor disables has its neutral command from now on.
+  /// Applies all commands, in the order of the robots. A robot that a sensor disables has its neutral command from now
+  /// on.
   void actuate();
 
-  /// All that are in the world and due observe this tick; after `Emitters::update`. Again at the same tick, if
-  /// something has been changed from outside.
+  /// Updates the observations of all due robots in the world, after `Emitters::update`. May be called again at the same
+  /// tick after a change from outside.
   void sense(std::uint64_t tick);
   std::span<const double> observation(std::uint32_t robot) const;
 
-  /// What one robot observes, is commanded and remembers.
+  /// Adds the observation, command and internal state of one robot to the hash.
   void hash(std::uint32_t robot, StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
   void restore(SnapshotReader& reader);
@@ -94,11 +95,11 @@ class Robots {
   struct SensorOfRobot {
     std::unique_ptr<sensing::Sensor> sensor;
     sensing::SignalChain signal_chain;
-    std::size_t size = 0;  // of what it observes
+    std::size_t size = 0;  // number of observed values
   };
   struct ActuatorOfRobot {
     std::unique_ptr<actuation::Actuator> actuator;
-    std::size_t size = 0;  // of its command
+    std::size_t size = 0;  // number of commanded values
   };
   struct Robot {
     std::uint32_t kind = 0;
@@ -108,7 +109,7 @@ class Robots {
     std::vector<SensorOfRobot> sensors;
     std::vector<ActuatorOfRobot> actuators;
     std::size_t observation_offset = 0;
-    std::vector<double> command;  // that acts now
+    std::vector<double> command;  // the command that acts now
   };
   struct Place {
     std::uint32_t robot = 0;
@@ -116,7 +117,7 @@ class Robots {
   };
 
   struct KindParts {
-    std::vector<std::shared_ptr<const sensing::SignalPlan>> signal_plans;  // of each sensor
+    std::vector<std::shared_ptr<const sensing::SignalPlan>> signal_plans;  // by sensor
     std::vector<std::size_t> sensor_sizes;
     std::vector<std::size_t> actuator_sizes;
     std::vector<double> neutral;  // command
@@ -124,7 +125,7 @@ class Robots {
   struct Kinds {
     std::vector<RobotKind> described;
     std::vector<KindParts> parts;
-    std::vector<std::uint32_t> of_model;  // `none`: of a model without a robot so far
+    std::vector<std::uint32_t> of_model;  // `none` for a model without robots so far
   };
   struct DevicesOfRobot {  // in the order of the model
     std::vector<std::pair<std::unique_ptr<sensing::Sensor>, const description::Device*>> sensors;
@@ -141,11 +142,11 @@ class Robots {
   sensing::SharedViews views_;
   std::vector<Place> sharing_views_;
   std::shared_ptr<const Kinds> kinds_;  // shared by worlds of one experiment
-  std::size_t described_;               // robots that there were at first
+  std::size_t described_;               // number of robots at the start
   std::vector<Robot> robots_;
   std::vector<std::uint32_t> of_body_;
   std::vector<double> observations_;
-  std::vector<std::vector<double>> scratch_;  // of each worker
+  std::vector<std::vector<double>> scratch_;  // by worker
 };
 
 }  // namespace cohort

@@ -20,9 +20,10 @@ Schedule::Schedule(const description::Experiment& experiment, physics::World& wo
       spawned_(experiment.spawners.size(), 0) {
   for (const description::Event& event : experiment.events) {
     event_ticks_.push_back(event.time.count() == 0 ? 0 : ticks_of(event.time, experiment.world.step));
-    // A simulation that a snapshot is restored into has nothing but what the description has.
+    // At 0 s it could not be restored: a snapshot is restored into a simulation that has only the objects of the
+    // description.
     if (event_ticks_.back() == 0 && std::holds_alternative<description::SpawnNew>(event.effect))
-      throw std::invalid_argument("an event spawns at 0 s: expected a later time");
+      throw std::invalid_argument("an event cannot spawn at 0 s: expected a later time");
   }
   for (const description::Instance& instance : experiment.world.instances)
     stages_.push_back(instance.is_present ? Stage::came : Stage::to_come);
@@ -54,7 +55,7 @@ void Schedule::react(std::uint64_t tick, std::vector<std::string>& happened) {
   }
 }
 
-// The first of those who begin the action, and how many more there are; nobody: empty.
+// Returns the first robot that begins the action, and the number of others; empty if there is none.
 std::string Schedule::who_begins(const description::Reaction& reaction) const {
   std::string text;
   std::size_t others = 0;
@@ -70,26 +71,26 @@ std::string Schedule::who_begins(const description::Reaction& reaction) const {
   return others == 0 ? text : text + " and " + std::to_string(others) + " more";
 }
 
-// What comes and goes once cannot be acted on before or after that.
+// Events on an object that is added or removed later or earlier have no effect.
 std::optional<std::string> Schedule::why_not(const description::Event& event) const {
   const auto* const presence = std::get_if<description::SetPresence>(&event.effect);
   const bool comes_first = presence != nullptr && presence->once && presence->present;
   if (std::find(removed_.begin(), removed_.end(), event.object) != removed_.end()) return "it has been removed";
   switch (stages_[event.object]) {
     case Stage::to_come: return comes_first ? std::nullopt : std::optional("it has not been added");
-    case Stage::came: return comes_first ? std::optional("it has been added already") : std::nullopt;
+    case Stage::came: return comes_first ? std::optional("it has already been added") : std::nullopt;
     case Stage::gone: return "it has been removed";
   }
   return std::nullopt;
 }
 
-// Numbers go on, and pass over names that something else has had.
+// Numbers increase, and skip names that were ever used.
 std::string Schedule::spawn_new(const description::SpawnNew& spawn) {
   const description::Spawner& spawner = experiment_.spawners.at(spawn.spawner);
   std::uint64_t& spawned = spawned_[spawn.spawner];
   if (spawned >= spawner.most)
-    return "spawn '" + spawner.name + "' does nothing: it has brought " + std::to_string(spawned) +
-           ", and may bring no more";
+    return "spawn '" + spawner.name + "' does nothing: it has already spawned " + std::to_string(spawned) +
+           " objects, which is its limit";
   std::string name;
   std::uint64_t number = spawned;
   do {
@@ -137,11 +138,13 @@ void Schedule::apply(const description::Event& event) {
                    if (world_.is_active(BodyId{object}))
                      world_.set_root_twist(BodyId{object}, {velocity.angular_W, velocity.linear_W});
                  },
-                 [](const description::ApplyForce&) {},  // acts in the steps that follow
+                 [](const description::ApplyForce&) {},  // acts in the following steps
                  [&](const description::SetEmitters& set) {
                    for (const std::size_t emitter : set.emitters) emitters_.change(BodyId{object}, emitter, set.change);
                  },
-                 [](const description::SpawnNew&) { throw std::logic_error("a new object is no event of an old one"); },
+                 [](const description::SpawnNew&) {
+                   throw std::logic_error("a new object is not an event of an existing one");
+                 },
              },
              event.effect);
 }
@@ -240,7 +243,7 @@ void Schedule::hash(StateHash& hash) const {
   });
   for (const std::uint64_t held : boundaries_held_) hash.add(held);
   for (const std::uint64_t spawned : spawned_) hash.add(spawned);
-  if (experiment_.reactions.empty()) return;  // then all else follows from the tick
+  if (experiment_.reactions.empty()) return;  // everything else follows from the tick
   for (const Stage stage : stages_) hash.add(static_cast<std::uint64_t>(stage));
   for (const std::uint64_t end : force_ends_) hash.add(end);
 }
@@ -258,7 +261,7 @@ void Schedule::save(SnapshotWriter& writer) const {
   writer.add_count(pushes_.size());
   writer.add_count(removed_.size());
   visit_outside(*this, [&](const auto& number) { writer.add(number); });
-  if (spawned_.empty()) return;  // as in snapshots of builds without them
+  if (spawned_.empty()) return;  // as in snapshots of builds without spawners
   writer.add_count(spawned_.size());
   writer.add_all(spawned_.data(), spawned_.size());
 }
@@ -270,7 +273,7 @@ void Schedule::restore(SnapshotReader& reader, std::uint64_t tick) {
   reader.read_all(reason.data(), reason.size());
   stop_reason_.reset();
   if (!reason.empty()) stop_reason_ = std::move(reason);
-  reader.expect_count(stages_.size(), "objects in its world");
+  reader.expect_count(stages_.size(), "objects in the world");
   reader.read_all(stages_.data(), stages_.size());
   reader.expect_count(force_ends_.size(), "events of actions");
   reader.read_all(force_ends_.data(), force_ends_.size());
@@ -283,18 +286,18 @@ void Schedule::restore(SnapshotReader& reader, std::uint64_t tick) {
   }
   for (std::size_t spawner = 0; spawner < spawned_.size(); ++spawner)
     if (spawned_[spawner] > experiment_.spawners[spawner].most)
-      throw SnapshotError("snapshot: an event has brought more objects than it may");
+      throw SnapshotError("snapshot: an event has spawned more objects than its limit");
   for (const Stage stage : stages_)
-    if (stage > Stage::gone) throw SnapshotError("the snapshot has an object that neither came nor went");
+    if (stage > Stage::gone) throw SnapshotError("snapshot: invalid object state");
   for (const std::uint32_t object : removed_)
-    if (object >= objects_.size()) throw SnapshotError("the snapshot has removed something that is not there");
+    if (object >= objects_.size()) throw SnapshotError("snapshot: unknown removed object");
   for (const Push& push : pushes_) {
     if (!push.force.force_W.allFinite() || !push.force.torque_W.allFinite())
-      throw SnapshotError("the snapshot has a push that is not finite");
-    if (push.object >= objects_.size()) throw SnapshotError("the snapshot has a push on something that is not there");
+      throw SnapshotError("snapshot: a force or torque is not finite");
+    if (push.object >= objects_.size()) throw SnapshotError("snapshot: a force on an unknown object");
     const description::Model& model = experiment_.world.models[world_.model_of(BodyId{push.object})];
     if (model.is_static || push.force.link >= model.links.size())
-      throw SnapshotError("the snapshot has a push on something that does not move");
+      throw SnapshotError("snapshot: a force on a static body");
   }
   next_event_ =
       static_cast<std::size_t>(std::upper_bound(event_ticks_.begin(), event_ticks_.end(), tick) - event_ticks_.begin());

@@ -12,38 +12,39 @@
 
 namespace cohort {
 
-/// The schedule of a run, as its experiment has it: its events, what actions of robots make happen, and when it stops.
+/// The schedule of a run, as described by its experiment: its events, the effects of robots' actions, and its stop
+/// conditions.
 class Schedule {
  public:
-  /// Brings a new object into the world, as a spawner has it and under this name. Returns a sentence. Throws
-  /// std::invalid_argument if it cannot be done; nothing is changed then.
+  /// Spawns a new object of a spawner with this name, and returns a sentence. Throws std::invalid_argument, without any
+  /// change, if it cannot be done.
   using Spawn = std::function<std::string(const description::Spawner& spawner, const std::string& name)>;
 
-  /// Throws std::invalid_argument if an event brings something before the first step.
+  /// Throws std::invalid_argument if an event spawns an object before the first step.
   Schedule(const description::Experiment& experiment, physics::World& world, Objects& objects,
            emission::Emitters& emitters, const actuation::UserActions& actions, Spawn spawn);
 
-  /// The events of a boundary: those of its time, then those of the actions that begin. Throws std::runtime_error for
-  /// one that cannot be done. Returns a sentence for each.
+  /// Carries out the events of a boundary: those of its time, then those of starting actions. Returns a sentence for
+  /// each. Throws std::runtime_error if one cannot be carried out.
   std::vector<std::string> begin_tick(std::uint64_t tick);
-  /// Does at once what is asked for from outside, at the boundary of `tick`. Returns a sentence. Throws
-  /// std::invalid_argument if it cannot be done; nothing is changed then.
+  /// Carries out an event that was requested from outside, at the boundary of `tick`. Returns a sentence. Throws
+  /// std::invalid_argument, without any change, if it cannot be done.
   std::string act_from_outside(const description::Event& event, std::uint64_t tick);
-  /// Applies the forces that act in the step from `tick` on.
+  /// Applies the forces of the step from `tick` on.
   void push(std::uint64_t tick);
-  /// Looks at the stop conditions; once at each boundary, until one holds.
+  /// Checks the stop conditions, once at each boundary, until one is met.
   void check_stops();
 
-  /// The stop condition that holds, in words.
+  /// Returns the stop condition that is met, in words.
   const std::optional<std::string>& stop_reason() const { return stop_reason_; }
 
   void hash(StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
-  /// With the world at `tick`.
+  /// The world must be at `tick`.
   void restore(SnapshotReader& reader, std::uint64_t tick);
 
  private:
-  /// Of an object of the description.
+  /// The state of an object of the description.
   enum class Stage : std::uint8_t { to_come, came, gone };
   void react(std::uint64_t tick, std::vector<std::string>& happened);
   std::string who_begins(const description::Reaction& reaction) const;
@@ -61,10 +62,10 @@ class Schedule {
   Spawn spawn_;
   std::vector<std::uint64_t> event_ticks_;
   std::size_t next_event_ = 0;
-  std::vector<std::uint64_t> boundaries_held_;  // in a row, of each stop condition
+  std::vector<std::uint64_t> boundaries_held_;  // number of consecutive boundaries, by stop condition
   std::vector<Stage> stages_;                   // by object
-  std::vector<std::uint64_t> force_ends_;       // of each event of each reaction: its force acts before this tick
-  std::vector<std::uint64_t> spawned_;          // how many objects each spawner has brought
+  std::vector<std::uint64_t> force_ends_;  // end of the force of each event of each reaction: it acts before this tick
+  std::vector<std::uint64_t> spawned_;     // number of spawned objects, by spawner
   struct Push {
     std::uint32_t object = 0;
     description::ApplyForce force;
@@ -72,9 +73,9 @@ class Schedule {
   };
   template <class Self, class Visit>
   static void visit_outside(Self& self, Visit&& visit);
-  // What was asked for from outside and is not over:
+  // Requests from outside that are still in progress:
   std::vector<Push> pushes_;
-  std::vector<std::uint32_t> removed_;  // for good, in the order of their going
+  std::vector<std::uint32_t> removed_;  // for good, in order of removal
   std::optional<std::string> stop_reason_;
 };
 

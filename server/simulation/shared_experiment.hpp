@@ -8,7 +8,7 @@
 
 namespace cohort {
 
-/// The experiment of a simulation. Simulations that are built like each other share it: then it stays as it is.
+/// The experiment of a simulation. Simulations that are built like each other share it; then it cannot be changed.
 class SharedExperiment {
  public:
   explicit SharedExperiment(description::Experiment experiment)
@@ -16,11 +16,11 @@ class SharedExperiment {
 
   const description::Experiment& operator*() const { return *experiment_; }
   const description::Experiment* operator->() const { return experiment_.get(); }
-  /// To be added to: models, objects, robots. Throws std::invalid_argument while
-  /// other simulations share it.
+  /// Returns the experiment for adding models, objects and robots. Throws std::invalid_argument while other simulations
+  /// share it.
   description::Experiment& edit() {
     if (experiment_.use_count() > 1)
-      throw std::invalid_argument("nothing can be added to a world that shares its experiment with other worlds");
+      throw std::invalid_argument("objects cannot be added to a world that shares its experiment with other worlds");
     return *experiment_;
   }
 

@@ -14,7 +14,7 @@ namespace cohort {
 namespace {
 
 constexpr std::size_t bodies_a_chunk = 64;
-// What a snapshot begins with: of this layout, and of the first one, which has no loads of belts.
+// The first bytes of a snapshot: of this layout, and of the first layout, which lacks the loads of belts.
 constexpr std::uint64_t snapshot_mark = 0x32746f68'74726f68u;
 constexpr std::uint64_t first_snapshot_mark = 0x746f6873'74726f68u;
 
@@ -52,7 +52,7 @@ Simulation::~Simulation() = default;
 
 const SharedExperiment& Simulation::shared_with_one_at(std::span<const Pose> X_WM) const {
   if (objects_.size() != objects_.described() || spawned_models_.size() > 0)
-    throw std::invalid_argument("objects have been added to this world: it cannot be built again");
+    throw std::invalid_argument("this world cannot be rebuilt, as objects have been added to it");
   if (X_WM.size() != objects_.size())
     throw std::invalid_argument("got " + std::to_string(X_WM.size()) + " poses, expected one for each of the " +
                                 std::to_string(objects_.size()) + " objects of the experiment");
@@ -84,7 +84,7 @@ void Simulation::on_action(const std::string& name, ActionHandler handler) {
 void Simulation::handle_actions() {
   for (const actuation::ActionOfRobot& action : actions_.all()) {
     bool is_handled = false;
-    for (const auto& [name, handler] : handlers_) {  // to which a handler may add one
+    for (const auto& [name, handler] : handlers_) {  // a handler may add one
       if (name != action.name || !world_->is_active(action.body)) continue;
       handler(action.robot.value, action.value);
       is_handled = true;
@@ -105,7 +105,7 @@ void Simulation::add_object(const std::string& name, std::size_t model, const Po
   note_bodies();
 }
 
-// All who know of bodies and robots are told of one that has come.
+// Registers a new object with everything that knows bodies and robots.
 void Simulation::enrol(std::uint32_t object, std::size_t team) {
   description::World& world = experiment_.edit().world;
   const description::Model& model = world.models[world.instances[object].model];
@@ -121,7 +121,7 @@ void Simulation::enrol(std::uint32_t object, std::size_t team) {
   robots_.add();
 }
 
-// The world has bodies that were not here before.
+// Updates everything that depends on the number of bodies.
 void Simulation::note_bodies() {
   body_hashes_.resize(world_->body_count());
   const geometry::Scene& scene = world_->scene();
@@ -202,7 +202,7 @@ std::string Simulation::spawn_object(const SpawnObject& spawn) {
   }
 }
 
-// Where it comes depends on the seed and its name alone.
+// The position depends only on the seed and the name.
 std::string Simulation::spawn_by(const description::Spawner& spawner, const std::string& name) {
   const RandomStream random(seed_, name, "spawn");
   Pose X_WM = spawner.X_WM;
@@ -249,17 +249,16 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   SnapshotReader reader(snapshot);
   std::uint64_t mark = 0;
   reader.read(mark);
-  if (mark != snapshot_mark && mark != first_snapshot_mark) throw SnapshotError("this is no snapshot");
+  if (mark != snapshot_mark && mark != first_snapshot_mark) throw SnapshotError("this is not a snapshot");
   if (mark == first_snapshot_mark) reader.set_layout(SnapshotLayout::first);
   std::uint64_t version = 0;
   reader.read(version);
-  if (version != hash_name(COHORT_VERSION))
-    throw SnapshotError("the snapshot is of another version than " COHORT_VERSION);
-  reader.expect_count(seed_, "as its seed");
-  reader.expect_count(static_cast<std::size_t>(experiment_->world.step.count()), "ns as its step");
+  if (version != hash_name(COHORT_VERSION)) throw SnapshotError("the snapshot is not from version " COHORT_VERSION);
+  reader.expect_count(seed_, "as seed");
+  reader.expect_count(static_cast<std::size_t>(experiment_->world.step.count()), "ns as time step");
   reader.read(tick_);
   if (tick_ > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max() / experiment_->world.step.count()))
-    throw SnapshotError("the snapshot is of a tick beyond all time");
+    throw SnapshotError("snapshot: the tick is out of range");
   spawned_models_.restore(reader);
   restore_added(reader);
   world_->restore(reader);
@@ -274,7 +273,7 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   reader.read(touches_.robot_ticks);
   reader.read(touches_.obstacles);
   reader.read(touches_.robots);
-  if (!reader.is_at_end()) throw SnapshotError("the snapshot goes on after its end");
+  if (!reader.is_at_end()) throw SnapshotError("the snapshot has extra bytes at its end");
 }
 
 void Simulation::save_added(SnapshotWriter& writer) const {
@@ -291,8 +290,7 @@ void Simulation::restore_added(SnapshotReader& reader) {
     std::uint32_t team = 0;
     if (world.models[world.instances[object].model].is_robot()) {
       reader.read(team);
-      if (team >= experiment_->teams.size())
-        throw SnapshotError("the snapshot has a robot of a team that is not there");
+      if (team >= experiment_->teams.size()) throw SnapshotError("snapshot: unknown team of a robot");
     }
     enrol(object, team);
   }

@@ -28,40 +28,40 @@
 
 namespace cohort {
 
-/// Robot-ticks in which a robot touched something, since the run began.
+/// Numbers of robot-ticks with contacts, since the start of the run.
 struct TouchCounts {
-  std::uint64_t robot_ticks = 0;  ///< robots times ticks
-  std::uint64_t obstacles = 0;    ///< touched something that is neither a robot nor a plane
-  std::uint64_t robots = 0;       ///< touched another robot
+  std::uint64_t robot_ticks = 0;  ///< number of robots times number of ticks
+  std::uint64_t obstacles = 0;    ///< in contact with something that is neither a robot nor a plane
+  std::uint64_t robots = 0;       ///< in contact with another robot
 };
 
-/// What became of an action.
+/// The result of an action.
 struct ActionResult {
   bool is_done = false;
-  std::string text;  ///< a sentence: what was done, or why it cannot be
+  std::string text;  ///< a sentence: what was done, or why it cannot be done
 };
 
-/// What a program does when robots do something. `value`: of the action in the step that has just ended, from 0 to 1
-/// and without a unit; above 0.5 the robot acts.
+/// A program's reaction to an action of robots. `value`: the action's command in the last step, from 0 to 1,
+/// dimensionless; above 0.5 the robot acts.
 using ActionHandler = std::function<void(std::uint32_t robot, double value)>;
 
-/// One world, advancing tick by tick. Between calls it stands at a boundary: the state of tick() is complete, and the
-/// observations of the robots due at this tick are there. No network, no wall clock; every result is a function of the
-/// experiment and of the commands, for any number of threads. One thread calls it.
+/// One world that advances tick by tick. Between calls it is at a boundary: the state of tick() is complete, and the
+/// observations of the robots due at this tick are available. It uses no network and no wall clock. Every result is a
+/// function of the experiment and of the commands, for any number of threads. For one calling thread.
 class Simulation {
  public:
-  /// Builds the world, of a copy of the experiment, and senses tick 0. Throws std::invalid_argument for a world that
+  /// Builds the world from a copy of the experiment, and senses tick 0. Throws std::invalid_argument for a world that
   /// cannot be simulated.
   Simulation(const description::Experiment& experiment, unsigned threads);
-  /// Builds the world again with another seed, on one thread, and each object of the experiment at `X_WM[object]`. Has
-  /// the same bits as one of the same experiment with that seed and those poses, and shares with `like` what is the
-  /// same in both: nothing can be added to either as long as both live. Throws std::invalid_argument also if there is
-  /// not one pose for each object, or if objects or models have been added to `like`.
+  /// Builds the same world with another seed, on one thread, with each object of the experiment at `X_WM[object]`. The
+  /// result has the same bits as one of the experiment with that seed and those poses. It shares common data with
+  /// `like`, so nothing can be added to either while both exist. Throws std::invalid_argument also if there is not one
+  /// pose for each object, or if objects or models have been added to `like`.
   Simulation(const Simulation& like, std::uint64_t seed, std::span<const Pose> X_WM);
   ~Simulation();
 
   std::uint64_t tick() const { return tick_; }
-  /// Simulated time: tick() * step.
+  /// Returns the simulated time: tick() * step.
   std::chrono::nanoseconds time() const { return experiment_->world.step * static_cast<std::int64_t>(tick_); }
 
   std::uint32_t robot_count() const { return robots_.size(); }
@@ -69,80 +69,82 @@ class Simulation {
   std::span<const RobotKind> kinds() const { return robots_.kinds(); }
   std::uint32_t kind_of(std::uint32_t robot) const { return robots_.kind_of(robot); }
   const description::Policy& policy(std::uint32_t robot) const { return robots_.policy(robot); }
-  /// Its body in `world()`, which is its index among `objects()`.
+  /// Returns the robot's body in `world()`, which is its index in `objects()`.
   BodyId body_of(std::uint32_t robot) const { return robots_.body_of(robot); }
-  /// Whether the robot is in the world: an event of the experiment may bring it later, or take it out.
+  /// Returns true if the robot is in the world: an event of the experiment may add or remove it.
   bool is_present(std::uint32_t robot) const { return robots_.is_present(robot); }
-  /// Whether the robot is asked at this tick, if it is in the world then.
+  /// Returns true if the robot receives a frame at this tick, provided that it is in the world then.
   bool is_due(std::uint32_t robot, std::uint64_t tick) const { return robots_.is_due(robot, tick); }
 
-  /// As of the last tick at which the robot was due.
+  /// Returns the observation of the last tick at which the robot was due.
   std::span<const double> observation(std::uint32_t robot) const { return robots_.observation(robot); }
 
-  /// Nothing if `values` may act on `robot`.
+  /// Returns nothing if `values` are a valid command of `robot`.
   std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const {
     return robots_.check_command(robot, values);
   }
-  /// For programs that embed a simulation: from now on `step` calls `handler`, on its own thread, at the boundary after
-  /// the step and before the events. It does so for every robot in the world that has an action of this name
-  /// (docs/devices.md, `cohort:action`), in the order of the robots; several handlers in the order of their coming. A
-  /// handler may call `act` and add handlers. It must depend on nothing but the simulation, or runs are no longer the
-  /// same; what it keeps itself is no part of a snapshot. What it throws comes out of `step`, and the simulation must
-  /// not be used after that. Throws std::invalid_argument if no robot has such an action.
+  /// Registers a handler, for programs that embed a simulation. From now on `step` calls it on its own thread, at the
+  /// boundary after the step and before the events. It is called for every robot in the world that has an action of
+  /// this name (docs/reference, `cohort:action`), in the order of the robots. Several handlers are called in the order
+  /// of their registration. A handler may call `act` and add handlers. It must depend only on the simulation, or runs
+  /// are not reproducible; its own data is not part of a snapshot. Its exceptions pass through `step`, and the
+  /// simulation must not be used afterwards. Throws std::invalid_argument if no robot has such an action.
   void on_action(const std::string& name, ActionHandler handler);
 
-  /// From this tick on the robot does this, until told otherwise. `values` must have passed `check_command`. Until the
-  /// first call every channel has its neutral value. Whether its bits are others than those that stood before.
+  /// Sets the robot's command from this tick on, until the next call. `values` must have passed `check_command`. Until
+  /// the first call every channel has its neutral value. Returns true if the bits of the command changed.
   bool set_command(std::uint32_t robot, std::span<const double> values) {
     return note_if(robots_.set_command(robot, values));
   }
-  /// The same with every channel's neutral value.
+  /// Sets every channel to its neutral value, likewise.
   bool set_neutral_command(std::uint32_t robot) { return note_if(robots_.set_neutral_command(robot)); }
-  /// That acts in the next step, unless the robot is disabled by then, as by an empty battery.
+  /// Returns the command that acts in the next step, unless the robot is disabled by then, for example by an empty
+  /// battery.
   std::span<const double> command(std::uint32_t robot) const { return robots_.command(robot); }
 
-  /// Actuates in the order of the robots, steps the world to the next boundary and senses there. A body whose state
-  /// breaks is quarantined; in a `strict` world std::runtime_error is thrown, which names it. The events of the new
-  /// boundary happen before the robots sense; one that cannot be done throws std::runtime_error too.
+  /// Actuates in the order of the robots, steps the world to the next boundary and senses there. A body whose state is
+  /// no longer finite is quarantined; in a `strict` world std::runtime_error is thrown, which names it. The events of
+  /// the new boundary happen before the robots sense. An event that cannot be carried out also throws
+  /// std::runtime_error.
   void step();
-  /// What happened at this boundary, a sentence for each: what broke, then actions that have a handler, then events.
+  /// Returns a sentence for each event of this boundary: broken joints, then actions with a handler, then events.
   const std::vector<std::string>& happened() const { return happened_; }
-  /// Says which stop condition of the experiment holds, as soon as one does.
+  /// Returns the first stop condition of the experiment that is met.
   const std::optional<std::string>& stop_reason() const { return schedule_.stop_reason(); }
 
-  /// Does what a person or a program asks for, now: after the events of this boundary and what stops a run was looked
-  /// at, and before any robot is asked. The robots that are due sense once more, so that what they observe at this tick
-  /// is the world as it is then; noise, and what sensors remember, is as if they had sensed once. Between steps.
-  /// Returns a sentence for the log. Throws std::invalid_argument, with a sentence that says why, if it cannot be done;
-  /// nothing is changed then. What is done is part of the state, and depends on nothing but the state and the action.
+  /// Carries out an action from outside, between steps. It happens after the events and the check of the stop
+  /// conditions of this boundary, and before any frame. The due robots sense once more, so that they observe the
+  /// changed world at this tick; noise and the memory of sensors are as if they had sensed once. Returns a sentence for
+  /// the log. Throws std::invalid_argument with the reason, without any change, if it cannot be done. The result is
+  /// part of the state, and depends only on the state and the action.
   std::string act(const Action& action);
-  /// One after the other, with one sensing after all of them.
+  /// Carries out actions in order, with one sensing after all of them.
   std::vector<ActionResult> act(std::span<const Action> actions);
 
-  /// Returns the experiment with the models, objects and robots that have come since. A simulation that was built like
-  /// another returns the seed and the poses of that one.
+  /// Returns the experiment with the added models, objects and robots. A simulation that was built like another returns
+  /// the seed and the poses of the other.
   const description::Experiment& experiment() const { return *experiment_; }
   const description::World& description() const { return experiment_->world; }
-  /// Everything in the world by its scoped name; an object's index is that of its body in `world()`.
+  /// Returns all objects of the world by their scoped names; an object's index is that of its body in `world()`.
   const Objects& objects() const { return objects_; }
   /// Returns the pose of its root link, X_WL.
   Pose object_pose(std::uint32_t object) const { return world_->link_pose(BodyId{object}, LinkId{0}); }
-  /// What the last step took out of the world: a sentence for each body, with its name.
+  /// Returns a sentence for each body that the last step quarantined, with its name.
   const std::vector<std::string>& quarantined() const { return quarantined_; }
 
-  /// Everything that decides how the run goes on from this boundary, for `restore` in this process or another. Bytes
+  /// Returns all state that determines the rest of the run from this boundary on, for `restore` in any process. Bytes
   /// are little-endian; the format is that of this version of Cohort.
   std::vector<std::byte> save() const;
-  /// Of a simulation of the same experiment, right after the construction of this one. Models that came to it as text
-  /// are read first, by `Experiment::read_model`. Throws SnapshotError if the
-  /// snapshot is of something else, cut short, or of another version; this is then not to be used.
+  /// Restores a simulation of the same experiment. Call it right after the construction. Models that were added as text
+  /// are read first, with `Experiment::read_model`. Throws SnapshotError if the snapshot is of another experiment or
+  /// version, or incomplete; this object must not be used afterwards.
   void restore(std::span<const std::byte> snapshot);
 
-  /// Of this boundary: everything that decides how the run goes on, and the observations. Costs nothing if nothing has
-  /// changed since it was asked for last.
+  /// Returns a hash of this boundary: all state that determines the rest of the run, and the observations. Costs
+  /// nothing if nothing has changed since the last call.
   std::uint64_t state_hash() const;
 
-  Pose robot_pose(std::uint32_t robot) const { return object_pose(body_of(robot).value); }  ///< of its root link, X_WL
+  Pose robot_pose(std::uint32_t robot) const { return object_pose(body_of(robot).value); }
   const physics::World& world() const { return *world_; }
   const emission::Emitters& emitters() const { return emitters_; }
   const gripping::Grippers& grippers() const { return grippers_; }
@@ -150,11 +152,11 @@ class Simulation {
   const TouchCounts& touches() const { return touches_; }
 
  private:
-  // `X_WM`: as make_world has them.
+  // `X_WM`: the poses for make_world.
   Simulation(SharedExperiment experiment, std::uint64_t seed, std::span<const Pose> X_WM, unsigned threads,
              const Simulation* like);
   const SharedExperiment& shared_with_one_at(std::span<const Pose> X_WM) const;
-  // Whatever is part of the state hash is about to change, or has just done so.
+  // To be called before or right after each change of hashed state.
   void note_change() { state_hash_.reset(); }
   bool note_if(bool has_changed) {
     if (has_changed) note_change();
@@ -176,7 +178,7 @@ class Simulation {
   void save_added(SnapshotWriter& writer) const;
   void restore_added(SnapshotReader& reader);
 
-  SharedExperiment experiment_;  // with what has come since
+  SharedExperiment experiment_;  // including additions
   std::uint64_t seed_;
   mutable WorkerPool workers_;
   std::unique_ptr<physics::World> world_;
@@ -195,7 +197,7 @@ class Simulation {
   TouchCounts touches_;
   std::vector<std::string> quarantined_;
   std::vector<std::string> happened_;
-  std::list<std::pair<std::string, ActionHandler>> handlers_;  // a handler may add one
+  std::list<std::pair<std::string, ActionHandler>> handlers_;  // a list, as a handler may add one
   mutable std::vector<std::uint64_t> body_hashes_;
   mutable std::optional<std::uint64_t> state_hash_;
 };

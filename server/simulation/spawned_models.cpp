@@ -46,7 +46,7 @@ std::size_t SpawnedModels::find_or_add(const description::ParsedModel& parsed) {
   return experiment_->world.models.size() - 1;
 }
 
-// Names of materials that the world has not known are added in their order.
+// New names of materials are added in their order.
 void SpawnedModels::add(const description::ParsedModel& parsed) {
   description::World& world = experiment_.edit().world;
   texts_.push_back({parsed.text, world.materials.size()});
@@ -87,10 +87,10 @@ void SpawnedModels::restore(SnapshotReader& reader) {
     std::string text(reader.read_count(1), ' ');
     reader.read_all(text.data(), text.size());
     try {
-      if (!experiment_->read_model) throw std::invalid_argument("this experiment reads no texts of models");
+      if (!experiment_->read_model) throw std::invalid_argument("this experiment does not accept models as text");
       add(*experiment_->read_model(text));
     } catch (const std::invalid_argument& error) {
-      throw SnapshotError(std::string("the snapshot has a model that cannot be read: ") + error.what());
+      throw SnapshotError(std::string("snapshot: invalid model: ") + error.what());
     }
   }
 }

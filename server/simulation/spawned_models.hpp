@@ -12,24 +12,24 @@
 
 namespace cohort {
 
-/// The models that a running world was given, read from texts, behind those of its description. The texts are part of
-/// its state: a snapshot brings them along.
+/// The models that were added to a running world as text, after those of its description. The texts are part of its
+/// state, and of snapshots.
 class SpawnedModels {
  public:
-  /// Adds to the models and materials of `experiment`, which must outlive this.
+  /// Adds to the models and materials of `experiment`, which must outlive this object.
   explicit SpawnedModels(SharedExperiment& experiment)
       : experiment_(experiment), described_(experiment->world.models.size()) {}
 
-  /// The index of the model; one of a text that has not come before is new. Throws std::invalid_argument if the world
-  /// has no model of the name.
+  /// Returns the index of the model; a new text is added. Throws std::invalid_argument if the world has no model of
+  /// that name.
   std::size_t find_or_add(const ModelChoice& choice);
   std::size_t size() const { return texts_.size(); }
-  /// As if no more than the first `count` texts had come.
+  /// Removes all but the first `count` texts.
   void shrink(std::size_t count);
 
   void hash(StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
-  /// Reads the texts again by `Experiment::read_model`.
+  /// Reads the texts again with `Experiment::read_model`.
   void restore(SnapshotReader& reader);
 
  private:

@@ -12,15 +12,16 @@ void expect(bool holds, const char* otherwise) {
 void check_mesh(const messages::SceneMesh& mesh) {
   const std::size_t vertices = mesh.vertices.size() / 3;
   expect(std::ranges::all_of(mesh.triangles, [&](std::uint32_t vertex) { return vertex < vertices; }),
-         "a mesh has a triangle of a vertex that is not there");
-  expect(mesh.colors.empty() || mesh.colors.size() == mesh.triangles.size(), "a mesh has other colours than triangles");
+         "a triangle has an unknown vertex");
+  expect(mesh.colors.empty() || mesh.colors.size() == mesh.triangles.size(),
+         "the numbers of colours and triangles of a mesh differ");
 }
 
 void check_shape(const messages::Scene& scene, const messages::SceneShape& shape) {
   const bool is_mesh = shape.kind == static_cast<std::uint8_t>(messages::ShapeKind::mesh);
-  expect(!is_mesh || shape.mesh < scene.meshes.size(), "a shape is of a mesh that is not there");
+  expect(!is_mesh || shape.mesh < scene.meshes.size(), "a shape has an unknown mesh");
   expect(!shape.has_mesh_colors || (is_mesh && !scene.meshes[shape.mesh].colors.empty()),
-         "a shape has the colours of a mesh that has none");
+         "a shape uses the colours of a mesh without colours");
 }
 
 }  // namespace
@@ -32,7 +33,7 @@ std::size_t check_scene(const messages::Scene& scene) {
       for (const messages::SceneShape& shape : link.shapes) check_shape(scene, shape);
   std::size_t links = 0;
   for (const messages::SceneEntity& entity : scene.entities) {
-    expect(entity.model < scene.models.size(), "an object is of a model that is not there");
+    expect(entity.model < scene.models.size(), "an object has an unknown model");
     links += scene.models[entity.model].links.size();
   }
   return links;
@@ -40,7 +41,7 @@ std::size_t check_scene(const messages::Scene& scene) {
 
 void check_frame(const messages::SceneFrame& frame, std::size_t links) {
   expect(frame.positions.size() == 3 * links && frame.orientations.size() == 4 * links,
-         "a frame has other links than its scene");
+         "the numbers of links of a frame and its scene differ");
 }
 
 }  // namespace cohort::viewing

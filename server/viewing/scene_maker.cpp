@@ -55,7 +55,7 @@ SceneMaker::SceneMaker(const Simulation& simulation, std::uint32_t revision)
 
 bool SceneMaker::is_outdated() const { return simulation_.objects().size() != objects_; }
 
-// LEDs shine on light sensors too, as lamps; they are shown once.
+// LEDs are also lamps for light sensors; they are shown only once.
 void SceneMaker::choose_lamps() {
   const emission::Emitters& emitters = simulation_.emitters();
   std::vector<char> is_led(emitters.lamps().size(), 0);

@@ -8,20 +8,20 @@
 
 namespace cohort::viewing {
 
-/// Tells viewers of a simulation. Reads and changes nothing, so the run's hash is the same without it. Between steps,
-/// on the thread that steps.
+/// Describes a simulation to viewers. It only reads, so the run's hash does not depend on it. Use it between steps, on
+/// the thread that steps.
 class SceneMaker {
  public:
-  /// `simulation` must outlive this. `revision`: another one for each maker of a source.
+  /// `simulation` must outlive this object. `revision`: unique among the makers of a source.
   SceneMaker(const Simulation& simulation, std::uint32_t revision);
 
-  /// Objects have come that are not in the scene: time for another maker.
+  /// Returns true if there are objects that are not in the scene; then a new maker is needed.
   bool is_outdated() const;
   messages::Scene scene() const;
   messages::SceneFrame frame(std::uint32_t run, std::uint64_t state_hash) const;
   messages::SceneSignals signals() const;
   messages::SceneContacts contacts() const;
-  /// `robot`: an id of the simulation.
+  /// `robot`: id in the simulation.
   messages::SceneRobot robot(std::uint32_t robot) const;
 
  private:
@@ -42,9 +42,9 @@ class SceneMaker {
   std::uint32_t revision_;
   std::uint32_t objects_;
   std::vector<PlacedLink> links_;                          // in the order of a frame
-  std::vector<std::uint32_t> place_in_model_;              // of each object
-  std::vector<std::vector<std::uint32_t>> first_of_link_;  // by model and link: place among links_
-  std::vector<std::uint32_t> lamps_;                       // those that are no LEDs
+  std::vector<std::uint32_t> place_in_model_;              // by object
+  std::vector<std::vector<std::uint32_t>> first_of_link_;  // by model and link: index in links_
+  std::vector<std::uint32_t> lamps_;                       // lamps that are not LEDs
 };
 
 }  // namespace cohort::viewing

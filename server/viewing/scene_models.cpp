@@ -33,7 +33,7 @@ messages::SceneMesh mesh_of(const description::TriangleMesh& triangles) {
   return mesh;
 }
 
-// Triangles as description::Heightmap says.
+// Returns the triangles as specified by description::Heightmap.
 messages::SceneMesh mesh_of(const description::HeightGrid& grid) {
   const Eigen::Vector2d half = grid.half_size();
   messages::SceneMesh mesh;
@@ -59,7 +59,7 @@ messages::SceneMesh mesh_of(const description::HeightGrid& grid) {
   return mesh;
 }
 
-// Shapes, with the meshes that they share.
+// A writer of shapes, and of the meshes that they share.
 class ShapeWriter {
  public:
   explicit ShapeWriter(std::vector<messages::SceneMesh>& meshes) : meshes_(meshes) {}
@@ -132,7 +132,7 @@ messages::SceneLink link_of(const description::Link& from, ShapeWriter& writer) 
   return link;
 }
 
-// A ray from a place in S along a direction there.
+// Adds a ray from a point in S along a direction in S.
 void add_ray(messages::SceneSensor& sensor, const Pose& X_LS, const Eigen::Vector3d& p_S,
              const Eigen::Vector3d& direction_S) {
   for (const double part : X_LS* p_S) sensor.origins.push_back(number(part));

@@ -1,7 +1,9 @@
-// What a batch of many small worlds costs, as a table: one s-bot in each, in an empty square and among 24 posts.
+// Prints a table of the cost of a batch of many small worlds. Each has one s-bot, in an empty square or among 24 posts.
+//
 //   batch_benchmark [--worlds N] [--seconds S] [--resets N]
-// Rates are ticks of single worlds per second of CPU time, on one thread. The memory of a world is what the heap grows
-// by for each world after the first; a reset is to a new seed, and posts are placed anew too.
+//
+// Rates are ticks of single worlds per second of CPU time, on one thread. The memory of a world is the growth of the
+// heap for each world after the first. A reset uses a new seed and draws the poses of the posts again.
 
 #include <malloc.h>
 
@@ -19,7 +21,7 @@ namespace {
 
 struct Options {
   std::size_t worlds = 256;
-  double seconds = 1.0;  // of each measurement
+  double seconds = 1.0;  // duration of each measurement
   std::uint64_t resets = 1'000'000;
 };
 
@@ -42,7 +44,7 @@ description::Experiment experiment_of(const std::string& name, description::Fide
   return experiment;
 }
 
-// All drive in wide circles.
+// Makes all robots drive in wide circles.
 void drive(Batch& batch) {
   for (std::size_t i = 0; i < batch.commands().size(); i += batch.command_size()) {
     batch.commands()[i] = 0.08;
@@ -50,7 +52,7 @@ void drive(Batch& batch) {
   }
 }
 
-// Of all worlds together, a second of CPU time; `ticks` at a visit.
+// Returns the ticks of all worlds together per second of CPU time, with `ticks` in each call of `step`.
 double rate(Batch& batch, std::uint64_t ticks, double seconds) {
   drive(batch);
   batch.step(ticks);
@@ -64,7 +66,7 @@ double rate(Batch& batch, std::uint64_t ticks, double seconds) {
   return static_cast<double>(count) / passed;
 }
 
-// [us] of each, and what the heap grew by over all but the first tenth [KiB].
+// Time of one reset [us], and the growth of the heap over all resets except the first tenth [KiB].
 struct ResetCost {
   double microseconds = 0.0;
   double growth = 0.0;
@@ -74,7 +76,7 @@ ResetCost reset_cost(Batch& batch, std::uint64_t resets) {
   double begin = cpu_seconds();
   for (std::uint64_t i = 0; i < resets; ++i) {
     if (i == resets / 10) heap = heap_kib();
-    if (i % 4096 == 4095) batch.step();  // no world stays untouched
+    if (i % 4096 == 4095) batch.step();  // step every world
     batch.reset(i % batch.worlds(), i);
   }
   return {(cpu_seconds() - begin) * 1e6 / static_cast<double>(resets), heap_kib() - heap};
@@ -111,9 +113,10 @@ int main(int count, char** arguments) {
     if (name == "--seconds") options.seconds = std::strtod(arguments[i + 1], nullptr);
     if (name == "--resets") options.resets = std::strtoull(arguments[i + 1], nullptr, 10);
   }
-  std::printf("| world   | physics | 1 world [k ticks/CPU-s] | %zu worlds, 1 tick a visit | 10 ticks a visit | KiB a world | "
-              "us a reset | KiB that %llu resets leave |\n|---|---|---|---|---|---|---|---|\n",
-              options.worlds, static_cast<unsigned long long>(options.resets));
+  std::printf(
+      "| world   | physics | 1 world [k ticks/CPU-s] | %zu worlds, 1 tick a visit | 10 ticks a visit | KiB a world | "
+      "us a reset | KiB that %llu resets leave |\n|---|---|---|---|---|---|---|---|\n",
+      options.worlds, static_cast<unsigned long long>(options.resets));
   for (const char* name : {"alone", "posts"})
     for (const auto fidelity : {cohort::description::Fidelity::treel, cohort::description::Fidelity::planar})
       cohort::measure(name, fidelity, options);

@@ -10,8 +10,8 @@
 #include "server/sensing/sensor.hpp"
 #include "tests/support/robots.hpp"
 
-// What sensors cost with all that is around: the whole of a tick's sensing, for robots at rest in an arena of
-// 10 m x 10 m with four walls, on one thread.
+// Measures sensors with their surroundings: the whole sensing of a tick, on one thread. Robots rest in an arena of 10 m
+// x 10 m with four walls.
 namespace cohort::sensing {
 namespace {
 
@@ -41,7 +41,8 @@ class Swarm {
     grippers_ = std::make_unique<gripping::Grippers>(description_, *world_);
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
-        auto sensor = make_sensor({*world_, *emitters_, description_, *grippers_, views_, BodyId{body}, DeviceId{device}, 1});
+        auto sensor =
+            make_sensor({*world_, *emitters_, description_, *grippers_, views_, BodyId{body}, DeviceId{device}, 1});
         if (!sensor) continue;
         sensors_.push_back(std::move(sensor));
         std::size_t size = 0;
@@ -50,7 +51,7 @@ class Swarm {
       }
   }
 
-  /// All LEDs of all robots shine, if they have any.
+  /// Switches on all LEDs of all robots, if they have any.
   void light_up() {
     for (std::size_t body : description_.robots)
       for (std::uint32_t led = 0; led < leds_a_robot; ++led)
@@ -91,7 +92,7 @@ class Swarm {
   std::vector<std::vector<double>> values_;
 };
 
-// Of a robot and tick: time / robots.
+// Reports the time per robot and tick.
 void run(benchmark::State& state, Swarm& swarm) {
   std::uint64_t tick = 0;
   for ([[maybe_unused]] auto iteration : state) swarm.sense(++tick);
@@ -122,7 +123,7 @@ void see_and_hear_24_of_each(benchmark::State& state) {
 }
 BENCHMARK(see_and_hear_24_of_each)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
-// The ways to measure proximity. The argument is the technique, in the order of the enumeration.
+// Measures each proximity technique. The argument is the technique, in the order of the enumeration.
 void measure_proximity(benchmark::State& state) {
   description::ProximityRing ring{"proximity", 1, {{0, 0, 0.02}}, 15, 0.2, 2.0 * pi / 15.0, 0.058, 0.2, {}};
   ring.technique = static_cast<description::ProximityTechnique>(state.range(1));
@@ -140,7 +141,7 @@ BENCHMARK(measure_proximity)->ArgsProduct({{1000}, {0, 1, 2, 3, 4}})->Unit(bench
 
 const description::Device leds = description::LedRing{"leds", 1, {{0, 0, 0.02}}, leds_a_robot, 0.0, pi / 4.0, 0.058};
 
-// The spots of the robots around, within 0.5 m; all LEDs shine.
+// Measures a camera of spots: the robots within 0.5 m, with all LEDs on.
 void see_spots(benchmark::State& state) {
   const description::Device camera =
       description::OmnidirectionalCamera{"camera", 1, {{0, 0, 0.06}}, 0.5, -1.0, 1.0, 32, {}};
@@ -150,7 +151,7 @@ void see_spots(benchmark::State& state) {
 }
 BENCHMARK(see_spots)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
-// An image of 180 x 32 pixels.
+// Measures an image of 180 x 32 pixels.
 void film(benchmark::State& state) {
   description::PanoramicCamera camera;
   camera.name = "film";

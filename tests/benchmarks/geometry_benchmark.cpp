@@ -14,7 +14,7 @@ constexpr std::uint32_t robots = 1000;
 
 double spacing_of(const benchmark::State& state) { return 0.01 * static_cast<double>(state.range(0)); }
 
-// 24 rays of each robot, spaced by the argument in centimetres.
+// Casts 24 rays from each robot. The argument is the spacing of robots in centimetres.
 void cast_rays(benchmark::State& state) {
   const RayField field(robots, spacing_of(state), seed);
   for ([[maybe_unused]] auto iteration : state) benchmark::DoNotOptimize(field.cast());
@@ -22,7 +22,7 @@ void cast_rays(benchmark::State& state) {
 }
 BENCHMARK(cast_rays)->Arg(70)->Arg(14)->Unit(benchmark::kMicrosecond);
 
-// Poses set and taken into the grid.
+// Sets all poses and updates the grid.
 void move_all(benchmark::State& state) {
   RayField field(robots, spacing_of(state), seed);
   for ([[maybe_unused]] auto iteration : state) field.move_all();

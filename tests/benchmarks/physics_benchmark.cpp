@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint64_t seed = 1;
 constexpr unsigned steps_a_control_tick = 10;
 
-// One step of robots that drive at random and have done so for a second.
+// Measures one step of robots that have driven at random for a second.
 void step_driving(benchmark::State& state, Scene scene, Drive drive) {
   scene.drive = drive;
   const auto robots = static_cast<std::uint32_t>(scene.robots.size());

@@ -7,7 +7,7 @@
 #include "server/placement/with_seed.hpp"
 #include "tests/support/worlds/arena_of_obstacles.hpp"
 
-// A robot in an arena with 24 obstacles, which stand where they are (argument 0) or are drawn too (argument 1).
+// Places a robot in an arena with 24 obstacles, whose poses are fixed (argument 0) or drawn (argument 1).
 namespace cohort::placement {
 namespace {
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""What control steps cost in Python, as a table: Cohort beside other simulators and the floor of its own batch.
+"""Prints a table of the cost of control steps in Python: Cohort, its batch as a lower bound, and other simulators.
 
     tools/python-environment --benchmarks                          # prints a Python that has all of them
     PYTHONPATH=build/release/python PYTHON tests/benchmarks/python_benchmark.py [--seconds S] [--worlds N]
 
-A step is one tick of 10 ms of one world: all robots sense and are commanded. Every row is measured in turns, so that
-what else the machine does is shared; medians and quartiles are of steps of a robot for each second of CPU time. Peers
-that are not installed are left out, by name.
+A step is one tick of 10 ms of one world: all robots sense and are commanded. Rows are measured in turns, so that other
+load of the machine affects all alike. Medians and quartiles are robot-steps per second of CPU time. The output names
+simulators that are not installed.
 """
 
 import argparse

@@ -11,8 +11,8 @@
 #include "server/geometry/visibility/sight_lines.hpp"
 #include "server/sensing/readings/sample_table.hpp"
 
-// What sensors ask of the scene: an arena of 10 m x 10 m with a floor, four walls and 1000 robots, discs with a radius
-// of 6 cm.
+// Measures the queries of sensors to the scene: an arena of 10 m x 10 m with a floor, four walls and 1000 robots.
+// Robots are discs with a radius of 6 cm.
 namespace cohort::geometry {
 namespace {
 
@@ -51,7 +51,7 @@ struct Arena {
 
 constexpr std::uint32_t lamps = 24;
 
-// Where each robot has its light sensor.
+// Returns the position of each robot's light sensor.
 std::vector<Vector3d> sensors_of(const Arena& arena) {
   std::vector<Vector3d> sensors;
   for (std::uint32_t robot = 0; robot < arena.robots; ++robot)
@@ -61,8 +61,8 @@ std::vector<Vector3d> sensors_of(const Arena& arena) {
 
 Vector3d lamp_of(const Arena& arena, std::uint32_t lamp, double z) { return arena.place(1'000'000 + lamp, z); }
 
-// All that a tick takes: outlines, 24 lamps, and each robot's question about each lamp. The argument is the height of
-// the lamps in centimetres; robots have theirs at 9 cm.
+// Measures everything that a tick needs: outlines, 24 lamps, and a query by each robot about each lamp. The argument is
+// the height of the lamps in centimetres; light sensors are at 9 cm.
 void see_lamps(benchmark::State& state) {
   const Arena arena(1000);
   std::vector<SightLines> lines(lamps);
@@ -82,7 +82,7 @@ void see_lamps(benchmark::State& state) {
 }
 BENCHMARK(see_lamps)->Arg(5)->Arg(20)->Arg(100)->Unit(benchmark::kMicrosecond);
 
-// The same, each robot asking for all lamps in turn, as a light sensor does.
+// Measures the same with each robot querying all lamps in turn, as a light sensor does.
 void see_lamps_robot_by_robot(benchmark::State& state) {
   const Arena arena(1000);
   std::vector<SightLines> lines(lamps);
@@ -102,7 +102,7 @@ void see_lamps_robot_by_robot(benchmark::State& state) {
 }
 BENCHMARK(see_lamps_robot_by_robot)->Arg(5)->Arg(20)->Arg(100)->Unit(benchmark::kMicrosecond);
 
-// Building alone, outlines included.
+// Measures only the building, including outlines.
 void build_sight_lines(benchmark::State& state) {
   const Arena arena(1000);
   std::vector<SightLines> lines(lamps);
@@ -122,7 +122,7 @@ void gather_outlines(benchmark::State& state) {
 }
 BENCHMARK(gather_outlines)->Unit(benchmark::kMicrosecond);
 
-// The same questions to plain rays.
+// Measures the same queries with plain rays.
 void see_lamps_by_rays(benchmark::State& state) {
   const Arena arena(1000);
   std::size_t seen = 0;
@@ -142,7 +142,8 @@ void see_lamps_by_rays(benchmark::State& state) {
 }
 BENCHMARK(see_lamps_by_rays)->Arg(5)->Arg(20)->Arg(100)->Unit(benchmark::kMicrosecond);
 
-// Robots that hear each other within a metre: each one a source, asked for by all that may be near enough.
+// Measures robots that receive each other's signals within a metre: each is a source, queried by all that may be near
+// enough.
 void hear_robots(benchmark::State& state) {
   const Arena arena(static_cast<std::uint32_t>(state.range(0)));
   SightLines lines;
@@ -164,7 +165,7 @@ void hear_robots(benchmark::State& state) {
 }
 BENCHMARK(hear_robots)->Arg(1000)->Arg(4000)->Unit(benchmark::kMicrosecond);
 
-// The same by rays.
+// Measures the same with plain rays.
 void hear_robots_by_rays(benchmark::State& state) {
   const Arena arena(static_cast<std::uint32_t>(state.range(0)));
   std::size_t pairs = 0;
@@ -187,7 +188,7 @@ void hear_robots_by_rays(benchmark::State& state) {
 }
 BENCHMARK(hear_robots_by_rays)->Arg(1000)->Arg(4000)->Unit(benchmark::kMicrosecond);
 
-// 360 directions round each robot, 20 cm from its rim.
+// Measures 360 directions around each robot, up to 20 cm from its rim.
 void cast_shadows(benchmark::State& state) {
   const Arena arena(static_cast<std::uint32_t>(state.range(0)));
   const ShadowRing ring(360);
@@ -232,7 +233,7 @@ void see_panorama(benchmark::State& state) {
 }
 BENCHMARK(see_panorama)->Unit(benchmark::kMicrosecond);
 
-// The same pixels by plain rays.
+// Measures the same pixels with plain rays.
 void see_panorama_by_rays(benchmark::State& state) {
   const Arena arena(100);
   const Panorama panorama = camera();
@@ -248,7 +249,7 @@ void see_panorama_by_rays(benchmark::State& state) {
 }
 BENCHMARK(see_panorama_by_rays)->Unit(benchmark::kMicrosecond);
 
-// One object's 15 readings out of 20 distances and 72 angles.
+// Looks up the 15 readings of one object in a table of 20 distances and 72 angles.
 void look_up_samples(benchmark::State& state) {
   const RandomStream random(2, "sensing_benchmark", "samples");
   description::Samples samples;

@@ -10,8 +10,8 @@ namespace cohort::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A program for an e-puck2, which connects to it over WiFi: written from docs/bridges/epuck2.md alone, and nothing of
-/// the bridge is in it. What fails throws std::runtime_error.
+/// A program for an e-puck2, which connects to it over WiFi: written from docs/bridges/epuck2.md alone, without code of
+/// the bridge. Throws std::runtime_error on any failure.
 class EpuckProgram {
  public:
   explicit EpuckProgram(std::uint16_t port, const std::string& address = "127.0.0.1");

@@ -4,51 +4,23 @@
 #include <memory>
 #include <regex>
 
+#include "tests/bridges/bridged_run.hpp"
 #include "tests/bridges/epuck2_program.hpp"
 #include "tests/support/process.hpp"
 
 namespace cohort::test {
 namespace {
 
-constexpr const char* shipped = COHORT_SOURCE_DIR "/worlds/experiments/epuck2.yaml";
-
 // A server and a bridge, for programs of a test to connect to.
-class Simulated {
- public:
-  explicit Simulated(const std::string& experiment, const std::string& seconds, const std::string& robots,
-                     std::vector<std::string> more = {})
-      : server_({cohort_program(), "serve", experiment, "--duration", seconds, "--domain", domain_.text(), "--summary",
-                 (folder_ / "summary.json").string()}) {
-    std::vector<std::string> command = {
-        COHORT_BUILD_DIR "/bin/cohort-epuck2-bridge", "--robots", robots, "--domain", domain_.text(), "--port", "0"};
-    command.insert(command.end(), more.begin(), more.end());
-    bridge_ = std::make_unique<Process>(command);
-  }
-
-  Process& server() { return server_; }
-  Process& bridge() { return *bridge_; }
-
-  std::uint16_t port(const std::string& robot) {
-    const std::string prefix = "robot " + robot + ": the program connects at ";
-    if (!bridge_->wait_for_output(prefix)) throw std::runtime_error("no port: " + bridge_->output());
-    std::smatch match;
-    const std::string output = bridge_->output();
-    if (!std::regex_search(output, match, std::regex(prefix + R"([\d.]+:(\d+)\n)"))) return 0;
-    return static_cast<std::uint16_t>(std::stoul(match[1]));
-  }
-
-  nlohmann::json summary() {
-    EXPECT_EQ(server_.wait_for_exit(), 0) << server_.output();
-    EXPECT_EQ(bridge_->wait_for_exit(), 0) << bridge_->output();
-    return read_json(folder_ / "summary.json");
-  }
-
- private:
-  ReservedDomain domain_;
-  ScratchFolder folder_;
-  Process server_;
-  std::unique_ptr<Process> bridge_;
-};
+BridgedRun::Options with_bridge(const std::string& experiment, const std::string& seconds, const std::string& robots,
+                                const std::vector<std::string>& more = {}) {
+  return {.experiment = experiment,
+          .bridge = "cohort-epuck2-bridge",
+          .robots = robots,
+          .seconds = seconds,
+          .more = more,
+          .who = "program"};
+}
 
 // Commands as a program gives them that knows nothing of a simulation, until the robots hang up. How many exchanges
 // that were, and how far the wheels of the first robot turned [steps].
@@ -94,8 +66,8 @@ class Epuck2Bridge : public ::testing::Test {
                "world: world.yaml\nduration: 1\nseed: 1\nphysics: {fidelity: articulated}\n"
                "teams:\n  - {name: alone, robots: epuck, controller: constant, period: 5}\n");
   }
-  std::unique_ptr<Simulated> simulate(const std::string& seconds, const std::vector<std::string>& more = {}) const {
-    return std::make_unique<Simulated>((folder_ / "experiment.yaml").string(), seconds, "epuck", more);
+  std::unique_ptr<BridgedRun> simulate(const std::string& seconds, const std::vector<std::string>& more = {}) const {
+    return std::make_unique<BridgedRun>(with_bridge((folder_ / "experiment.yaml").string(), seconds, "epuck", more));
   }
   /// The robot turns on the spot, commanded by one program to the end.
   static void turn(EpuckProgram& program, int exchanges) {
@@ -125,12 +97,12 @@ class Epuck2Bridge : public ::testing::Test {
 TEST_F(Epuck2Bridge, AProgramForTheRobotAvoidsObstaclesAndTwoRunsGiveTheSameBits) {
   std::vector<std::string> hashes;
   for (int run = 0; run < 2; ++run) {
-    Simulated simulated(shipped, "30", "0..3");
+    BridgedRun simulated(with_bridge("epuck2", "30", "0..3"));
     std::vector<EpuckProgram> programs;
     for (const char* robot : {"0", "1", "2", "3"}) programs.emplace_back(simulated.port(robot));
     const Drive made = drive(programs);
     const auto summary = simulated.summary();
-    EXPECT_EQ(made.exchanges, 599);  // of the last command the run's end is the answer
+    EXPECT_EQ(made.exchanges, 599);  // the answer to the last command is the run's end
     EXPECT_GT(made.steps, 1000);
     EXPECT_EQ(summary["touches"]["obstacles"], 0);
     EXPECT_EQ(summary["touches"]["robots"], 0);
@@ -226,7 +198,7 @@ TEST_F(Epuck2Bridge, APacketThatIsNoneEndsItsConnectionByNameAndLeavesTheRunItsB
   const Bytes long_text(10'000, 'A');
   for (const auto& [sent, reason] : {std::pair(Bytes{'G', 'E', 'T'}, "a command begins with 0x80, not with 0x47"),
                                      {long_text, "a command begins with 0x80, not with 0x41"},
-                                     {unknown_request, "request 0x40: there are but image (1) and sensors (2)"}}) {
+                                     {unknown_request, "request 0x40: expected image (1), sensors (2) or both (3)"}}) {
     EpuckProgram program(port);
     program.send(sent);
     EXPECT_TRUE(program.is_cut_off());
@@ -310,12 +282,12 @@ TEST(Epuck2BridgeOptions, AreRefusedWithWhatToDo) {
   const std::string program = COHORT_BUILD_DIR "/bin/cohort-epuck2-bridge";
   for (const auto& [arguments, text] : {std::pair(std::vector<std::string>{"--robots", "all"}, "single robots"),
                                         {{"--robots", "epucks/*"}, "single robots"},
-                                        {{"--robots", "0..x"}, "'x' is not an id"},
-                                        {{"--robots", ","}, "names no robot"},
+                                        {{"--robots", "0..x"}, "'x': expected the id of a robot"},
+                                        {{"--robots", ","}, "'--robots' is empty"},
                                         {{"--robots", "0..3", "--listen", "127.0.0.1,127.0.0.2"}, "one for each robot"},
                                         {{"--listen", "nowhere"}, "is not an IPv4 address"},
                                         {{"--listen", "192.0.2.1", "--port", "0"}, "cannot listen at 192.0.2.1:0"},
-                                        {{"--robots", "0..3", "--port", "65534"}, "no ports beyond 65535"},
+                                        {{"--robots", "0..3", "--port", "65534"}, "the last robot exceeds 65535"},
                                         {{"--without-program", "dance"}, "--without-program"}}) {
     std::vector<std::string> command{program};
     command.insert(command.end(), arguments.begin(), arguments.end());
@@ -327,7 +299,7 @@ TEST(Epuck2BridgeOptions, AreRefusedWithWhatToDo) {
 
 // As real robots are reached: each at its own address, all at the same port.
 TEST_F(Epuck2Bridge, RobotsMayHaveAddressesOfTheirOwn) {
-  Simulated simulated(shipped, "1", "0..1", {"--listen", "127.0.0.1,127.0.0.2"});
+  BridgedRun simulated(with_bridge("epuck2", "1", "0..1", {"--listen", "127.0.0.1,127.0.0.2"}));
   EpuckProgram first(simulated.port("0"), "127.0.0.1");
   EpuckProgram second(simulated.port("1"), "127.0.0.2");
   EXPECT_NE(simulated.bridge().output().find("127.0.0.2"), std::string::npos);

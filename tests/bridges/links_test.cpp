@@ -8,6 +8,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -100,7 +101,7 @@ TEST(Links, OverTcpTakeOneFirmwareAtATimeAndTellWhoComesAndWhyItLeaves) {
   second.write("three\n");
   EXPECT_EQ(bridge.receive(), "three\n");
   EXPECT_NE(bridge.told.find("the firmware has connected from 127.0.0.1:"), std::string::npos) << bridge.told;
-  EXPECT_NE(bridge.told.find("has left in the middle of a message, after 4 bytes"), std::string::npos) << bridge.told;
+  EXPECT_NE(bridge.told.find("has left inside a message, after 4 bytes"), std::string::npos) << bridge.told;
 }
 
 TEST(Links, OverUdpAnswerWhereTheLastDatagramCameFrom) {
@@ -115,7 +116,26 @@ TEST(Links, OverUdpAnswerWhereTheLastDatagramCameFrom) {
   EXPECT_EQ(second.read(), "for the second\n");
 }
 
-TEST(Links, OverUdpWithAPeerSendFirstAndHearNobodyElse) {
+TEST(Links, OverUdpHearTheLaterOfTwoUntilItIsHungUp) {
+  Conversing bridge("udp:127.0.0.1:0");
+  const Peer first(SOCK_DGRAM, bridge.conversation.place());
+  const Peer second(SOCK_DGRAM, bridge.conversation.place());
+  first.write("one\n");
+  EXPECT_EQ(bridge.receive(), "one\n");
+  second.write("two\n");
+  EXPECT_EQ(bridge.receive(), "two\n");
+  first.write("not heard\n");
+  second.write("three\n");
+  EXPECT_EQ(bridge.receive(), "three\n");
+  bridge.send("to the second\n");
+  EXPECT_EQ(second.read(), "to the second\n");
+  second.write("broken!\n");
+  first.write("four\n");
+  EXPECT_EQ(bridge.receive(), "four\n");
+  EXPECT_NE(bridge.told.find("the firmware speaks from 127.0.0.1:"), std::string::npos) << bridge.told;
+}
+
+TEST(Links, OverUdpWithAPeerSendFirstAndIgnoreOtherSenders) {
   Descriptor firmware(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in endpoint = address_in("127.0.0.1:0");
   ASSERT_EQ(::bind(firmware.number(), reinterpret_cast<sockaddr*>(&endpoint), sizeof endpoint), 0);
@@ -156,13 +176,51 @@ TEST(Links, OverAPseudoTerminalAreASerialDeviceToTheFirmware) {
   EXPECT_FALSE(std::filesystem::is_symlink(device));
 }
 
-TEST(Links, OfASerialDeviceAreRaw) {
+TEST(Links, ToASerialDeviceAreRaw) {
   Conversing other_end("pty");
   Conversing bridge("serial:" + other_end.conversation.place() + ":115200");
+  EXPECT_TRUE(bridge.conversation.wait_for_connection({}));
   bridge.send("a\r\n");
   EXPECT_EQ(other_end.receive(), "a\r\n");
   other_end.send("b\n");
   EXPECT_EQ(bridge.receive(), "b\n");
+}
+
+TEST(Links, ToAnUnpluggedSerialDeviceAreLostAndReconnectWhenItIsBack) {
+  const test::ScratchFolder folder;
+  const std::string device = (folder / "ttyBOARD").string();
+  std::optional<Conversing> board("pty:" + device);
+  Conversing bridge("serial:" + device + ":115200");
+  board->send("one\nhalf");
+  EXPECT_EQ(bridge.receive(), "one\n");
+  board.reset();
+  EXPECT_EQ(bridge.receive({Silence::hold, std::chrono::seconds(10)}), "silence");
+  EXPECT_NE(bridge.told.find("is lost: " + device + " is unplugged"), std::string::npos) << bridge.told;
+  bridge.send("nobody hears this\n");
+  EXPECT_EQ(bridge.receive({Silence::hold, std::chrono::milliseconds(0)}), "silence");
+  board.emplace("pty:" + device);
+  EXPECT_TRUE(bridge.conversation.wait_for_connection({}));
+  EXPECT_EQ(bridge.conversation.connections(), 2U);
+  board->send("two\n");
+  EXPECT_EQ(bridge.receive(), "two\n");
+  board.reset();
+  bridge.send("it is lost where it is written to\n");
+  EXPECT_FALSE(bridge.conversation.is_connected());
+}
+
+TEST(Links, ToASerialDeviceAreExclusiveAndItsNameMayHaveColons) {
+  const test::ScratchFolder folder;
+  const std::string device = (folder / "pci-0000:00:14.0-usb-0:1:1.0-port0").string();
+  const Conversing board("pty");
+  std::filesystem::create_symlink(board.conversation.place(), device);
+  const Conversing bridge("serial:" + device + ":115200");
+  EXPECT_EQ(bridge.conversation.place(), device);
+  try {
+    open_link("serial:" + device + ":9600");
+    ADD_FAILURE() << "opened twice";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("another program has it open"), std::string::npos) << error.what();
+  }
 }
 
 TEST(Conversations, EndConnectionsThatSendWhatCannotBeAMessage) {
@@ -171,7 +229,7 @@ TEST(Conversations, EndConnectionsThatSendWhatCannotBeAMessage) {
                                      {std::string(Conversation::largest_message, 'x'), "has more than 65536 bytes"}}) {
     const Peer wrong(SOCK_STREAM, bridge.conversation.place());
     wrong.write(sent);
-    while (bridge.told.find("the firmware is cut off: ") == std::string::npos)
+    while (bridge.told.find("the firmware is disconnected: ") == std::string::npos)
       EXPECT_EQ(bridge.receive({Silence::stand, std::chrono::milliseconds(10)}), "silence");
     EXPECT_NE(bridge.told.find(reason), std::string::npos) << bridge.told;
     bridge.told.clear();
@@ -193,14 +251,14 @@ TEST(Conversations, WaitNoLongerThanTheirPatience) {
 
 TEST(Links, ThatCannotBeOpenedSayWhy) {
   for (const auto& [place, text] : std::vector<std::pair<std::string, std::string>>{
-           {"carrier:pigeon", "expected tcp:ADDRESS:PORT"},
+           {"carrier:pigeon", "expected a link tcp:ADDRESS:PORT"},
            {"tcp:localhost:1", "'localhost' is not an IPv4 address"},
            {"tcp:127.0.0.1:70000", "'70000' is not a port"},
-           {"udp:127.0.0.1:1:127.0.0.1", "expected tcp:ADDRESS:PORT"},
+           {"udp:127.0.0.1:1:127.0.0.1", "expected a link tcp:ADDRESS:PORT"},
            {"tcp:192.0.2.1:0", "cannot listen at 192.0.2.1:0"},
            {"serial:/no/such/device:115200", "cannot open /no/such/device"},
            {"serial:/dev/null:115200", "cannot be set up as a serial line"},
-           {"serial:/dev/null:12345", "no rate of 12345 baud: expected one of 9600"}}) {
+           {"serial:/dev/null:12345", "unsupported rate of 12345 baud: expected one of 9600"}}) {
     try {
       open_link(place);
       ADD_FAILURE() << place << " was opened";

@@ -2,7 +2,7 @@
 
 #include "tests/support/process.hpp"
 
-// What `cohort bench lockstep` prints and writes. How long anything takes is nobody's guarantee.
+// Output of `cohort bench lockstep`. Durations are not checked.
 namespace cohort::test {
 namespace {
 
@@ -32,7 +32,7 @@ void expect_spread(const Json& spread) {
   EXPECT_LE(spread.value("median", 0.0), spread.value("max", 0.0)) << spread;
 }
 
-// Both ways, whatever they took.
+// Both methods, with any durations.
 void expect_row(const Json& row) {
   for (const char* way : {"cohort", "udp"})
     for (const char* quantity :
@@ -46,7 +46,7 @@ void expect_row(const Json& row) {
   EXPECT_GT(row.value("command_bytes_per_tick", 0), 40 * row.value("robots", 1)) << row;
 }
 
-TEST(BenchLockstep, PrintsBothWaysForEachPlacementAndTheirRatio) {
+TEST(BenchLockstep, PrintsBothMethodsAndTheirRatioForEachPlacement) {
   const Measured measured = measure({"--robots", "1,8", "--seconds", "0.2"});
   const Json& rows = measured.json["results"];
   ASSERT_EQ(rows.size(), 6u) << measured.json;
@@ -67,14 +67,14 @@ TEST(BenchLockstep, PrintsBothWaysForEachPlacementAndTheirRatio) {
   EXPECT_NE(measured.svg.find("Raw UDP"), std::string::npos);
 }
 
-TEST(BenchLockstep, MeasuresClientsThatStepOnAThreadOfTheirOwn) {
+TEST(BenchLockstep, MeasuresClientsWithASeparateThread) {
   const Measured measured = measure({"--robots", "2", "--placement", "each", "--seconds", "0.1", "--own-thread"});
   ASSERT_EQ(measured.json["results"].size(), 1u) << measured.json;
   EXPECT_EQ(measured.json.value("inline", true), false);
   expect_row(measured.json["results"][0]);
 }
 
-TEST(BenchLockstep, LooksAheadWithADelay) {
+TEST(BenchLockstep, MeasuresLookAheadWithADelay) {
   const Measured measured = measure({"--look-ahead", "--seconds", "0.1"}, false);
   const Json& rows = measured.json["results"];
   ASSERT_EQ(rows.size(), 6u) << measured.json;
@@ -82,13 +82,13 @@ TEST(BenchLockstep, LooksAheadWithADelay) {
     EXPECT_EQ(rows[i].value("delay", -1), 0);
     EXPECT_EQ(rows[i + 1].value("delay", -1), 1);
     EXPECT_EQ(rows[i]["work_ms"], rows[i + 1]["work_ms"]);
-    // Whatever else the machine does, what is done one after the other takes at least the sum.
+    // Two computations one after the other take at least the sum of their times, even on a busy machine.
     EXPECT_GE(rows[i]["ratio"].value("min", 0.0), 1.9) << rows[i];
     EXPECT_GE(rows[i + 1]["ratio"].value("min", 0.0), 0.9) << rows[i + 1];
   }
 }
 
-TEST(BenchLockstep, RefusesAPlacementThatThereIsNot) {
+TEST(BenchLockstep, RejectsAnUnknownPlacement) {
   const Ended ended = run_to_end({cohort_program(), "bench", "lockstep", "--placement", "eigths"});
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_NE(ended.err.find("eights"), std::string::npos) << ended.err;

@@ -6,7 +6,7 @@
 
 #include "tests/support/process.hpp"
 
-// What `cohort bench` prints and writes. How long anything takes is nobody's guarantee.
+// Output of `cohort bench`. Durations are not checked.
 namespace cohort::test {
 namespace {
 
@@ -32,7 +32,8 @@ std::vector<std::string> known_engines() {
   return {"cohort", "cohort-matrix", "bullet", "ode-worldstep", "ode-quickstep", "mujoco", "enki"};
 }
 
-// Each known engine is measured, left out of this scene, or missing in this build; measured ones are returned.
+// Checks that each known engine is measured, skipped in this scene, or missing in this build. Returns the measured
+// ones.
 std::vector<Json> measured_engines(const Json& all, const Json& result) {
   std::vector<Json> measured;
   for (const std::string& name : known_engines()) {
@@ -55,7 +56,7 @@ void expect_spread(const Json& spread) {
   EXPECT_LE(spread.value("median", 0.0), spread.value("max", 0.0)) << spread;
 }
 
-TEST(Bench, MeasuresEveryEngineThatIsThereOnTheSameCrowd) {
+TEST(Bench, MeasuresAllEnginesOnTheSameCrowd) {
   const Measured measured = measure({"--scene", "crowd", "--robots", "16", "--seconds", "0.2"});
   ASSERT_EQ(measured.json["results"].size(), 1u) << measured.json;
   const Json& result = measured.json["results"][0];
@@ -78,13 +79,13 @@ TEST(Bench, MeasuresEveryEngineThatIsThereOnTheSameCrowd) {
   }
 }
 
-TEST(Bench, RobotsThatBumpIntoEachOtherStayApartInEveryEngine) {
+TEST(Bench, CollidingRobotsDoNotPenetrateInAnyEngine) {
   const Measured measured = measure({"--scene", "crowd_wheels", "--robots", "16", "--seconds", "1"});
   for (const Json& engine : measured_engines(measured.json, measured.json["results"][0]))
     EXPECT_LT(engine.value("deepest_overlap_m", 1.0), 0.01) << engine;
 }
 
-TEST(Bench, TellsTheVersionsOfEnginesThatSayThem) {
+TEST(Bench, ReportsTheVersionsOfEngines) {
   const Measured measured = measure({"--scene", "free", "--robots", "1", "--seconds", "0.1"});
   const Json& versions = measured.json["engine_versions"];
   EXPECT_TRUE(versions.contains("bullet")) << versions;
@@ -95,7 +96,7 @@ TEST(Bench, TellsTheVersionsOfEnginesThatSayThem) {
         << measured.ended.out;
 }
 
-TEST(Bench, OnlyCohortHasThreads) {
+TEST(Bench, OnlyCohortUsesSeveralThreads) {
   const Measured measured =
       measure({"--scene", "free", "--robots", "1", "--seconds", "0.1", "--engines", "bullet", "--threads", "2"});
   const Json& engines = measured.json["results"][0]["engines"];
@@ -117,7 +118,7 @@ TEST(Bench, PrintsALineForEachEngineUnderOneHeading) {
     EXPECT_EQ(line->size(), (title + 1)->size()) << "columns are not aligned: " << measured.ended.out;
   }
   for (const Json& engine : measured.json["missing_engines"]) {
-    EXPECT_NE(measured.ended.out.find("not in this build: " + engine.value("engine", "")), std::string::npos);
+    EXPECT_NE(measured.ended.out.find("not part of this build: " + engine.value("engine", "")), std::string::npos);
     EXPECT_NE(measured.ended.out.find(engine.value("package", "?")), std::string::npos);
   }
 }
@@ -135,13 +136,13 @@ TEST(Bench, ComparesThreadsOfCohortInTheSameRun) {
   EXPECT_NEAR(engines[0].value("speed_ratio", 0.0), 1.0, 0.05);
 }
 
-TEST(Bench, RobotsThatAreApartNeverTouch) {
+TEST(Bench, DistantRobotsNeverTouch) {
   const Measured measured = measure({"--scene", "free", "--robots", "4", "--seconds", "0.2"});
   for (const Json& engine : measured_engines(measured.json, measured.json["results"][0]))
     EXPECT_EQ(engine.value("touches_per_robot", -1.0), 0.0) << engine;
 }
 
-TEST(Bench, TellsWhichEnginesCannotConnectRobots) {
+TEST(Bench, NamesEnginesThatCannotConnectRobots) {
   const Measured measured = measure({"--scene", "chain", "--robots", "3", "--seconds", "0.1"});
   for (const Json& engine : measured.json["results"][0]["engines"]) {
     EXPECT_EQ(engine.contains("left_out"), !engine.contains("cpu_us_per_robot_step")) << engine;
@@ -149,14 +150,14 @@ TEST(Bench, TellsWhichEnginesCannotConnectRobots) {
       EXPECT_LT(engine.value("connection_error_m", 1.0), 0.01) << engine;
       continue;
     }
-    EXPECT_NE(measured.ended.out.find("left out: " + engine.value("engine", "") + ": "), std::string::npos);
+    EXPECT_NE(measured.ended.out.find("skipped: " + engine.value("engine", "") + ": "), std::string::npos);
   }
 }
 
-// Cohort's own errors are deterministic, and what docs/fidelity.md says of them holds here.
-TEST(Bench, ComparesMotionsWithTheirKnownSolutions) {
+// Cohort's own errors are deterministic, and have the values of docs/fidelity.md.
+TEST(Bench, ComparesMotionWithExactSolutions) {
   const Measured measured = measure({"--scene", "accuracy", "--engines", "cohort"});
-  const std::map<std::string, double> most = {{"free fall, way of 1 s", 50.0},
+  const std::map<std::string, double> most = {{"free fall, distance in 1 s", 50.0},
                                               {"box sliding down a slope, speed after 1 s", 0.2},
                                               {"box at rest on a slope, creep in 5 s", 0.4},
                                               {"pendulum, period of 2 s", 0.1},
@@ -168,25 +169,25 @@ TEST(Bench, ComparesMotionsWithTheirKnownSolutions) {
   for (const Json& of : cases) {
     ASSERT_TRUE(most.contains(of.value("case", ""))) << of;
     for (const Json& error : of["errors"]) {
-      const double share = error.value("step_s", 0.0) == 0.01 ? 1.0 : 0.11;  // of first order, or better
+      const double share = error.value("step_s", 0.0) == 0.01 ? 1.0 : 0.11;  // first order, or better
       EXPECT_LE(std::abs(error.value("error", 1e9)), share * most.at(of.value("case", ""))) << of;
     }
   }
 }
 
-// How soft contacts are and how a free body turns is each engine's own; how bodies fall and swing is not.
-TEST(Bench, EveryEngineWithMechanismsFallsAndSwingsAlike) {
+// Engines differ in the softness of contacts and the rotation of free bodies, but not in how bodies fall and swing.
+TEST(Bench, EnginesWithMechanismsFallAndSwingAlike) {
   const Measured measured = measure({"--scene", "accuracy"});
   std::set<std::string> compared = {"cohort", "cohort-matrix", "bullet", "mujoco"};
   for (const Json& engine : measured.json["missing_engines"]) compared.erase(engine.value("engine", ""));
-  const std::map<std::string, double> alike = {{"free fall, way of 1 s", 50.0},
+  const std::map<std::string, double> alike = {{"free fall, distance in 1 s", 50.0},
                                                {"pendulum, period of 2 s", 0.1},
                                                {"double pendulum, energy of 29 J in 5 s, greatest", 3.2}};
   for (const Json& of : measured.json["results"][0]["cases"]) {
     std::set<std::string> engines;
     for (const Json& error : of["errors"]) {
       engines.insert(error.value("engine", ""));
-      ASSERT_TRUE(error["error"].is_number()) << of;  // what is not finite is null
+      ASSERT_TRUE(error["error"].is_number()) << of;  // values that are not finite are null
       if (const auto most = alike.find(of.value("case", "")); most != alike.end()) {
         EXPECT_LE(std::abs(error.value("error", 1e9)), most->second) << of;
       }
@@ -195,7 +196,7 @@ TEST(Bench, EveryEngineWithMechanismsFallsAndSwingsAlike) {
   }
 }
 
-TEST(Bench, MeasuresRaysAndTheBuildingOfAWorld) {
+TEST(Bench, MeasuresRaysAndBuildingAWorld) {
   const Measured measured = measure({"--scene", "rays,build", "--robots", "50"});
   ASSERT_EQ(measured.json["results"].size(), 2u) << measured.json;
   for (const Json& result : measured.json["results"]) {
@@ -224,8 +225,7 @@ Measured measure_thesis(std::vector<std::string> arguments) {
   return measured;
 }
 
-// Every column of the row, in the order of the table, with its costs; those of an engine that is not there are left
-// out.
+// Returns the columns of a row with their costs, in the order of the table, without those of missing engines.
 void expect_costs(const Json& row, const std::vector<std::string>& columns) {
   for (const std::string& column : columns) {
     ASSERT_TRUE(row.contains(column)) << column << " in " << row;
@@ -234,7 +234,7 @@ void expect_costs(const Json& row, const std::vector<std::string>& columns) {
   }
 }
 
-TEST(BenchThesis, PrintsProximitySensorsBesideTheThesis) {
+TEST(BenchThesis, ComparesProximitySensorsWithTheThesis) {
   const Measured measured = measure_thesis({"--table", "5.3", "--robots", "3,8", "--seconds", "0.2"});
   ASSERT_EQ(measured.json["results"].size(), 2u) << measured.json;
   EXPECT_NE(measured.ended.out.find("Table 5.3, proximity sensors: 2 frames of 100 ms"), std::string::npos);
@@ -251,7 +251,7 @@ TEST(BenchThesis, PrintsProximitySensorsBesideTheThesis) {
   EXPECT_TRUE(rows[0]["thesis shadow"].is_null()) << "the thesis has no row for 3 robots";
 }
 
-TEST(BenchThesis, RaysOfOdeMeetTheSameObstacles) {
+TEST(BenchThesis, RaysOfOdeHitTheSameObstacles) {
   const Measured measured = measure_thesis({"--table", "5.3", "--robots", "64", "--seconds", "0.1"});
   const Json& row = measured.json["results"][0]["rows"][0];
   EXPECT_GT(row["ray"].value("answer", 0.0), 0.01) << "nothing is near";
@@ -276,7 +276,7 @@ TEST(BenchThesis, PrintsLightAndSoundAndTheCostOfAThousandRobots) {
   EXPECT_NE(measured.ended.out.find("24 lamps and 24 sounds, 1000 robots"), std::string::npos) << measured.ended.out;
 }
 
-TEST(BenchThesis, RunsOnlyTheTablesThatAreAskedFor) {
+TEST(BenchThesis, RunsOnlySelectedTables) {
   const Measured measured = measure_thesis({"--table", "5.1", "--robots", "2", "--seconds", "0.1"});
   ASSERT_EQ(measured.json["results"].size(), 1u);
   const Json& row = measured.json["results"][0]["rows"][0];
@@ -286,12 +286,12 @@ TEST(BenchThesis, RunsOnlyTheTablesThatAreAskedFor) {
   EXPECT_EQ(ended.exit_code, 2);
 }
 
-TEST(Bench, AnEngineThatIsNotInThisBuildIsRefusedWithItsPackage) {
+TEST(Bench, RejectsAMissingEngineAndNamesItsPackage) {
   const Measured some = measure({"--scene", "rays", "--robots", "1"});
   for (const Json& engine : some.json["missing_engines"]) {
     const Ended ended = run_to_end({cohort_program(), "bench", "--engines", engine.value("engine", "")});
     EXPECT_EQ(ended.exit_code, 2);
-    EXPECT_NE(ended.err.find("is not in this build: install Debian's " + engine.value("package", "?")),
+    EXPECT_NE(ended.err.find("is not part of this build: install the Debian package " + engine.value("package", "?")),
               std::string::npos)
         << ended.err;
     EXPECT_EQ(ended.out, "");

@@ -32,7 +32,7 @@ const std::vector<Case> cases = {
 
 constexpr const char* install_shells = ": tools/install-packages tools/packages-shells.txt";
 
-// `asked` prints what a shell offers for $WRITTEN, a line each.
+// `asked` prints the completions of a shell for $WRITTEN, one per line.
 void expect_completions(const std::string& shell, const std::string& asked) {
   if (!is_installed(shell)) GTEST_SKIP() << "there is no " << shell << install_shells;
   const ScratchFolder folder;
@@ -53,7 +53,7 @@ void expect_completions(const std::string& shell, const std::string& asked) {
   }
 }
 
-TEST(Completion, OfBashOffersCommandsOptionsValuesAndFiles) {
+TEST(Completion, BashCompletesCommandsOptionsValuesAndFiles) {
   expect_completions("bash", R"(
     source "$COMPLETION"
     compopt() { :; }  # there is no line being written here
@@ -63,10 +63,12 @@ TEST(Completion, OfBashOffersCommandsOptionsValuesAndFiles) {
     printf '%s\n' "${COMPREPLY[@]}")");
 }
 
-TEST(Completion, OfFishOffersTheSame) { expect_completions("fish", R"(source "$COMPLETION"; complete -C "$WRITTEN")"); }
+TEST(Completion, FishCompletesTheSame) {
+  expect_completions("fish", R"(source "$COMPLETION"; complete -C "$WRITTEN")");
+}
 
-// zsh completes at a terminal only: here stands what its completion system is asked for.
-TEST(Completion, OfZshOffersTheSame) {
+// zsh completes only at a terminal; these functions replace its completion system.
+TEST(Completion, ZshCompletesTheSame) {
   expect_completions("zsh", R"(
     compdef() { : }
     offer() { local each; for each; do [[ $each == ${words[CURRENT]}* ]] && print -r -- $each; done }
@@ -79,7 +81,7 @@ TEST(Completion, OfZshOffersTheSame) {
     _cohort)");
 }
 
-TEST(ManPage, HasEveryCommandAndIsWithoutMistakes) {
+TEST(ManPage, ContainsEveryCommandAndIsValid) {
   const Ended page = run_to_end({cohort_program(), "man-page"});
   ASSERT_EQ(page.exit_code, 0) << page.err;
   for (const char* text : {".TH COHORT 1", "cohort run", "cohort ctl set\\-velocity", "\\-\\-record", "COHORT_SERVER"})

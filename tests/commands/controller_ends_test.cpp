@@ -2,7 +2,7 @@
 
 #include "tests/commands/small_experiment.hpp"
 
-// Controllers that end the process that they run in: which one it was, and what is left of the run.
+// Controllers that end their process: the error names the controller, and the results of the run are kept.
 namespace cohort::test {
 namespace {
 
@@ -29,7 +29,7 @@ Ended run_with(const SmallExperiment& experiment, const End& end, std::vector<st
 
 class ExitOfAController : public ::testing::TestWithParam<End> {};
 
-TEST_P(ExitOfAController, EndsTheRunWithAnErrorThatNamesItAndASummary) {
+TEST_P(ExitOfAController, EndsTheRunWithANamedErrorAndASummary) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 1.0);
   const std::string summary = (experiment / "summary.json").string();
   const std::string recording = (experiment / "run.mcap").string();
@@ -41,7 +41,8 @@ TEST_P(ExitOfAController, EndsTheRunWithAnErrorThatNamesItAndASummary) {
   EXPECT_TRUE(has(run.out, "state hash")) << run.out;
   ASSERT_TRUE(fs::exists(summary));
   EXPECT_TRUE(has(read_json(summary)["events"].dump(), GetParam().message)) << read_json(summary)["events"];
-  const std::string reads = read_json(summary)["ticks"] == 0 ? "recover" : "replay";  // of no tick there is no replay
+  const std::string reads =
+      read_json(summary)["ticks"] == 0 ? "recover" : "replay";  // a recording without ticks cannot be replayed
   EXPECT_EQ(run_to_end({cohort_program(), reads, recording}).exit_code, 0);
 }
 
@@ -87,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
                               " ended the process in its static constructors"}),
     name_of);
 
-TEST(Controllers, ThatExitOnTrialAreNamedByCheck) {
+TEST(Controllers, CheckNamesAControllerThatExits) {
   const SmallExperiment experiment;
   const Ended check = run_to_end({cohort_program(), "check", experiment.file(), "--load-controllers"},
                                  {{"COHORT_TEST_FAULT", "leave on trial"}, {"COHORT_TEST_ROBOT", "r1"}});
@@ -95,12 +96,12 @@ TEST(Controllers, ThatExitOnTrialAreNamedByCheck) {
   EXPECT_TRUE(has(check.err, misbehaving + " ended the process in start at tick 0")) << check.err;
 }
 
-TEST(Controllers, ThatExitInAHostAreNamedByIt) {
+TEST(Controllers, HostNamesAControllerThatExits) {
   const SmallExperiment experiment(test_controller("misbehaving"), "    restart: never\n");
   const Ended run = run_to_end(experiment.run(), {{"COHORT_TEST_FAULT", "leave"}, {"COHORT_TEST_ROBOT", "r1"}});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_TRUE(has(run.err, "cohort: error: " + misbehaving + " ended the process in step at tick 20")) << run.err;
-  EXPECT_TRUE(has(run.err, " ended with exit code 1, and the experiment says restart: never")) << run.err;
+  EXPECT_TRUE(has(run.err, " ended with exit code 1; the experiment specifies 'restart: never'")) << run.err;
 }
 
 }  // namespace

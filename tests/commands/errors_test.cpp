@@ -5,8 +5,8 @@
 
 #include "tests/commands/small_experiment.hpp"
 
-// What a user reads who made a mistake: one message that says where it is and what to do, exit code 2, and nothing
-// started.
+// Messages for users' mistakes: one message says where the mistake is and what to do, the exit code is 2, and nothing
+// is started.
 namespace cohort::test {
 namespace {
 
@@ -24,7 +24,7 @@ void expect_only(const Ended& ended, const std::string& prefix, const std::strin
   EXPECT_EQ(ended.out, "");
 }
 
-// The same in a log that tells each process that is started.
+// Checks the same in a log that reports each started process.
 nlohmann::json expect_only_in_json(std::vector<std::string> command, const std::string& message) {
   command.insert(command.end(), {"--verbose", "--log-format", "json"});
   const Ended ended = run_to_end(command);
@@ -59,7 +59,7 @@ void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; 
 
 class MistakeInAFile : public ::testing::TestWithParam<Mistake> {};
 
-TEST_P(MistakeInAFile, IsOneMessageWithItsPlaceAndNothingStarts) {
+TEST_P(MistakeInAFile, PrintsOneMessageWithItsPlaceAndStartsNothing) {
   const Mistake& mistake = GetParam();
   const SmallExperiment experiment;
   const fs::path file = experiment / mistake.file;
@@ -114,40 +114,41 @@ INSTANTIATE_TEST_SUITE_P(
                 "unknown key; did you mean 'controller'?"},
         Mistake{"NoSuchWorld", "experiment.yaml", "world.sdf", "wold.sdf", 1, "world", "there is no such file: '/"},
         Mistake{"NoSuchRobot", "experiment.yaml", "robots: all", "robots: r2", 5, "teams[0].robots",
-                "no robot is called 'r2'; did you mean 'r0'?"},
+                "there is no robot 'r2'; did you mean 'r0'?"},
         Mistake{"UnknownRestart", "experiment.yaml", "    robots", "    restart: nevr\n    robots", 5,
                 "teams[0].restart", "unknown value 'nevr'; did you mean 'never'?"},
         Mistake{"UnknownMode", "experiment.yaml", "    robots", "    mode: fre\n    robots", 5, "teams[0].mode",
                 "unknown mode 'fre'; did you mean 'free'?"},
         Mistake{"FreeAndDelayed", "experiment.yaml", "    robots", "    mode: free\n    delay: 2\n    robots", 6,
-                "teams[0].delay", "has no meaning with mode: free"},
+                "teams[0].delay", "cannot be used with mode: free"},
         Mistake{"FreeAndWaitedFor", "experiment.yaml", "    robots", "    mode: free\n    on_late: wait\n    robots", 6,
-                "teams[0].on_late", "nobody waits under mode: free; expected hold, zero, detach or stop"},
+                "teams[0].on_late", "'wait' cannot be used with mode: free; expected hold, zero, detach or stop"},
         Mistake{"RequiredOrNot", "experiment.yaml", "    robots", "    required: perhaps\n    robots", 5,
                 "teams[0].required", "expected true or false, not 'perhaps'"},
-        bad_plugin("PluginMissing", "nothing_like_it", "there is no controller plugin 'nothing_like_it'; known: "),
-        bad_plugin("PluginPathMissing", "./nothing.so", "there is no controller plugin /"),
+        bad_plugin("PluginMissing", "nothing_like_it", "unknown controller plugin 'nothing_like_it'; known: "),
+        bad_plugin("PluginPathMissing", "./nothing.so", "no controller plugin at /"),
         bad_plugin("NotAPlugin", test_controller("not_a_plugin"),
-                   "is not a controller plugin: it lacks the symbol cohort_plugin"),
-        bad_plugin("NotALibrary", "./world.sdf", "A plugin is a shared object, as cohort_add_controller builds it"),
-        bad_plugin("PluginOfAnotherVersion", test_controller("other_version"), "Build it again"),
+                   "is not a controller plugin: the symbol cohort_plugin is missing"),
+        bad_plugin("NotALibrary", "./world.sdf", "is not a shared object. Build the plugin with cohort_add_controller"),
+        bad_plugin("PluginOfAnotherVersion", test_controller("other_version"), "Rebuild the plugin"),
         bad_plugin("PluginWithAnUnresolvedSymbol", test_controller("unresolved"),
-                   "undefined symbol: function_that_nobody_defines. Link what defines it into the plugin")),
+                   "undefined symbol: function_that_nobody_defines. Link the library that defines the symbol into the "
+                   "plugin")),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
-TEST(Errors, AFileThatIsNotThereIsSaidToBeMissing) {
+TEST(Errors, ReportAMissingFile) {
   for (const char* command : {"run", "serve", "check"})
     for (const char* file : {"/nowhere/a.yaml", "/nowhere/a.sdf"})
       expect_only(run_to_end({cohort_program(), command, file}), std::string(file) + ": ", "there is no such file");
 }
 
-TEST(Errors, AFolderIsNoExperiment) {
+TEST(Errors, ReportAFolderInsteadOfAnExperiment) {
   const SmallExperiment experiment;
   const std::string folder = (experiment / "").string();
   expect_only(run_to_end({cohort_program(), "run", folder}), folder + ": ", "this is a folder");
 }
 
-TEST(Errors, PluginsOfAllTeamsAreNamedAtOnce) {
+TEST(Errors, NameTheMissingPluginsOfAllTeams) {
   const SmallExperiment experiment("nothing_like_it");
   write_file(experiment.file(),
              "world: world.sdf\nduration: 1\nteams:\n  - {name: a, robots: r0, controller: one}\n"
@@ -155,30 +156,31 @@ TEST(Errors, PluginsOfAllTeamsAreNamedAtOnce) {
   const Ended run = run_to_end(experiment.run());
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_EQ(lines_in(run.err), 2u) << run.err;
-  EXPECT_NE(run.err.find(":4: teams[0].controller: there is no controller plugin 'one'"), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find(":5: teams[1].controller: there is no controller plugin 'two'"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find(":4: teams[0].controller: unknown controller plugin 'one'"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find(":5: teams[1].controller: unknown controller plugin 'two'"), std::string::npos) << run.err;
 }
 
 // ---- The network ----
 
-TEST(Errors, ADomainThatIsTakenIsNamed) {
+TEST(Errors, NameADomainThatIsInUse) {
   const SmallExperiment experiment;
   const ReservedDomain domain;
   Process first({cohort_program(), "serve", experiment.file(), "--domain", domain.text()});
   ASSERT_TRUE(first.wait_for_output("serving 2 robots on 127.0.0.1, domain " + domain.text())) << first.output();
   expect_only(run_to_end({cohort_program(), "serve", experiment.file(), "--domain", domain.text()}),
-              "cohort: error: ", "domain " + domain.text() + " is taken: another program has UDP port ");
-  expect_only_in_json(experiment.run({"--domain", domain.text()}), "give this server and its clients another domain");
+              "cohort: error: ", "domain " + domain.text() + " is in use: another program uses UDP port ");
+  expect_only_in_json(experiment.run({"--domain", domain.text()}),
+                      "choose another domain for this server and its clients");
   EXPECT_TRUE(first.running());
 }
 
-TEST(Errors, AnAddressThatNoInterfaceHasIsNamedWithThoseThatThereAre) {
+TEST(Errors, NameAnAddressWithoutInterfaceAndThoseAvailable) {
   const SmallExperiment experiment;
   expect_only(run_to_end({cohort_program(), "serve", experiment.file(), "--network", "203.0.113.7"}),
-              "cohort: error: ", "no network interface that is up has the address 203.0.113.7; there are 127.0.0.1");
+              "cohort: error: ", "no active network interface has the address 203.0.113.7; known: 127.0.0.1");
 }
 
-TEST(Errors, AMachineWithoutANetworkIsSaidToHaveNone) {
+TEST(Errors, ReportAMachineWithoutNetwork) {
   if (run_to_end({"/bin/sh", "-c", "unshare -rn true"}).exit_code != 0)
     GTEST_SKIP() << "namespaces are not permitted here";
   const SmallExperiment experiment;
@@ -188,15 +190,15 @@ TEST(Errors, AMachineWithoutANetworkIsSaidToHaveNone) {
     return command;
   };
   expect_only_in_json(without_network({"run", experiment.file()}),
-                      "no network interface that is up, not even the loopback");
+                      "no network interface that is up, not even loopback");
   expect_only(run_to_end(without_network({"host", "obstacle_avoidance", "--robots", "all"})),
-              "cohort: error: ", "no way to the server at 127.0.0.1: Network is unreachable");
+              "cohort: error: ", "no route to the server at 127.0.0.1: Network is unreachable");
   EXPECT_EQ(run_to_end(without_network({"run", experiment.file(), "--controllers", "inprocess", "--duration", "0.1"}))
                 .exit_code,
             0);
 }
 
-TEST(Errors, AServerThatHasNoAddressIsNamed) {
+TEST(Errors, NameAServerWithoutAddress) {
   expect_only(run_to_end({cohort_program(), "host", "obstacle_avoidance", "--robots", "all", "--server",
                           "no.such.host.invalid"}),
               "cohort: error: ", "cannot find the address of 'no.such.host.invalid'");
@@ -204,15 +206,15 @@ TEST(Errors, AServerThatHasNoAddressIsNamed) {
 
 // ---- Files that it writes ----
 
-TEST(Errors, AFolderThatCannotBeWrittenIsRefusedBeforeTheRun) {
+TEST(Errors, ReportAReadOnlyFolderBeforeTheRun) {
   const SmallExperiment experiment;
-  // Not even root can write there.
+  // Even root cannot write there.
   for (const char* option : {"--summary", "--plot"})
     for (const char* file : {"/proc/nowhere", "/nowhere/at/all"})
       expect_only_in_json(experiment.run({option, file}), std::string(" cannot be written to ") + file + ": ");
 }
 
-TEST(Errors, AHomeThatCannotBeWrittenOrIsMissingIsNone) {
+TEST(Errors, DoNotRequireAWritableHome) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 0.1);
   for (const std::string& home : {std::string("/proc"), std::string("/nowhere/at/all"), experiment.file()}) {
     const Ended run = run_to_end(experiment.run({"--quiet"}), {{"HOME", home}});
@@ -239,7 +241,7 @@ void PrintTo(const Typed& typed, std::ostream* out) {
 
 class MistypedCommand : public ::testing::TestWithParam<Typed> {};
 
-TEST_P(MistypedCommand, IsOneMessageThatSaysWhatToDo) {
+TEST_P(MistypedCommand, PrintsOneMessageThatSaysWhatToDo) {
   std::vector<std::string> command = {cohort_program()};
   command.insert(command.end(), GetParam().arguments.begin(), GetParam().arguments.end());
   expect_only(run_to_end(command, GetParam().environment), "cohort: error: ", GetParam().message);
@@ -249,7 +251,7 @@ INSTANTIATE_TEST_SUITE_P(
     Mistakes, MistypedCommand,
     ::testing::Values(
         Typed{{},
-              "expected a command; known: run, serve, host, teleop, ctl, record, view, examples, check, export, "
+              "expected a command; known: run, serve, host, teleop, exec, ctl, record, view, examples, check, export, "
               "models, samples, security, doctor, recordings, replay, diff, export-data, plot, recover, help, "
               "completion, "
               "man-page, bench. Try 'cohort --help'"},
@@ -266,10 +268,13 @@ INSTANTIATE_TEST_SUITE_P(
               "--domain: expected a domain from 0 to 230, or a range such as 7..14, not '231'"},
         Typed{{"run", "x"}, "not 'five' (COHORT_DOMAIN is 'five')", {{"COHORT_DOMAIN", "five"}}},
         Typed{{"run", "x", "--controllers", "proces"}, "there is no 'proces'; did you mean 'process'?"},
-        Typed{{"run", "x", "--quiet", "--verbose"}, "choose one of --verbose and --quiet"},
+        Typed{{"run", "x", "--quiet", "--verbose"}, "'--verbose' cannot be used with '--quiet'"},
         Typed{{"run", "x", "--log-format", "xml"}, "--log-format: there is no 'xml'; known: text, json"},
-        Typed{{"run", "x"}, "COHORT_LOG_FORMAT is 'xml'; known: text, json", {{"COHORT_LOG_FORMAT", "xml"}}},
-        Typed{{"run", "x"}, "COHORT_LOG is 'loud'; known: debug, info, warn, error, off", {{"COHORT_LOG", "loud"}}},
+        Typed{
+            {"run", "x"}, "COHORT_LOG_FORMAT: invalid format 'xml'; known: text, json", {{"COHORT_LOG_FORMAT", "xml"}}},
+        Typed{{"run", "x"},
+              "COHORT_LOG: invalid level 'loud'; known: debug, info, warn, error, off",
+              {{"COHORT_LOG", "loud"}}},
         Typed{{"serve", "x", "--netwrk", "y"}, "there is no option '--netwrk'; did you mean '--network'?"},
         Typed{{"host", "x"}, "--robots is required"}, Typed{{"check"}, "FILE is required"},
         Typed{{"bench", "--scene", "crowd,crwd"}, "--scene: there is no 'crwd'; did you mean 'crowd'?"},
@@ -277,18 +282,18 @@ INSTANTIATE_TEST_SUITE_P(
         Typed{{"bench", "--robots", "0"}, "--robots: expected a whole number from 1 to 100000, not '0'"},
         Typed{{"bench", "--json", "/nowhere/at/all"}, "the results cannot be written to /nowhere/at/all: "}));
 
-TEST(Errors, AViewThatWasNotBuiltIsSaidToBeMissing) {
+TEST(Errors, ReportAViewThatWasNotBuilt) {
   const ScratchFolder folder;
   const std::string alone = folder / "cohort";
   fs::copy_file(cohort_program(), alone);
   const Ended view = run_to_end({alone, "view", "run.mcap", "--port", "0"});
   EXPECT_EQ(view.exit_code, 2);
-  EXPECT_NE(view.err.find("'cohort view' is in a program of its own, " + alone + "-whole, which is not there"),
+  EXPECT_NE(view.err.find("'cohort view' requires the program " + alone + "-whole, which does not exist"),
             std::string::npos)
       << view.err;
 }
 
-TEST(Help, IsThereForEveryCommandWithAnExample) {
+TEST(Help, ShowsAnExampleForEveryCommand) {
   for (const char* command : {"", "run", "serve", "host", "check", "view", "bench"}) {
     std::vector<std::string> arguments = {cohort_program(), command, "--help"};
     if (*command == '\0') arguments.erase(arguments.begin() + 1);
@@ -301,7 +306,7 @@ TEST(Help, IsThereForEveryCommandWithAnExample) {
   }
 }
 
-TEST(Help, TellsTheVersionAndHowThisWasBuilt) {
+TEST(Help, ShowsVersionAndBuild) {
   const Ended version = run_to_end({cohort_program(), "--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_TRUE(std::regex_search(version.out, std::regex(R"(^cohort \d+\.\d+\.\d+\ncommit +\w)"))) << version.out;

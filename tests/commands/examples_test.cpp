@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 
+#include "tests/commands/small_experiment.hpp"
 #include "tests/support/process.hpp"
 
 namespace cohort::test {
@@ -12,14 +14,14 @@ Ended cohort(std::vector<std::string> arguments) {
   return run_to_end(arguments);
 }
 
-TEST(Examples, AreListedWithWhatTheyShow) {
+TEST(Examples, AreListedWithDescriptions) {
   const Ended listed = cohort({"examples"});
   EXPECT_EQ(listed.exit_code, 0) << listed.err;
-  EXPECT_NE(listed.out.find("chain                    Four s-bots make a chain and cross a trough"), std::string::npos)
+  EXPECT_NE(listed.out.find("chain                    Four s-bots form a chain and cross a trough"), std::string::npos)
       << listed.out;
 }
 
-TEST(Examples, AreRunByTheirNames) {
+TEST(Examples, AreRunByName) {
   const ScratchFolder folder;
   const std::string summary = folder / "summary.json";
   const Ended ran = cohort({"run", "obstacle_avoidance", "--duration", "0.5", "--summary", summary});
@@ -30,23 +32,23 @@ TEST(Examples, AreRunByTheirNames) {
   EXPECT_EQ(read_json(summary)["seed"], 1);
 }
 
-TEST(Examples, ThatAreMisspeltAreSuggested) {
+TEST(Examples, AreSuggestedForMisspeltNames) {
   const Ended ended = cohort({"run", "obstacle_avoidence"});
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_NE(ended.err.find("did you mean 'obstacle_avoidance'?"), std::string::npos) << ended.err;
 }
 
-TEST(Examples, AreCopiedWithAllThatTheyNeed) {
+TEST(Examples, AreCopiedWithTheirDependencies) {
   const ScratchFolder folder;
   const std::string copy = folder / "worlds";
   EXPECT_EQ(cohort({"examples", "--copy", copy}).exit_code, 0);
   EXPECT_EQ(cohort({"check", copy + "/experiments/retrieval.yaml"}).exit_code, 0);
   const Ended again = cohort({"examples", "--copy", copy});
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_NE(again.err.find("is there already"), std::string::npos) << again.err;
+  EXPECT_NE(again.err.find("exists: give a new folder"), std::string::npos) << again.err;
 }
 
-TEST(Seeds, HaveARunEach) {
+TEST(Seeds, ProduceOneRunEach) {
   const ScratchFolder folder;
   const auto run = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.begin(), {"run", "obstacle_avoidance", "--duration", "0.2", "--controllers", "inprocess",
@@ -63,7 +65,73 @@ TEST(Seeds, HaveARunEach) {
   }
 }
 
-TEST(Seeds, ThatAreNoneAreRefused) {
+TEST(Seeds, ShowATableThatDoesNotDependOnHowManyRunAtOnce) {
+  const ScratchFolder folder;
+  const auto hashes = [&](const std::string& jobs, const std::string& controllers) {
+    const std::string csv = folder / "table.csv";
+    const Ended ended = cohort({"run", "obstacle_avoidance", "--duration", "0.2", "--seeds", "1..3", "--jobs", jobs,
+                                "--controllers", controllers, "--csv", csv});
+    EXPECT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_TRUE(ended.out.starts_with("experiment obstacle_avoidance, 3 runs (Cohort ")) << ended.out;
+    EXPECT_EQ(ended.out.find("barrier latency"), std::string::npos) << "no summary of a run: " << ended.out;
+    std::vector<std::string> shown = lines_of(ended.out);
+    EXPECT_EQ(shown.size(), 7u) << ended.out;
+    shown.resize(7);
+    EXPECT_NE(shown[5].find("mean"), std::string::npos) << ended.out;
+    EXPECT_NE(shown[6].find("std"), std::string::npos) << ended.out;
+    for (int seed = 1; seed <= 3; ++seed)
+      EXPECT_NE(ended.err.find("obstacle_avoidance, seed " + std::to_string(seed) + ": 0.20 s simulated"),
+                std::string::npos)
+          << ended.err;
+    std::vector<std::string> rows = lines_of(read_file(csv));
+    EXPECT_EQ(rows.size(), 4u);
+    rows.resize(4);
+    EXPECT_TRUE(rows[0].starts_with("experiment,seed,ticks,simulated_s,")) << rows[0];
+    std::vector<std::string> all;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      EXPECT_TRUE(rows[i].starts_with("obstacle_avoidance," + std::to_string(i) + ",20,0.2,")) << rows[i];
+      all.push_back(rows[i].substr(rows[i].rfind(',') + 1));
+      EXPECT_NE(shown[i + 1].find(all.back()), std::string::npos) << ended.out;
+    }
+    return all;
+  };
+  const std::vector<std::string> one = hashes("1", "inprocess");
+  EXPECT_NE(one[0], one[1]);
+  EXPECT_EQ(hashes("3", "inprocess"), one);
+  EXPECT_EQ(hashes("1", "process"), one);
+  EXPECT_EQ(hashes("3", "process"), one);
+}
+
+TEST(Seeds, SideBySideAreRefusedWhereARunIsWatchedOrControlled) {
+  const Ended ended = cohort({"run", "obstacle_avoidance", "--seeds", "1..2", "--jobs", "2", "--paused"});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_NE(ended.err.find("'--jobs 2' cannot be used with '--paused'"), std::string::npos) << ended.err;
+  const Ended alone = cohort({"run", "obstacle_avoidance", "--jobs", "2"});
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_NE(alone.err.find("'--jobs' needs '--seeds'"), std::string::npos) << alone.err;
+}
+
+TEST(Seeds, SideBySideEndWithTheFirstThatFails) {
+  const SmallExperiment experiment(test_controller("misbehaving"), "", 1.0);
+  std::vector<std::string> command = experiment.run({"--seeds", "1..9", "--jobs", "2"});
+  const Ended ended = run_to_end(command, {{"COHORT_TEST_FAULT", "throw"}});
+  EXPECT_EQ(ended.exit_code, 1) << ended.err;
+  EXPECT_NE(ended.err.find(" of 9, seed "), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("has failed"), std::string::npos) << ended.err;
+  EXPECT_EQ(ended.out, "") << "no run has succeeded";
+}
+
+TEST(Seeds, SideBySideEndInOrderWhenInterrupted) {
+  Process runs({cohort_program(), "run", "obstacle_avoidance", "--duration", "100000", "--controllers", "inprocess",
+                "--seeds", "1..9", "--jobs", "2"});
+  ASSERT_TRUE(eventually([&] { return children_of(runs.pid()).size() == 2; })) << runs.output();
+  const std::vector<pid_t> children = children_of(runs.pid());
+  runs.signal(SIGINT);
+  EXPECT_EQ(runs.wait_for_exit(), 130) << runs.output();
+  for (const pid_t child : children) EXPECT_TRUE(wait_until_gone(child));
+}
+
+TEST(Seeds, AreRejectedIfInvalid) {
   for (const auto& [seeds, message] : {std::pair{"4..3", "expected seeds such as 1..30 or 4,8,15, not '4..3'"},
                                        {"a", "not 'a'"},
                                        {"0..18446744073709551615", "expected at most 100000 seeds"}}) {
@@ -73,7 +141,7 @@ TEST(Seeds, ThatAreNoneAreRefused) {
   }
 }
 
-TEST(Commands, InCommandsAreSuggested) {
+TEST(Subcommands, AreSuggestedForMisspeltNames) {
   const Ended ended = cohort({"ctl", "sttus"});
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_NE(ended.err.find("there is no command 'sttus'; did you mean 'status'?"), std::string::npos) << ended.err;

@@ -4,7 +4,7 @@
 
 #include "tests/support/controlled_run.hpp"
 
-// `cohort record`: a run that goes on, recorded by somebody else.
+// `cohort record`: another process records a running run.
 namespace cohort::test {
 namespace {
 
@@ -27,7 +27,7 @@ class LiveRecordings : public ::testing::Test {
   ScratchFolder folder_;
 };
 
-TEST_F(LiveRecordings, HoldARunFromWhereTheyBeganAndLeaveItItsBits) {
+TEST_F(LiveRecordings, ContainTheRunFromTheirStartAndDoNotChangeIt) {
   const FieldOfRobots field(4, 8.0);
   ControlledRun run(field, {"--paused"});
   run.done({"step", "100"});
@@ -43,7 +43,7 @@ TEST_F(LiveRecordings, HoldARunFromWhereTheyBeganAndLeaveItItsBits) {
   EXPECT_EQ(std::ranges::count(observations, '\n'), 1 + 71);
 }
 
-TEST_F(LiveRecordings, GoOnThroughActionsResetsAndJourneysInTime) {
+TEST_F(LiveRecordings, ContinueThroughActionsResetsAndRewinds) {
   const FieldOfRobots field(3, 1e4);
   ControlledRun run(field, {"--paused", "--keep-snapshots", "0.5"});
   Process recording(record(run, "run.mcap"));
@@ -61,7 +61,7 @@ TEST_F(LiveRecordings, GoOnThroughActionsResetsAndJourneysInTime) {
   EXPECT_EQ(verify("run.mcap"), "identical, 213 ticks\n") << "0 to 150, 100 to 120, 0 to 40";
 }
 
-TEST_F(LiveRecordings, EndWhenAskedToAndTheRunGoesOn) {
+TEST_F(LiveRecordings, StopOnRequestWhileTheRunContinues) {
   const FieldOfRobots field(2, 1e5);
   ControlledRun run(field);
   for (const int signal : {SIGINT, SIGTERM}) {
@@ -78,7 +78,7 @@ TEST_F(LiveRecordings, EndWhenAskedToAndTheRunGoesOn) {
   EXPECT_GE(events_of(run.finish(), "control").size(), 3u);
 }
 
-TEST_F(LiveRecordings, AreForgottenWithTheirClientAndMadeAnew) {
+TEST_F(LiveRecordings, EndWithTheirClientAndCanBeRestarted) {
   const FieldOfRobots field(2, 1e5);
   ControlledRun run(field);
   for (int i = 0; i < 6; ++i) {  // more than there may be at a time
@@ -100,7 +100,7 @@ TEST_F(LiveRecordings, AreForgottenWithTheirClientAndMadeAnew) {
   run.finish();
 }
 
-TEST_F(LiveRecordings, AreClosedHereWhenTheirServerIsKilled) {
+TEST_F(LiveRecordings, AreClosedWhenTheServerIsKilled) {
   const FieldOfRobots field(2, 1e5);
   ControlledRun run(field, {"--speed", "5"});
   Process recording(record(run, "run.mcap"));
@@ -109,12 +109,12 @@ TEST_F(LiveRecordings, AreClosedHereWhenTheirServerIsKilled) {
   EXPECT_TRUE(run.comes_to([&](const auto&) { return size() > 50'000; }));
   run.server().signal(SIGKILL);
   EXPECT_EQ(recording.wait_for_exit(), 1) << recording.output();
-  EXPECT_NE(recording.output().find("the recording ended before its run: the server has gone"), std::string::npos)
+  EXPECT_NE(recording.output().find("the recording ended before the run: the server is gone"), std::string::npos)
       << recording.output();
   EXPECT_TRUE(verify("run.mcap").starts_with("identical, ")) << verify("run.mcap");
 }
 
-TEST_F(LiveRecordings, ThatNobodyFetchesHoldUpNothing) {
+TEST_F(LiveRecordings, DoNotBlockTheRunIfTheyAreNotFetched) {
   const FieldOfRobots field(4, 20.0);
   ControlledRun run(field, {"--paused"});
   Control control = control_of(run);
@@ -123,7 +123,7 @@ TEST_F(LiveRecordings, ThatNobodyFetchesHoldUpNothing) {
   EXPECT_EQ(run.finish()["state_hash"], reference(field));
 }
 
-TEST_F(LiveRecordings, AreRefusedWithTheReason) {
+TEST_F(LiveRecordings, AreRejectedWithTheReason) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   const auto refused = [&](const std::vector<std::string>& arguments) {
@@ -145,7 +145,7 @@ TEST_F(LiveRecordings, AreRefusedWithTheReason) {
     more.push_back(std::make_unique<Process>(record(run, std::to_string(i) + ".mcap")));
     ASSERT_TRUE(more.back()->wait_for_output("recorded from tick 0 on")) << more.back()->output();
   }
-  EXPECT_NE(refused({}).find("4 recordings of this run are under way"), std::string::npos);
+  EXPECT_NE(refused({}).find("4 recordings of this run are active"), std::string::npos);
   run.done({"step", "5"});
   run.done({"shutdown"});
   run.finish();

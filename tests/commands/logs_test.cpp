@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-// The objects of a log; fails where a line is something else.
+// Returns the objects of a log; fails if a line is not an object.
 std::vector<json> parsed(const std::string& log) {
   const std::regex iso_8601(R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z)");
   std::vector<json> objects;
@@ -34,7 +34,7 @@ const json* with_message(const std::vector<json>& log, const std::string& part) 
   return found == log.end() ? nullptr : &*found;
 }
 
-TEST(Logs, InJsonEveryLineIsAnObjectWithTimeLevelMessageAndFields) {
+TEST(Logs, JsonLinesAreObjectsWithTimeLevelMessageAndFields) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 1.0);
   const Ended run = run_to_end(experiment.run({"--log-format", "json", "--controllers", "per-robot"}),
                                {{"COHORT_LOG", "debug"}, {"COHORT_TEST_FAULT", "print"}, {"COHORT_TEST_ROBOT", "r1"}});
@@ -45,14 +45,14 @@ TEST(Logs, InJsonEveryLineIsAnObjectWithTimeLevelMessageAndFields) {
   const json* const read = with_message(log, "read " + experiment.file());
   ASSERT_NE(read, nullptr) << run.err;
   EXPECT_EQ((*read)["robots"], 2);
-  const json* const started = with_message(log, "is started");
+  const json* const started = with_message(log, "started controller process");
   ASSERT_NE(started, nullptr) << run.err;
   EXPECT_EQ((*started)["command"][1], "host");
   const json* const joined = with_message(log, "joined");
   ASSERT_NE(joined, nullptr) << run.err;
   EXPECT_EQ((*joined)["kind"], "joined");
   EXPECT_EQ((*joined)["tick"], 0);
-  const json* const finished = with_message(log, "the run is finished");
+  const json* const finished = with_message(log, "the run has finished");
   ASSERT_NE(finished, nullptr) << run.err;
   EXPECT_NE(run.out.find(finished->value("state_hash", "?")), std::string::npos) << run.out;
   EXPECT_TRUE(
@@ -64,9 +64,11 @@ TEST(Logs, InJsonEveryLineIsAnObjectWithTimeLevelMessageAndFields) {
   ASSERT_NE(printed, nullptr) << run.err;
   EXPECT_EQ((*printed)["controller_of"], "team 'pair' (r1)");
   EXPECT_NE(with_message(log, "\"quoted\""), nullptr) << run.err;
+  EXPECT_NE(with_message(log, "a line on standard output"), nullptr) << run.err;
+  EXPECT_EQ(run.out.find("a line on standard output"), std::string::npos) << "scripts read it: " << run.out;
 }
 
-TEST(Logs, InJsonTheDeathOfAControllerIsToldToo) {
+TEST(Logs, JsonReportsTheDeathOfAController) {
   const SmallExperiment experiment(test_controller("misbehaving"), "    restart: never\n");
   const Ended run = run_to_end(experiment.run(), {{"COHORT_LOG_FORMAT", "json"}, {"COHORT_TEST_FAULT", "terminate"}});
   EXPECT_EQ(run.exit_code, 1);
@@ -77,7 +79,7 @@ TEST(Logs, InJsonTheDeathOfAControllerIsToldToo) {
   EXPECT_EQ(log.back()["tick"], 20);
 }
 
-TEST(Logs, InJsonAProblemHasFileLineAndElement) {
+TEST(Logs, JsonProblemsHaveFileLineAndElement) {
   const SmallExperiment experiment("nothing_like_it", "    restrt: never\n");
   write_file(experiment / "world.sdf", std::regex_replace(SmallExperiment::world(), std::regex("<mass>2"), "<mass>0"));
   const Ended run = run_to_end(experiment.run({"--log-format=json"}));
@@ -92,7 +94,7 @@ TEST(Logs, InJsonAProblemHasFileLineAndElement) {
   EXPECT_EQ(log[1]["line"], 7);
 }
 
-TEST(Logs, InJsonMistakesOfTheCommandLineAndOfHostsAreObjectsToo) {
+TEST(Logs, JsonReportsErrorsOfCommandLinesAndHosts) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"run", "--log-format", "json", "--thrads", "3"},
         {"--log-format", "json"},
@@ -108,7 +110,7 @@ TEST(Logs, InJsonMistakesOfTheCommandLineAndOfHostsAreObjectsToo) {
   }
 }
 
-TEST(Logs, ByDefaultOnlyProgressIsPrinted) {
+TEST(Logs, ContainOnlyProgressByDefault) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 0.5);
   const Ended run = run_to_end(experiment.run());
   EXPECT_EQ(run.exit_code, 0);
@@ -116,7 +118,7 @@ TEST(Logs, ByDefaultOnlyProgressIsPrinted) {
     EXPECT_TRUE(line.find("real time") != line.npos || line.starts_with("waiting for")) << line;
 }
 
-TEST(Logs, QuietPrintsNothingOfARunThatGoesWell) {
+TEST(Logs, QuietPrintsNothingForASuccessfulRun) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 0.5);
   const Ended run = run_to_end(experiment.run({"--quiet"}), {{"COHORT_LOG", "debug"}});
   EXPECT_EQ(run.exit_code, 0);
@@ -124,20 +126,21 @@ TEST(Logs, QuietPrintsNothingOfARunThatGoesWell) {
   EXPECT_EQ(run.err, "");
 }
 
-TEST(Logs, VerboseSaysWhatHappensBeforeAndAfterTheCommandsName) {
+TEST(Logs, VerboseIsAcceptedBeforeAndAfterTheCommand) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 0.5);
   for (const bool before : {false, true}) {
     std::vector<std::string> command = experiment.run();
     command.insert(before ? command.begin() + 1 : command.end(), "--verbose");
     const Ended run = run_to_end(command);
     EXPECT_EQ(run.exit_code, 0);
-    for (const char* part : {"cohort: info: read ", ": 2 models, 2 robots, 1 team, in ", "built the world for ",
-                             "serving 2 robots on 127.0.0.1, domain ", "is started: ", "tick 0: joined: "})
+    for (const char* part :
+         {"cohort: info: read ", ": 2 models, 2 robots, 1 team, in ", "built the world for ",
+          "serving 2 robots on 127.0.0.1, domain ", "started controller process ", "tick 0: joined: "})
       EXPECT_NE(run.err.find(part), std::string::npos) << part << "\n" << run.err;
   }
 }
 
-TEST(Logs, OffPrintsNothingButTheSummary) {
+TEST(Logs, OffPrintsOnlyTheSummary) {
   const SmallExperiment experiment(test_controller("misbehaving"), "    restart: never\n");
   const Ended run = run_to_end(experiment.run(), {{"COHORT_LOG", "off"}, {"COHORT_TEST_FAULT", "throw"}});
   EXPECT_EQ(run.exit_code, 1);
@@ -145,7 +148,7 @@ TEST(Logs, OffPrintsNothingButTheSummary) {
   EXPECT_NE(run.out.find("state hash"), std::string::npos);
 }
 
-TEST(Logs, AWorldsWarningsAreToldWithTheirPlace) {
+TEST(Logs, ContainTheWarningsOfAWorldWithTheirPlaces) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 0.1);
   const std::filesystem::path world = experiment / "world.sdf";
   write_file(world, std::regex_replace(SmallExperiment::world(), std::regex("<model name=\"r0\">"),

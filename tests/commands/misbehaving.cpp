@@ -27,7 +27,7 @@ const bool is_loaded = [] {
   return true;
 }();
 
-// Uses up the stack, whatever the optimizer makes of it.
+// Uses up the stack, in spite of the optimizer.
 // NOLINTNEXTLINE(misc-no-recursion)
 int descend(volatile char* above) {
   if (above == nullptr) return 0;
@@ -36,8 +36,8 @@ int descend(volatile char* above) {
   return descend(here) + here[0];
 }
 
-// Stands still, but for one thing, which COHORT_TEST_FAULT names, at tick 20 of the robot COHORT_TEST_ROBOT (or of
-// all). COHORT_TEST_FILE is for what a test and it have to tell each other.
+// A controller that stands still, except for one fault at tick 20. COHORT_TEST_FAULT names the fault, COHORT_TEST_ROBOT
+// the robot (default: all). A test communicates with it through the file COHORT_TEST_FILE.
 class Misbehaving final : public cohort::Controller {
  public:
   ~Misbehaving() override {
@@ -74,6 +74,7 @@ class Misbehaving final : public cohort::Controller {
       std::abort();
     }
     if (fault == "print") std::fputs("a line of a controller\n\"quoted\"\n", stderr);
+    if (fault == "print") std::printf("a line on standard output\n");
     if (fault == "be deaf") std::signal(SIGTERM, SIG_IGN);
     if (fault == "loop" || fault == "be deaf") {
       std::fputs("stuck\n", stderr);

@@ -16,7 +16,7 @@
 namespace cohort::test {
 namespace {
 
-// A line of /proc/PID/status with a mask of signals.
+// Reads a line of /proc/PID/status that contains a mask of signals.
 bool has_signal(pid_t pid, const std::string& mask, int number) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/status");
   for (std::string line; std::getline(status, line);)
@@ -27,7 +27,7 @@ bool has_signal(pid_t pid, const std::string& mask, int number) {
 
 class NoProcessIsLeftBehind : public ::testing::Test {
  protected:
-  // A run whose controllers have begun, and their processes.
+  // A run whose controllers have started, and its processes.
   void start(const std::vector<std::string>& arguments = {}, const Process::Environment& environment = {},
              const std::string& begun = "simulated") {
     std::vector<std::string> command = experiment.run({"--summary", (experiment / "summary.json").string()});
@@ -100,7 +100,7 @@ TEST_F(NoProcessIsLeftBehind, WhenItsTerminalIsClosed) {
   expect_nothing_left();
 }
 
-TEST_F(NoProcessIsLeftBehind, AndNohupIsHeeded) {
+TEST_F(NoProcessIsLeftBehind, AndNohupIsRespected) {
   SmallExperiment short_one(test_controller("misbehaving"), "", 0.5);
   Process nohup(
       {"/bin/sh", "-c", "trap '' HUP; exec \"$@\"", "sh", cohort_program(), "run", short_one.file(), "--speed", "1"});
@@ -109,13 +109,13 @@ TEST_F(NoProcessIsLeftBehind, AndNohupIsHeeded) {
   EXPECT_EQ(nohup.wait_for_exit(), 0) << nohup.output();
 }
 
-TEST_F(NoProcessIsLeftBehind, WhenAControllerIsStoppedAndAnotherIsStuckAndDeaf) {
+TEST_F(NoProcessIsLeftBehind, WhenAControllerIsStoppedAndAnotherIsStuckAndIgnoresSignals) {
   start({"--controllers", "per-robot"}, {{"COHORT_TEST_FAULT", "be deaf"}, {"COHORT_TEST_ROBOT", "r0"}}, "stuck");
   kill(controllers.back(), SIGSTOP);
   run->signal(SIGINT);
   expect_an_orderly_end();
   EXPECT_NE(run->output().find("team 'pair' (r0): controller process"), std::string::npos) << run->output();
-  EXPECT_NE(run->output().find("is killed"), std::string::npos) << run->output();
+  EXPECT_NE(run->output().find("was killed"), std::string::npos) << run->output();
 }
 
 TEST_F(NoProcessIsLeftBehind, AfterASecondCtrlCWithAControllerThatIsStuck) {
@@ -137,7 +137,7 @@ TEST_F(NoProcessIsLeftBehind, AfterASecondCtrlCWithAControllerThatIsStuckInTheSe
   EXPECT_EQ(here.wait_for_exit(), 128 + SIGINT);
 }
 
-TEST_F(NoProcessIsLeftBehind, NotEvenWhatAControllerHasStarted) {
+TEST_F(NoProcessIsLeftBehind, IncludingProcessesOfAController) {
   const std::string file = (experiment / "helper").string();
   start({}, {{"COHORT_TEST_FAULT", "start a helper"}, {"COHORT_TEST_ROBOT", "r0"}, {"COHORT_TEST_FILE", file}},
         "helped");
@@ -190,7 +190,7 @@ class ChildrenTest : public ::testing::Test {
   std::vector<std::string> texts_;
 };
 
-TEST_F(ChildrenTest, AreGoneWhenAnExceptionPasses) {
+TEST_F(ChildrenTest, EndWhenAnExceptionPropagates) {
   try {
     const Children children({{{"/bin/sleep", "1000"}, "one"}, {{"/bin/sleep", "1000"}, "two"}}, listener());
     ASSERT_TRUE(eventually([&] { return pids().size() == 2; }));
@@ -201,7 +201,7 @@ TEST_F(ChildrenTest, AreGoneWhenAnExceptionPasses) {
   EXPECT_TRUE(texts().empty());
 }
 
-TEST_F(ChildrenTest, AreNoticedWhereTheKernelDoesNotAnnounceTheirEnds) {
+TEST_F(ChildrenTest, AreReapedWithoutAnnouncementsOfTheKernel) {
   rlimit before{};
   getrlimit(RLIMIT_NOFILE, &before);
   const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -216,11 +216,11 @@ TEST_F(ChildrenTest, AreNoticedWhereTheKernelDoesNotAnnounceTheirEnds) {
   setrlimit(RLIMIT_NOFILE, &before);
   ASSERT_EQ(texts().size(), 4u);
   EXPECT_NE(texts()[2].find("false: controller process"), std::string::npos) << texts()[2];
-  EXPECT_NE(texts()[2].find("starting it again (3 of 3)"), std::string::npos) << texts()[2];
+  EXPECT_NE(texts()[2].find("restarting it (3 of 3)"), std::string::npos) << texts()[2];
   EXPECT_TRUE(texts()[3].starts_with("gave up")) << texts()[3];
 }
 
-TEST_F(ChildrenTest, ReadNothingAndInheritNoDescriptors) {
+TEST_F(ChildrenTest, HaveEmptyInputAndInheritNoDescriptors) {
   const int zero = open("/dev/zero", O_RDONLY);
   const int descriptor = fcntl(zero, F_DUPFD, 100);  // without close-on-exec, where the shell has none of its own
   close(zero);

@@ -2,7 +2,7 @@
 
 #include "tests/commands/small_experiment.hpp"
 
-// Which commands load plugins, and what they refuse to load.
+// Plugins that commands load, or refuse to load.
 namespace cohort::test {
 namespace {
 
@@ -28,14 +28,14 @@ TEST(Plugins, AreNotLoadedByCommandsThatOnlyReadAnExperiment) {
   }
 }
 
-TEST(Plugins, ThatCheckDoesNotLoadAreSaidSo) {
+TEST(Plugins, AreReportedByCheckIfNotLoaded) {
   const SmallExperiment experiment;
   const std::string hint = "--load-controllers";
   EXPECT_TRUE(has(run_to_end({cohort_program(), "check", experiment.file()}).out, hint));
   EXPECT_FALSE(has(run_to_end({cohort_program(), "check", experiment.file(), hint}).out, hint));
 }
 
-TEST(Plugins, OfAnotherMachineAreNotLoaded) {
+TEST(Plugins, AreNotLoadedForAnotherMachine) {
   const SmallExperiment experiment("./foreign.so");
   std::string bytes = read_file(test_controller("misbehaving"));
   bytes[18] = 8;  // e_machine: MIPS

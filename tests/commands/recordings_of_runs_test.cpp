@@ -8,7 +8,7 @@
 namespace cohort::test {
 namespace {
 
-// `cohort` and these arguments.
+// Runs `cohort` with these arguments.
 Ended cohort(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), cohort_program());
   return run_to_end(arguments);
@@ -41,7 +41,7 @@ TEST_F(Recordings, AreReplayedWithoutTheirExperiment) {
   EXPECT_EQ(cohort({"replay", file, "--verify", "--from", "0.5", "--to", "1"}).out, "identical, 51 ticks\n");
 }
 
-TEST_F(Recordings, SayWhatTheyHold) {
+TEST_F(Recordings, ListTheirContents) {
   const std::string file = record("run.mcap");
   const Ended listed = cohort({"recordings", "list", file, file});
   EXPECT_EQ(listed.exit_code, 0) << listed.err;
@@ -51,8 +51,8 @@ TEST_F(Recordings, SayWhatTheyHold) {
     EXPECT_NE(listed.out.find(fact), std::string::npos) << fact << listed.out;
 }
 
-// On a disk that is full after 100 kB, as a limit of file sizes makes it.
-TEST_F(Recordings, ThatEndEarlyAreToldAtOnceAndEndTheRunIfThatIsWanted) {
+// Simulates a disk that is full after 100 kB with a limit of file sizes.
+TEST_F(Recordings, AreReportedIfTheyEndEarlyAndEndTheRunOnRequest) {
   const std::string file = *this / "run.mcap";
   const std::string summary = *this / "summary.json";
   const auto run = [&](const FieldOfRobots& field, const std::string& controllers,
@@ -73,11 +73,24 @@ TEST_F(Recordings, ThatEndEarlyAreToldAtOnceAndEndTheRunIfThatIsWanted) {
   }
   const Ended whole = run(FieldOfRobots(8, 60.0), "inprocess", {});
   EXPECT_EQ(whole.exit_code, 1) << whole.err;
+  EXPECT_NE(whole.out.find("\nrecording         INCOMPLETE: the recording " + file), std::string::npos) << whole.out;
+  EXPECT_NE(whole.err.find(": unrecorded: "), std::string::npos) << whole.err;
   EXPECT_EQ(read_json(summary)["ticks"], 6000);
   EXPECT_EQ(unrecorded().size(), 1u) << "also if the disk says so when the run is over";
 }
 
-TEST_F(Recordings, ThatEndEarlyAreInTheHistoryWhileTheRunGoesOn) {
+// The run ends before a chunk is due, so that its end is the first to find the disk full.
+TEST_F(Recordings, AreReportedBeforeTheSummaryIfTheyEndEarly) {
+  const FieldOfRobots field(8, 60.0);
+  const Ended ended = run_to_end({"/bin/sh", "-c", "ulimit -f 200; exec \"$@\" 2>&1", "sh", cohort_program(), "run",
+                                  field.file(), "--controllers", "inprocess", "--record", *this / "run.mcap"});
+  EXPECT_EQ(ended.exit_code, 1) << ended.out;
+  const std::size_t told = ended.out.find("unrecorded: ");
+  ASSERT_NE(told, std::string::npos) << ended.out;
+  EXPECT_LT(told, ended.out.find("experiment        ")) << ended.out;
+}
+
+TEST_F(Recordings, AreInTheHistoryIfTheyEndEarlyWhileTheRunContinues) {
   const FieldOfRobots field(8, 1e5);
   const ReservedDomain domain;
   const std::vector<std::string> serve = field.serve(domain, {"--paused", "--record", *this / "run.mcap"});
@@ -89,12 +102,13 @@ TEST_F(Recordings, ThatEndEarlyAreInTheHistoryWhileTheRunGoesOn) {
     control(domain, {"step", "1000"});
     return control(domain, {"history"}).find("ulimit -f") != std::string::npos;
   })) << server.output();
+  EXPECT_TRUE(server.wait_for_output("NOT RECORDED")) << server.output();
   control(domain, {"step", "1"});
   control(domain, {"shutdown"});
   EXPECT_EQ(server.wait_for_exit(), 1) << server.output();
 }
 
-TEST_F(Recordings, SayWhereTwoRunsPart) {
+TEST_F(Recordings, ShowWhereTwoRunsDiverge) {
   const std::string file = record("run.mcap");
   const Ended same = cohort({"diff", file, record("again.mcap")});
   EXPECT_EQ(same.exit_code, 0) << same.err;
@@ -104,6 +118,8 @@ TEST_F(Recordings, SayWhereTwoRunsPart) {
   EXPECT_EQ(other.exit_code, 1);
   const auto found = nlohmann::json::parse(other.out);
   EXPECT_EQ(found["tick"], 0);
+  EXPECT_EQ(found["settings"], nlohmann::json::parse(R"([{"setting": "parameter 'treel/right/velocity' of team 'swarm'",
+            "first": "0.1", "second": "0.11"}])"));
   ASSERT_EQ(found["differences"].size(), 2u) << other.out;
   EXPECT_EQ(found["differences"][0],
             nlohmann::json::parse(R"({"object": "swarm/sbot_0", "quantity": "command", "detail":
@@ -111,18 +127,20 @@ TEST_F(Recordings, SayWhereTwoRunsPart) {
 
   const Ended shorter = cohort({"diff", file, record("shorter.mcap", {"--duration", "1"})});
   EXPECT_EQ(shorter.exit_code, 1);
-  EXPECT_NE(shorter.out.find("shorter.mcap ends at tick 100, and the other goes on"), std::string::npos) << shorter.out;
+  EXPECT_TRUE(shorter.out.starts_with("the runs have different settings:\n  duration: 2 s | 1 s\n")) << shorter.out;
+  EXPECT_NE(shorter.out.find("shorter.mcap ends at tick 100, and the other recording is longer"), std::string::npos)
+      << shorter.out;
   EXPECT_NE(shorter.out.find("identical, 101 ticks"), std::string::npos) << shorter.out;
 
   const Ended noise = cohort({"diff", file, record("seed.mcap", {"--seed", "2"})});
   EXPECT_EQ(noise.exit_code, 1);
   EXPECT_TRUE(
-      noise.out.starts_with("they part at tick 0 (0.000 s), after 0 identical ticks\n  observation  swarm/sbot_0"))
+      noise.out.starts_with("the runs have different settings:\n  seed: 1 | 2\n"
+                            "they diverge at tick 0 (0.000 s), after 0 identical ticks\n  observation  swarm/sbot_0"))
       << noise.out;
-  EXPECT_NE(noise.err.find("their seeds are 1 and 2"), std::string::npos) << noise.err;
 }
 
-TEST_F(Recordings, AreNotWhatOneRecordsThemFrom) {
+TEST_F(Recordings, ExplainHowToRecordAnExperiment) {
   const FieldOfRobots field(2, 2.0);
   const std::string picture = *this / "run.svg";
   for (const std::vector<std::string>& command : {std::vector<std::string>{"replay", field.file()},
@@ -130,12 +148,12 @@ TEST_F(Recordings, AreNotWhatOneRecordsThemFrom) {
                                                   {"plot", field.file(), "--output", picture}}) {
     const Ended refused = cohort(command);
     EXPECT_EQ(refused.exit_code, 2) << command[0] << refused.err;
-    EXPECT_NE(refused.err.find("'cohort run experiment.yaml --record run.mcap' records it"), std::string::npos)
+    EXPECT_NE(refused.err.find("is an experiment, not a recording. To run it: cohort run"), std::string::npos)
         << command[0] << refused.err;
   }
 }
 
-TEST_F(Recordings, HoldWhatIsAskedFor) {
+TEST_F(Recordings, ContainTheRequestedData) {
   const recording::Recording recorded(record("run.mcap", {"--record-poses", "50", "--record-observations", "20",
                                                           "--record-robots", "1", "--record-snapshots", "0.5"}));
   const auto count = [&](const std::string& topic) {
@@ -144,7 +162,8 @@ TEST_F(Recordings, HoldWhatIsAskedFor) {
     const auto& counts = recorded.reader().statistics().messages_of_channels;
     return counts.contains(channel->id) ? counts.at(channel->id) : 0;
   };
-  EXPECT_EQ(count("/tf"), 101u);
+  EXPECT_EQ(count("/tf"), 101u + 41u) << "with each observation the links that have sensors";
+  EXPECT_EQ(count("/tf_static"), 1u);
   EXPECT_EQ(count("/clock"), 101u);
   EXPECT_EQ(count("/swarm/sbot_1/observation"), 41u);
   EXPECT_EQ(count("/swarm/sbot_0/observation"), 0u);
@@ -155,19 +174,24 @@ TEST_F(Recordings, HoldWhatIsAskedFor) {
   EXPECT_EQ(recorded.facts().at("robots"), "2");
 }
 
-TEST_F(Recordings, BecomeTables) {
+TEST_F(Recordings, AreExportedAsTables) {
   const std::string file = record("run.mcap", {"--record-observations", "10"});
   ASSERT_EQ(cohort({"export-data", file, "--csv", *this / "tables"}).exit_code, 0);
   const auto poses = lines_of(read_file(*this / "tables/trajectories.csv"));
   ASSERT_EQ(poses.size(), 1u + 2 * 21);
-  EXPECT_EQ(poses[0], "run,time,object,x,y,z,qx,qy,qz,qw");
-  EXPECT_TRUE(poses[2].starts_with("0,0,swarm/sbot_1,")) << poses[2];
+  EXPECT_EQ(poses[0], "run,time,object,team,x,y,z,qx,qy,qz,qw");
+  EXPECT_TRUE(poses[2].starts_with("0,0,swarm/sbot_1,swarm,")) << poses[2];
   const auto commands = lines_of(read_file(*this / "tables/commands_sbot.csv"));
   ASSERT_EQ(commands.size(), 3u);
-  EXPECT_TRUE(commands[0].starts_with("run,time,robot,treel_left_velocity,treel_right_velocity,")) << commands[0];
-  EXPECT_TRUE(commands[1].starts_with("0,0,swarm/sbot_0,0.1,0.1,")) << commands[1];
+  EXPECT_TRUE(commands[0].starts_with("run,time,robot,team,treel_left_velocity,treel_right_velocity,")) << commands[0];
+  EXPECT_TRUE(commands[1].starts_with("0,0,swarm/sbot_0,swarm,0.1,0.1,")) << commands[1];
   EXPECT_EQ(lines_of(read_file(*this / "tables/observations_sbot.csv")).size(), 1u + 2 * 21);
   EXPECT_EQ(lines_of(read_file(*this / "tables/ticks.csv")).size(), 202u);
+
+  const auto units = read_json(*this / "tables/units.json");
+  EXPECT_EQ(units["trajectories"]["x"], "m");
+  EXPECT_EQ(units["commands_sbot"]["treel_left_velocity"], "m/s");
+  EXPECT_EQ(units["ticks"], nlohmann::json::parse(R"({"time": "s"})"));
 
   ASSERT_EQ(
       cohort({"export-data", file, "--csv", *this / "part", "--robots", "1", "--from", "1", "--to", "1.5"}).exit_code,
@@ -180,7 +204,7 @@ TEST_F(Recordings, BecomeTables) {
   EXPECT_TRUE(read_file(*this / "run.h5").starts_with("\x89HDF\r\n"));
 }
 
-// The same recording as another build would have made it.
+// The same recording, as if another build had made it.
 void claim_other_build(const std::string& file, const std::string& key, const std::string& value) {
   recording::Bytes bytes;
   {
@@ -204,7 +228,7 @@ void claim_other_build(const std::string& file, const std::string& key, const st
   write_bytes(file, bytes);
 }
 
-TEST_F(Recordings, SayWhichBuildMadeThemAndReplaysWarnOfOtherArithmetic) {
+TEST_F(Recordings, NameTheirBuildAndReplaysWarnOfOtherArithmetic) {
   const std::string file = record("run.mcap");
   const std::string listed = cohort({"recordings", "list", file}).out;
   for (const char* const fact : {"\n  arithmetic             ", "\n  commit                 "})
@@ -219,11 +243,11 @@ TEST_F(Recordings, SayWhichBuildMadeThemAndReplaysWarnOfOtherArithmetic) {
   claim_other_build(file, "arithmetic", "0123456789abcdef");
   const Ended warned = cohort({"replay", file, "--verify"});
   EXPECT_EQ(warned.exit_code, 0);
-  EXPECT_NE(warned.err.find("its arithmetic is another one, and results will differ"), std::string::npos) << warned.err;
+  EXPECT_NE(warned.err.find("its arithmetic differs, so results will differ"), std::string::npos) << warned.err;
 }
 
-// As on a full disk, where files are cut off. HDF5 fails again when it is ended.
-TEST_F(Recordings, EndWithOneIfTheirTablesCannotBeWritten) {
+// As on a full disk, files are truncated. HDF5 fails again when it is closed.
+TEST_F(Recordings, ExitWithOneIfTablesCannotBeWritten) {
   const std::string file = record("run.mcap", {"--record-observations", "10"});
   for (const std::vector<std::string>& target :
        {std::vector<std::string>{"--csv", *this / "tables"}, std::vector<std::string>{"--hdf5", *this / "run.h5"}})
@@ -243,8 +267,8 @@ TEST_F(Recordings, EndWithOneIfTheirTablesCannotBeWritten) {
     }
 }
 
-// What was commanded before the part, and stands in it, is in its rows.
-TEST_F(Recordings, GiveTheSameRowsForAPart) {
+// Rows of the part include commands that were sent before it and are still in effect.
+TEST_F(Recordings, ExportTheSameRowsForAPart) {
   run_experiment(COHORT_SOURCE_DIR "/worlds/experiments/chain.yaml",
                  {"--controllers", "inprocess", "--duration", "12", "--record", *this / "run.mcap"});
   ASSERT_EQ(cohort({"export-data", *this / "run.mcap", "--csv", *this / "whole"}).exit_code, 0);
@@ -256,7 +280,7 @@ TEST_F(Recordings, GiveTheSameRowsForAPart) {
   EXPECT_TRUE(std::equal(part.rbegin(), part.rend() - 1, whole.rbegin()));
 }
 
-TEST_F(Recordings, AreDrawn) {
+TEST_F(Recordings, AreDrawnAsPlots) {
   const std::string file = record("run.mcap", {"--plot", *this / "live.svg"});
   ASSERT_EQ(cohort({"plot", file, "-o", *this / "paths.svg"}).exit_code, 0);
   EXPECT_EQ(read_file(*this / "paths.svg"), read_file(*this / "live.svg")) << "the picture that the run drew itself";
@@ -266,9 +290,39 @@ TEST_F(Recordings, AreDrawn) {
   const Ended png = cohort({"plot", file, "-o", *this / "paths.png"});
   ASSERT_EQ(png.exit_code, 0) << png.err;
   EXPECT_TRUE(read_file(*this / "paths.png").starts_with("\x89PNG"));
+  ASSERT_EQ(cohort({"plot", file, "-o", *this / "same.svg", "--what", "paths"}).exit_code, 0);
+  EXPECT_EQ(read_file(*this / "same.svg"), read_file(*this / "paths.svg"));
+  ASSERT_EQ(cohort({"plot", file, "-o", *this / "one.svg", "--robots", "swarm/sbot_1"}).exit_code, 0);
+  const std::string one = read_file(*this / "one.svg");
+  EXPECT_NE(one.find("swarm/sbot_1"), std::string::npos);
+  EXPECT_EQ(one.find("swarm/sbot_0"), std::string::npos) << "it was not asked for";
 }
 
-TEST_F(Recordings, ThatAreNoneAreRefusedWithTheReason) {
+TEST_F(Recordings, AreDrawnInTheFormatOfTheFilesNameOrRefused) {
+  const std::string file = record("run.mcap", {"--plot", *this / "live.pdf"});
+  EXPECT_TRUE(read_file(*this / "live.pdf").starts_with("%PDF"));
+  record("again.mcap", {"--plot", *this / "live.PNG"});
+  EXPECT_TRUE(read_file(*this / "live.PNG").starts_with("\x89PNG"));
+  ASSERT_EQ(cohort({"plot", file, "-o", *this / "paths.pdf"}).exit_code, 0);
+  EXPECT_TRUE(read_file(*this / "paths.pdf").starts_with("%PDF"));
+
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& reason) {
+    const Ended ended = cohort(arguments);
+    EXPECT_EQ(ended.exit_code, 2) << reason;
+    EXPECT_NE(ended.err.find(reason), std::string::npos) << ended.err;
+  };
+  const std::string formats = "expected a file name that ends in .svg, .png or .pdf";
+  refused({"plot", file, "-o", *this / "paths.jpg"}, formats);
+  refused({"run", "obstacle_avoidance", "--plot", *this / "paths.jpg"}, formats);
+  for (const char* const what : {"paths", "speed"})
+    refused({"plot", file, "-o", *this / "none.svg", "--what", what, "--robots", "green/*"},
+            "there is no robot 'green/*'; known: swarm/sbot_0, swarm/sbot_1");
+  refused({"plot", file, "-o", *this / "none.svg", "--what", "speed,paths"}, "'paths' is a picture of its own");
+  refused({"plot", file, "-o", *this / "none.svg", "--what", "path"}, "did you mean 'paths'?");
+  EXPECT_FALSE(std::filesystem::exists(*this / "none.svg"));
+}
+
+TEST_F(Recordings, AreRejectedWithTheReasonIfInvalid) {
   write_file(*this / "text.mcap", "not a recording");
   const std::string file = record("run.mcap");
   const auto refused = [](const std::vector<std::string>& arguments, const std::string& reason) {
@@ -285,10 +339,10 @@ TEST_F(Recordings, ThatAreNoneAreRefusedWithTheReason) {
   }
   refused({"replay", *this / "none.mcap"}, "none.mcap");
   refused({"plot", file, "-o", *this / "x.svg", "--what", "treel/left/positon"}, "did you mean 'treel/left/position'?");
-  refused({"plot", file, "-o", *this / "x.jpg"}, "expected a file name that ends in .svg or .png");
-  refused({"replay", file, "--from", "5"}, "nothing in the time that is asked for");
-  refused({"replay", file, "--verify", "--from", "5"}, "nothing in the time that is asked for");
-  refused({"plot", file, "-o", *this / "x.svg", "--from", "5"}, "nothing in the time that is asked for");
+  refused({"plot", file, "-o", *this / "x.jpg"}, "expected a file name that ends in .svg, .png or .pdf");
+  refused({"replay", file, "--from", "5"}, "no data between '--from' and '--to'");
+  refused({"replay", file, "--verify", "--from", "5"}, "no data between '--from' and '--to'");
+  refused({"plot", file, "-o", *this / "x.svg", "--from", "5"}, "no data between '--from' and '--to'");
   refused({"export-data", file, "--csv", *this / "x", "--robots", "7"}, "7");
   refused({"run", demo_experiment(), "--record", "/nowhere/run.mcap"}, "/nowhere");
 }

@@ -20,7 +20,7 @@ Ended recover(const std::vector<std::string>& arguments) {
   return run_to_end(command);
 }
 
-TEST(RecoverCommand, MendsAFileInPlaceAndSaysWhatWasLost) {
+TEST(RecoverCommand, RepairsAFileInPlaceAndReportsTheLoss) {
   const ScratchFolder folder;
   const std::string file = folder / "run.mcap";
   const Bytes bytes = test::small_recording(20);
@@ -37,10 +37,10 @@ TEST(RecoverCommand, MendsAFileInPlaceAndSaysWhatWasLost) {
 
   const Ended again = recover({file});
   EXPECT_EQ(again.exit_code, 0);
-  EXPECT_NE(again.out.find("nothing was lost: the file is whole"), std::string::npos) << again.out;
+  EXPECT_NE(again.out.find("nothing was lost: the file is complete"), std::string::npos) << again.out;
 }
 
-TEST(RecoverCommand, WritesAnotherFileAndLeavesTheFirst) {
+TEST(RecoverCommand, WritesAnotherFileAndKeepsTheFirst) {
   const ScratchFolder folder;
   const std::string file = folder / "run.mcap";
   const std::string whole = folder / "whole.mcap";
@@ -60,11 +60,11 @@ void expect_refused(const std::vector<std::string>& arguments, const std::string
   EXPECT_EQ(ended.out, "");
 }
 
-TEST(RecoverCommand, RefusesWhatItCannotReadOrWrite) {
+TEST(RecoverCommand, RejectsFilesThatItCannotReadOrWrite) {
   const ScratchFolder folder;
   expect_refused({folder / "none.mcap"}, "cannot be read: No such file or directory");
   write_file(folder / "text.mcap", "something else");
-  expect_refused({folder / "text.mcap"}, "text.mcap: byte 0: this is no MCAP file");
+  expect_refused({folder / "text.mcap"}, "text.mcap: byte 0: this is not an MCAP file");
   const std::string file = folder / "run.mcap";
   test::write_bytes(file, test::small_recording(3));
   expect_refused({file, "-o", folder / "no_folder/run.mcap"}, "cannot be written to");
@@ -73,8 +73,8 @@ TEST(RecoverCommand, RefusesWhatItCannotReadOrWrite) {
   expect_refused({file}, "another process is recording to it");
 }
 
-// Header and attachments are there, and the only chunk is cut.
-TEST(RecoverCommand, RefusesToReplaceAFileByOneWithoutMessages) {
+// Header and attachments are complete, and the only chunk is truncated.
+TEST(RecoverCommand, DoesNotReplaceAFileByOneWithoutMessages) {
   const ScratchFolder folder;
   const std::string file = folder / "run.mcap";
   const Bytes bytes = test::small_recording(4);
@@ -87,13 +87,23 @@ TEST(RecoverCommand, RefusesToReplaceAFileByOneWithoutMessages) {
     expect_refused({file}, "no message in the file can be read");
     EXPECT_EQ(test::read_bytes(file), part);
   }
-  expect_refused({file}, "only 1 attachment and 0 records of metadata, which -o writes to another file");
+  expect_refused({file}, "only 1 attachment and 0 records of metadata, which can be written to another file with -o");
   EXPECT_EQ(recover({file, "-o", folder / "rest.mcap"}).exit_code, 0);
   EXPECT_EQ(McapReader(folder / "rest.mcap").attachments().size(), 1U);
 }
 
-// What is recorded is in the file, though nobody closes it.
-TEST(AStuckTick, IsEndedAfterAWhileWithAMessage) {
+TEST(AStuckTick, IsReportedAlsoWithQuiet) {
+  const SmallExperiment experiment(test_controller("misbehaving"));
+  Process run(experiment.run({"--controllers", "inprocess", "--quiet"}), {{"COHORT_TEST_FAULT", "loop"}});
+  EXPECT_TRUE(run.wait_for_output("cohort: warning: tick 20: the controller '" + test_controller("misbehaving") +
+                                  "' of r0 (team pair) has not returned from step for 10 s"))
+      << run.output();
+  EXPECT_TRUE(run.wait_for_output("'deadline: 1, on_late: hold'")) << run.output();
+  EXPECT_TRUE(run.running()) << "it waits";
+}
+
+// The recorded data are in the file, although it was not closed.
+TEST(AStuckTick, EndsTheProcessWithAMessageAfterATimeout) {
   const ScratchFolder folder;
   const std::string file = folder / "run.mcap";
   const SmallExperiment experiment(test_controller("misbehaving"));
@@ -102,7 +112,7 @@ TEST(AStuckTick, IsEndedAfterAWhileWithAMessage) {
   EXPECT_TRUE(eventually([&] { return McapReader(file).statistics().message_count > 20; }));
   run.signal(SIGTERM);
   EXPECT_EQ(run.wait_for_exit(), 1) << run.output();
-  EXPECT_NE(run.output().find("tick 20 has not ended 10 s after this process was asked to end: the controller '" +
+  EXPECT_NE(run.output().find("tick 20 has not ended 10 s after the request to stop: the controller '" +
                               test_controller("misbehaving") + "' of r0 (team pair) has not returned from step."),
             std::string::npos)
       << run.output();

@@ -3,6 +3,8 @@
 #include <csignal>
 
 #include "tests/commands/small_experiment.hpp"
+#include "tests/support/control.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
 
 namespace cohort::test {
 namespace {
@@ -15,53 +17,53 @@ std::size_t times(const std::string& text, const std::string& part) {
 
 const std::string aborted = " was ended by signal 6 (Aborted)";
 
-TEST(Restarts, AControllerThatDiesIsStartedAgainAndTheRunHasTheSameHash) {
+TEST(Restarts, KeepTheHashOfTheRun) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 1.0);
   const Ended expected = run_to_end(experiment.run({"--controllers", "inprocess"}));
   const Ended run = run_to_end(
       experiment.run(), {{"COHORT_TEST_FAULT", "abort once"}, {"COHORT_TEST_FILE", (experiment / "aborted").string()}});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(times(run.err, "starting it again"), 1u) << run.err;
+  EXPECT_EQ(times(run.err, "restarting it"), 1u) << run.err;
   EXPECT_NE(run.err.find("team 'pair' (r0 and 1 more): controller process "), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find(aborted + "; starting it again (1 of 3)"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find(aborted + "; restarting it (1 of 3)"), std::string::npos) << run.err;
   const auto hash = [](const Ended& ended) { return ended.out.substr(ended.out.find("state hash")); };
   EXPECT_EQ(hash(run), hash(expected));
 }
 
-TEST(Restarts, OneThatDiesForTheFourthTimeEndsTheRun) {
+TEST(Restarts, EndTheRunAtTheFourthDeath) {
   const SmallExperiment experiment;
   const Ended run = run_to_end(experiment.run(), {{"COHORT_TEST_FAULT", "abort"}});
   EXPECT_EQ(run.exit_code, 1) << run.err;
-  EXPECT_EQ(times(run.err, "starting it again"), 3u) << run.err;
+  EXPECT_EQ(times(run.err, "restarting it"), 3u) << run.err;
   EXPECT_NE(run.err.find("cohort: error: the run ended at tick 20: team 'pair' (r0 and 1 more): controller process "),
             std::string::npos)
       << run.err;
-  EXPECT_NE(run.err.find(aborted + ", and was started again 3 times before\n"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find(aborted + "; it had been restarted 3 times before\n"), std::string::npos) << run.err;
   EXPECT_NE(run.out.find("state hash"), std::string::npos) << run.out;
 }
 
-TEST(Restarts, WithNeverItEndsTheRunAtOnceByNameOfTeamRobotsAndSignal) {
+TEST(Restarts, NeverEndsTheRunAndNamesTeamRobotsAndSignal) {
   const SmallExperiment experiment(test_controller("misbehaving"), "    restart: never\n");
   const Ended run = run_to_end(experiment.run({"--controllers", "per-robot"}),
                                {{"COHORT_TEST_FAULT", "abort"}, {"COHORT_TEST_ROBOT", "r1"}});
   EXPECT_EQ(run.exit_code, 1) << run.err;
-  EXPECT_EQ(times(run.err, "starting it again"), 0u) << run.err;
+  EXPECT_EQ(times(run.err, "restarting it"), 0u) << run.err;
   EXPECT_NE(run.err.find("team 'pair' (r1): controller process "), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find(aborted + ", and the experiment says restart: never\n"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find(aborted + "; the experiment specifies 'restart: never'\n"), std::string::npos) << run.err;
   EXPECT_EQ(times(run.err, "cohort: "), 1u) << "nothing else is said\n" << run.err;
 }
 
-TEST(Restarts, AControllerThatEndsWithoutAnErrorInTheMidstOfARunHasDied) {
+TEST(Restarts, TreatAnEndWithoutErrorDuringARunAsADeath) {
   const SmallExperiment experiment(test_controller("misbehaving"), "    restart: never\n");
   const Ended run = run_to_end(experiment.run(), {{"COHORT_TEST_FAULT", "leave"}});
   EXPECT_EQ(run.exit_code, 1) << run.err;
-  EXPECT_NE(run.err.find(" ended with exit code 1, and the experiment says restart: never"), std::string::npos)
+  EXPECT_NE(run.err.find(" ended with exit code 1; the experiment specifies 'restart: never'"), std::string::npos)
       << run.err;
 }
 
 class Placement : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(Placement, AnExceptionEndsTheRunWithItsMessageOnce) {
+TEST_P(Placement, ReportsAnExceptionOnceAndEndsTheRun) {
   const SmallExperiment experiment;
   const Ended run = run_to_end(experiment.run({"--controllers", GetParam()}),
                                {{"COHORT_TEST_FAULT", "throw"}, {"COHORT_TEST_ROBOT", "r1"}});
@@ -71,13 +73,13 @@ TEST_P(Placement, AnExceptionEndsTheRunWithItsMessageOnce) {
                 "the run ended at tick 20: the controller of robot 'r1' failed in step at tick 20: a fault on purpose"),
             std::string::npos)
       << run.err;
-  EXPECT_EQ(times(run.err, "starting it again"), 0u) << run.err;
+  EXPECT_EQ(times(run.err, "restarting it"), 0u) << run.err;
 }
 
 INSTANTIATE_TEST_SUITE_P(, Placement, ::testing::Values("process", "inprocess"),
                          [](const auto& parameter) { return std::string(parameter.param); });
 
-TEST(Restarts, AControllerWhoseRobotsSomebodyElseTookOverIsLetGo) {
+TEST(Restarts, DoNotApplyToASupersededController) {
   const SmallExperiment experiment;
   const ReservedDomain domain;
   Process run(experiment.run({"--domain", domain.text(), "--verbose"}));
@@ -93,7 +95,34 @@ TEST(Restarts, AControllerWhoseRobotsSomebodyElseTookOverIsLetGo) {
   run.signal(SIGINT);
   EXPECT_EQ(run.wait_for_exit(), 130) << run.output();
   EXPECT_EQ(other.wait_for_exit(), 0) << other.output();
-  EXPECT_EQ(times(run.output(), "starting it again"), 0u) << run.output();
+  EXPECT_EQ(times(run.output(), "restarting it"), 0u) << run.output();
+}
+
+// DDS gives a killed server up after 5 s.
+TEST(AClientOfAServer, ThatWasKilledSaysSoBeforeItGivesUp) {
+  const FieldOfRobots field(2, 1e5);
+  const ReservedDomain domain;
+  Process server(field.serve(domain, {"--speed", "1"}));
+  Process client(FieldOfRobots::host(domain, "all"));
+  ASSERT_TRUE(server.wait_for_output("simulated")) << server.output();
+  server.signal(SIGKILL);
+  EXPECT_EQ(client.wait_for_exit(), 1) << client.output();
+  const std::string output = client.output();
+  const std::size_t silent = output.find("has not responded for 1 s");
+  ASSERT_NE(silent, std::string::npos) << output;
+  EXPECT_LT(silent, output.find(" is gone")) << output;
+}
+
+TEST(AClientOfAServer, ThatWasStoppedSaysWhenItRespondsAgain) {
+  const FieldOfRobots field(2, 1e5);
+  const ReservedDomain domain;
+  Process server(field.serve(domain, {"--paused"}));
+  Process client(FieldOfRobots::host(domain, "all"));
+  control(domain, {"step", "10"});
+  server.signal(SIGSTOP);
+  EXPECT_TRUE(client.wait_for_output("has not responded for 1 s")) << client.output();
+  server.signal(SIGCONT);
+  EXPECT_TRUE(client.wait_for_output("responds again")) << client.output();
 }
 
 }  // namespace

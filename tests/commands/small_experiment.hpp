@@ -6,7 +6,7 @@
 
 namespace cohort::test {
 
-/// Robots `r0` and `r1`, which float, in one team; files of its own to spoil.
+/// An experiment with the floating robots `r0` and `r1` in one team, in files that a test can change.
 class SmallExperiment {
  public:
   static constexpr double for_ever = 1e6;

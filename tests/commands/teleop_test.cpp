@@ -9,7 +9,7 @@ namespace {
 
 const std::string up = "\033[A";
 
-// Two seconds among obstacles; `driver` says what drives the first robot.
+// Two seconds among obstacles; `driver` is the controller of the first robot.
 std::string write_experiment(const ScratchFolder& folder, const std::string& driver) {
   const std::filesystem::path file = folder / "experiment.yaml";
   std::ofstream(file) << "world: " COHORT_SOURCE_DIR "/worlds/arenas/obstacles.sdf\nduration: 2\nteams:\n"
@@ -18,7 +18,7 @@ std::string write_experiment(const ScratchFolder& folder, const std::string& dri
   return file;
 }
 
-// A person who has typed this before the run begins, and nothing since.
+// Keys that a person has typed before the run begins.
 std::vector<std::string> teleop(const ScratchFolder& folder, const std::string& keys, const ReservedDomain& domain) {
   const std::filesystem::path file = folder / "keys";
   std::ofstream(file) << keys;
@@ -26,7 +26,7 @@ std::vector<std::string> teleop(const ScratchFolder& folder, const std::string& 
           "exec " + cohort_program() + " teleop --robots 0 --domain " + domain.text() + " < " + file.string()};
 }
 
-TEST(Teleop, TheKeysThatAPersonPressesAreTheCommandsOfTheRobot) {
+TEST(Teleop, TurnsKeysIntoCommandsOfTheRobot) {
   const ScratchFolder constant;
   const std::string expected_summary = constant / "summary.json";
   Process expected({cohort_program(), "run",
@@ -52,7 +52,7 @@ TEST(Teleop, TheKeysThatAPersonPressesAreTheCommandsOfTheRobot) {
   EXPECT_NE(person.output().find("treel/left/velocity = 0.1"), std::string::npos) << person.output();
 }
 
-TEST(Teleop, LeavesInOrderWhenAskedTo) {
+TEST(Teleop, QuitsCleanlyOnRequest) {
   const ScratchFolder folder;
   const ReservedDomain domain;
   Process person(teleop(folder, up + "q", domain));
@@ -60,7 +60,7 @@ TEST(Teleop, LeavesInOrderWhenAskedTo) {
   EXPECT_EQ(person.output(), "");
 }
 
-TEST(Teleop, APersonDrivesOverDdsOnly) {
+TEST(Teleop, RequiresDds) {
   const ScratchFolder folder;
   Process run(
       {cohort_program(), "run", write_experiment(folder, "controller: keyboard\n"), "--controllers", "inprocess"});
@@ -68,7 +68,7 @@ TEST(Teleop, APersonDrivesOverDdsOnly) {
   EXPECT_NE(run.output().find("experiment.yaml:6: "), std::string::npos) << run.output();
 }
 
-TEST(Parameters, MistakesAreFoundBeforeAnythingRunsWithTheirLine) {
+TEST(Parameters, AreCheckedBeforeTheRunWithTheirLines) {
   const ScratchFolder folder;
   const std::string experiment = write_experiment(
       folder,

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tests/commands/small_experiment.hpp"
 
-// What users do with worlds: write them back, read about them, print what happens in them.
+// Commands for worlds: export, display, and printing of quantities.
 namespace cohort::test {
 namespace {
 
@@ -26,7 +27,7 @@ TEST(Export, WritesAWorldThatRunsToTheSameHash) {
   }
 }
 
-TEST(Export, HasTheSeedThatIsAskedFor) {
+TEST(Export, UsesTheRequestedSeed) {
   const ScratchFolder folder;
   const auto exported = [&](const std::vector<std::string>& more) {
     const std::string world = (folder / "w.sdf").string();
@@ -39,7 +40,7 @@ TEST(Export, HasTheSeedThatIsAskedFor) {
   EXPECT_NE(exported({}), exported({"--seed", "2"}));
 }
 
-TEST(Export, RefusesWhatItCannotWriteOrRead) {
+TEST(Export, RejectsFilesThatItCannotWriteOrRead) {
   const ScratchFolder folder;
   const Ended odd = run_to_end({cohort_program(), "export", demo_experiment(), "-o", (folder / "w.txt").string()});
   EXPECT_EQ(odd.exit_code, 2);
@@ -51,7 +52,7 @@ TEST(Export, RefusesWhatItCannotWriteOrRead) {
   EXPECT_FALSE(std::filesystem::exists(folder / "w.sdf"));
 }
 
-TEST(Export, TakesAFileNameWithoutAFolder) {
+TEST(Export, AcceptsAFileNameWithoutAFolder) {
   const ScratchFolder folder;
   write_file(folder / "tip.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   write_file(
@@ -66,8 +67,8 @@ TEST(Export, TakesAFileNameWithoutAFolder) {
   EXPECT_NE(read_file(folder / "out.sdf").find("<uri>tip.obj</uri>"), std::string::npos);
 }
 
-// An element of SDF takes 60 kB while it is read, and a model has 20 of them.
-TEST(Check, AWorldOfManyModelsTakesAsMuchMemoryAsAFew) {
+// An SDF element takes 60 kB while it is read, and a model has 20 of them.
+TEST(Check, MemoryDoesNotGrowWithTheNumberOfModels) {
   const ScratchFolder folder;
   std::string world = "<sdf version=\"1.6\"><world name=\"w\">\n";
   for (int i = 0; i < 1000; ++i)
@@ -78,13 +79,13 @@ TEST(Check, AWorldOfManyModelsTakesAsMuchMemoryAsAFew) {
   write_file(folder / "w.sdf", world + "</world></sdf>\n");
   const Ended checked = run_to_end({cohort_program(), "check", (folder / "w.sdf").string()});
   EXPECT_EQ(checked.exit_code, 0) << checked.err;
-  EXPECT_LT(std::ranges::count(checked.err, '\n'), 4) << checked.err;  // of each kind of warning the first
+  EXPECT_LT(std::ranges::count(checked.err, '\n'), 4) << checked.err;  // the first warning of each kind
   rusage used{};
   getrusage(RUSAGE_CHILDREN, &used);
   EXPECT_LT(used.ru_maxrss, 600'000) << "kB";
 }
 
-TEST(Samples, OfARingAreReadAgainByTheTechniqueOfThisName) {
+TEST(Samples, AreReadByTheSamplingTechnique) {
   const ScratchFolder folder;
   const std::string model = std::string(COHORT_SOURCE_DIR) + "/worlds/robots/sbot/base.sdf";
   const std::string file = (folder / "s.csv").string();
@@ -103,7 +104,7 @@ TEST(Samples, OfARingAreReadAgainByTheTechniqueOfThisName) {
   EXPECT_EQ(checked.exit_code, 0) << checked.err;
 }
 
-TEST(Samples, RefuseWhatIsNoRing) {
+TEST(Samples, RejectDevicesOtherThanRings) {
   const ScratchFolder folder;
   const Ended ended =
       run_to_end({cohort_program(), "samples", std::string(COHORT_SOURCE_DIR) + "/worlds/robots/sbot/model.sdf",
@@ -113,7 +114,7 @@ TEST(Samples, RefuseWhatIsNoRing) {
   EXPECT_FALSE(std::filesystem::exists(folder / "s.csv"));
 }
 
-TEST(Run, TakesAModelOrAWorldWithoutAnExperiment) {
+TEST(Run, AcceptsAModelOrAWorldWithoutAnExperiment) {
   const ScratchFolder folder;
   const std::string model = (folder / "ball.urdf").string();
   write_file(
@@ -132,7 +133,7 @@ TEST(Run, TakesAModelOrAWorldWithoutAnExperiment) {
         2);
 }
 
-TEST(Worlds, WithoutRobotsSayHowManyModelsTheyHave) {
+TEST(Worlds, ReportTheirModelsIfTheyHaveNoRobot) {
   const ScratchFolder folder;
   const std::string ball = (folder / "ball.urdf").string();
   write_file(ball,
@@ -144,7 +145,7 @@ TEST(Worlds, WithoutRobotsSayHowManyModelsTheyHave) {
   EXPECT_EQ(run.out.find("robot"), std::string::npos) << run.out;
 }
 
-TEST(Worlds, RunNoXacroUnlessThePersonWhoNamesTheFileSaysSo) {
+TEST(Worlds, RunXacroOnlyOnRequest) {
   const ScratchFolder folder;
   std::filesystem::create_directories(folder / "bin");
   write_file(folder / "bin/xacro", "#!/bin/sh\ntouch \"$(dirname \"$0\")/trace\"\nexit 3\n");
@@ -167,7 +168,7 @@ TEST(Worlds, RunNoXacroUnlessThePersonWhoNamesTheFileSaysSo) {
   }
 }
 
-TEST(Models, ShowWhatAModelIsMadeOfAndWhereItRests) {
+TEST(Models, ShowTheirPartsAndRestPoses) {
   const ScratchFolder folder;
   const std::string model = (folder / "cart.urdf").string();
   write_file(
@@ -196,7 +197,7 @@ TEST(Models, ShowWhatAModelIsMadeOfAndWhereItRests) {
   EXPECT_NE(text.out.find("joint j  prismatic  rail to slide  from -0.3 to 0.4"), std::string::npos) << text.out;
 }
 
-TEST(Models, AreKnownByNameAndSuggestTheNearest) {
+TEST(Models, AreFoundByNameAndSuggestTheNearest) {
   const Ended known = run_to_end({cohort_program(), "models", "show", "sbot"});
   EXPECT_EQ(known.exit_code, 0) << known.err;
   EXPECT_TRUE(known.out.starts_with("sbot: ")) << known.out;
@@ -205,7 +206,7 @@ TEST(Models, AreKnownByNameAndSuggestTheNearest) {
   EXPECT_NE(misspelt.err.find("did you mean 'sbot'?"), std::string::npos) << misspelt.err;
 }
 
-TEST(Help, FindsWhatIsAskedForAndSuggestsTheNearest) {
+TEST(Help, FindsTopicsAndSuggestsTheNearest) {
   const Ended contents = run_to_end({cohort_program(), "help"});
   EXPECT_EQ(contents.exit_code, 0);
   EXPECT_NE(contents.out.find("sensors"), std::string::npos);
@@ -215,6 +216,28 @@ TEST(Help, FindsWhatIsAskedForAndSuggestsTheNearest) {
   const Ended misspelt = run_to_end({cohort_program(), "help", "sensers"});
   EXPECT_EQ(misspelt.exit_code, 2);
   EXPECT_NE(misspelt.err.find("did you mean 'sensors'?"), std::string::npos) << misspelt.err;
+}
+
+// Code blocks of the guides that begin with the name of a file, all in one folder.
+TEST(Guides, HaveExamplesThatRunWithoutWarnings) {
+  const ScratchFolder folder;
+  const std::regex block(R"(```\w+\n(?:# |<!-- )(\w+\.\w+)(?: -->)?\n([\s\S]*?)```)");
+  std::vector<std::string> files;
+  for (const char* const guide : {"docs/worlds.md", "docs/devices.md"}) {
+    const std::string text = read_file(std::filesystem::path(COHORT_SOURCE_DIR) / guide);
+    for (std::sregex_iterator match(text.begin(), text.end(), block), end; match != end; ++match) {
+      files.push_back((*match)[1]);
+      write_file(folder / files.back(), (*match)[2]);
+    }
+  }
+  EXPECT_EQ(files, (std::vector<std::string>{"cart.yaml", "arena.yaml", "avoid.yaml", "puck.sdf"}));
+  for (const std::string& file : files) {
+    const Ended checked = run_to_end({cohort_program(), "check", (folder / file).string()});
+    EXPECT_EQ(checked.exit_code, 0) << file << ": " << checked.err;
+    EXPECT_EQ(checked.err.find("warning"), std::string::npos) << file << ": " << checked.err;
+  }
+  const auto summary = run_experiment((folder / "avoid.yaml").string(), {"--controllers", "inprocess"});
+  EXPECT_GT(summary["ticks"], 500) << summary.dump();  // a cart that leaves the arena ends the run
 }
 
 const std::string constant = "constant";
@@ -228,12 +251,13 @@ TEST(Print, WritesATableToStandardOutputOrToAFile) {
   const std::string expected = "time,r1/x,r1/y,r1/z,r*/count\n0,1,0,0,2\n0.5,1,0,0,\n1,3,4,5,2\n1.5,,,,\n2,,,,1\n";
   const Ended printed = run_to_end(experiment.run({"--controllers", "inprocess"}));
   EXPECT_EQ(printed.exit_code, 0) << printed.err;
-  EXPECT_TRUE(printed.out.starts_with(expected)) << printed.out;
-  EXPECT_NE(printed.out.find("stopped           by beyond: 'r0'"), std::string::npos) << printed.out;
+  EXPECT_EQ(printed.out, expected) << "nothing else, for scripts";
+  EXPECT_NE(printed.err.find("stopped           by beyond: 'r0'"), std::string::npos) << printed.err;
   const std::string file = (experiment / "table.csv").string();
   const Ended written = run_to_end(experiment.run({"--controllers", "inprocess", "--csv", file}));
   EXPECT_EQ(read_file(file), expected);
   EXPECT_EQ(written.out.find("r1/x"), std::string::npos) << written.out;
+  EXPECT_NE(written.out.find("stopped           by beyond: 'r0'"), std::string::npos) << written.out;
 }
 
 }  // namespace

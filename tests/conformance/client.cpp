@@ -146,7 +146,7 @@ void Client::take_frame(message::Observation frame) {
   }
 }
 
-// Gives state that the server wants for a snapshot, and fetches what a snapshot has.
+// Sends state that the server requests for a snapshot, and fetches the state of a snapshot.
 void Client::take_states() {
   while (const auto state = wire_.take_state()) {
     if (state->client() != id_ || !admitted_) continue;

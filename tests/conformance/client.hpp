@@ -18,14 +18,14 @@ struct Options {
   std::uint32_t domain = 0;
   std::vector<std::string> robots{};
   std::string plugin{};  ///< the controller's
-  /// As on a bad network: every so many frames are lost on their way here, and as many answers on their way back, when
-  /// they are sent for the first time. 0: none.
+  /// Simulates a bad network: one of so many received frames is dropped, and as many answers, when they are first sent;
+  /// 0 for none.
   std::uint64_t loses_every = 0;
 };
 
 enum class End { finished, refused, superseded, failed, server_lost };
 
-/// One client of docs/protocol.md from Join to its end. Says on standard output what happens to it.
+/// A client as described in docs/protocol.md, from Join to its end. Prints its events to standard output.
 class Client {
  public:
   explicit Client(Options options);
@@ -47,7 +47,7 @@ class Client {
   std::uint64_t id_;
   Wire wire_;
   Robots robots_;
-  // Of each server: one that is started in another's place is another participant.
+  // Descriptions of each server; a replacement server is another participant.
   std::map<Participant, std::map<std::uint32_t, message::RobotDescription>> descriptions_;
   std::optional<Received<message::Admit>> offered_;  // waits for its descriptions
   std::optional<message::Admit> admitted_;

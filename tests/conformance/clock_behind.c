@@ -1,4 +1,4 @@
-// Preloaded: what reads the time of day finds it a minute ago.
+// A preloaded library that sets the time of day back by a minute.
 
 #include <sys/syscall.h>
 #include <time.h>

@@ -15,7 +15,7 @@ constexpr const char* braitenberg = COHORT_BUILD_DIR "/lib/controllers/braitenbe
 constexpr const char* remembering = COHORT_BUILD_DIR "/lib/test_controllers/remembering.so";
 constexpr const char* obstacles = COHORT_SOURCE_DIR "/worlds/arenas/obstacles.sdf";
 
-// A server, and clients of it on Fast DDS.
+// A server, and its clients on Fast DDS.
 class Conformance : public ::testing::Test {
  protected:
   std::unique_ptr<Process> serve(const std::string& experiment, std::vector<std::string> more = {},
@@ -27,7 +27,7 @@ class Conformance : public ::testing::Test {
   }
   std::unique_ptr<Process> start_foreign(const std::string& robots, const std::string& plugin = avoidance,
                                          const std::string& loses_every = "0") {
-    // Of Fast DDS's own, whose destructors AddressSanitizer finds fault with.
+    // Disables a check of AddressSanitizer that the destructors of Fast DDS itself violate.
     return std::make_unique<Process>(
         std::vector<std::string>{COHORT_BUILD_DIR "/bin/fastdds_client", plugin, domain.text(), robots, loses_every},
         Process::Environment{{"ASAN_OPTIONS", "new_delete_type_mismatch=0"}});
@@ -36,7 +36,7 @@ class Conformance : public ::testing::Test {
     return std::make_unique<Process>(
         std::vector<std::string>{cohort_program(), "host", controller, "--robots", robots, "--domain", domain.text()});
   }
-  // The demo's robots, by a controller for which every frame counts.
+  // The robots of the demo, with a controller for which every frame matters.
   std::string experiment_with(const std::string& timing) {
     std::string file = (folder / "experiment.yaml").string();
     write_file(file,
@@ -58,7 +58,7 @@ class Conformance : public ::testing::Test {
   ScratchFolder folder;
 };
 
-TEST_F(Conformance, AClientOnAnotherDdsGivesTheSameBits) {
+TEST_F(Conformance, AClientOnAnotherDdsGivesIdenticalResults) {
   const auto server = serve(demo_experiment(), {"--duration", "5"});
   const auto client = start_foreign("all");
   expect_end(*server, reference_hash(5));
@@ -66,7 +66,7 @@ TEST_F(Conformance, AClientOnAnotherDdsGivesTheSameBits) {
   EXPECT_NE(client->output().find("report 0 (complete)"), std::string::npos) << client->output();
 }
 
-TEST_F(Conformance, ClientsOfTwoDdsShareARunAndGiveTheSameBits) {
+TEST_F(Conformance, ClientsOfTwoDdsShareARunWithIdenticalResults) {
   const auto server = serve(demo_experiment(), {"--duration", "5"});
   const auto foreign = start_foreign("0..3,explorers/sbot_7,12..14");
   const auto own = start_own("4..6,8..11,15");
@@ -75,7 +75,7 @@ TEST_F(Conformance, ClientsOfTwoDdsShareARunAndGiveTheSameBits) {
   expect_finished(*own);
 }
 
-TEST_F(Conformance, AClientMayStartBeforeItsServer) {
+TEST_F(Conformance, AClientCanStartBeforeItsServer) {
   const auto client = start_foreign("all");
   ASSERT_TRUE(client->wait_for_output("looking for a server")) << client->output();
   const auto server = serve(demo_experiment(), {"--duration", "5"});
@@ -83,12 +83,12 @@ TEST_F(Conformance, AClientMayStartBeforeItsServer) {
   expect_finished(*client);
 }
 
-TEST_F(Conformance, AClientThatWantsARobotOfAnotherIsRefused) {
+TEST_F(Conformance, AClientCannotClaimARobotOfAnother) {
   const auto server = serve(demo_experiment(), {"--duration", "5", "--paused"});
   const auto first = start_foreign("all");
   control(domain, {"step", "100"});
   const auto second = start_foreign("explorers/sbot_1*");
-  // The first one shows that it lives when it answers.
+  // The answers of the first one show that it is running.
   EXPECT_TRUE(eventually(
       [&] {
         control(domain, {"step", "1"});
@@ -102,7 +102,7 @@ TEST_F(Conformance, AClientThatWantsARobotOfAnotherIsRefused) {
   expect_finished(*first);
 }
 
-TEST_F(Conformance, ParametersAndSeedsArriveAndGiveTheSameBits) {
+TEST_F(Conformance, ParametersAndSeedsGiveIdenticalResults) {
   const std::string weighted = COHORT_SOURCE_DIR "/worlds/experiments/braitenberg.yaml";
   for (const auto& [experiment, plugin] : {std::pair(weighted, braitenberg), {experiment_with(""), remembering}}) {
     const auto server = serve(experiment);
@@ -112,7 +112,7 @@ TEST_F(Conformance, ParametersAndSeedsArriveAndGiveTheSameBits) {
   }
 }
 
-TEST_F(Conformance, AnswersToEverySecondTickThatActATickLaterGiveTheSameBits) {
+TEST_F(Conformance, PeriodAndDelayGiveIdenticalResults) {
   const std::string experiment = experiment_with("    period: 2\n    delay: 1\n");
   const auto server = serve(experiment);
   const auto client = start_foreign("all", remembering);
@@ -121,8 +121,8 @@ TEST_F(Conformance, AnswersToEverySecondTickThatActATickLaterGiveTheSameBits) {
   EXPECT_NE(client->output().find("answered in all 250"), std::string::npos) << client->output();
 }
 
-// Of the frames every seventh, and as many answers. With a delay others come in between, and must wait.
-TEST_F(Conformance, FramesAndAnswersThatAreLostAreSentAgainAndGiveTheSameBits) {
+// Drops every seventh frame, and as many answers. With a delay, others arrive in between and must wait.
+TEST_F(Conformance, LostFramesAndAnswersGiveIdenticalResults) {
   for (const char* timing : {"", "    delay: 3\n", "    period: 2\n    phase: 1\n    delay: 5\n"}) {
     const std::string experiment = experiment_with(timing);
     const auto server = serve(experiment);
@@ -133,7 +133,7 @@ TEST_F(Conformance, FramesAndAnswersThatAreLostAreSentAgainAndGiveTheSameBits) {
   }
 }
 
-TEST_F(Conformance, AClientThatWasKilledAndStartedAgainGivesTheSameBits) {
+TEST_F(Conformance, ARestartedClientGivesIdenticalResults) {
   const auto server = serve(demo_experiment(), {"--duration", "5", "--paused"});
   const auto own = start_own("8..15");
   const auto killed = start_foreign("0..7");
@@ -157,8 +157,8 @@ TEST_F(Conformance, AClientLeavesWhenItsServerDies) {
   EXPECT_NE(client->output().find("the server is gone"), std::string::npos) << client->output();
 }
 
-// Before the client takes the first one for dead. Of the second one it knows nothing but what the page says.
-TEST_F(Conformance, AClientGoesOnWithAServerThatIsStartedInTheOthersPlace) {
+// The second server starts before the client considers the first one lost, and is known only by the protocol.
+TEST_F(Conformance, AClientContinuesWithAReplacementServer) {
   const auto first = serve(demo_experiment());
   const auto client = start_foreign("all");
   ASSERT_TRUE(client->wait_for_output("answered 100 frames")) << client->output();
@@ -169,8 +169,8 @@ TEST_F(Conformance, AClientGoesOnWithAServerThatIsStartedInTheOthersPlace) {
   expect_finished(*client);
 }
 
-// Its epochs are lower than those of the first one's leases.
-TEST_F(Conformance, AClientGoesOnWithAServerWhoseClockIsAMinuteBehind) {
+// Its epochs are lower than those of the leases of the first one.
+TEST_F(Conformance, AClientContinuesWithAServerWhoseClockIsAMinuteBehind) {
   for (const bool is_own : {false, true}) {
     const auto first = serve(demo_experiment(), {"--paused"});
     const auto client = is_own ? start_own("all") : start_foreign("all");
@@ -184,8 +184,8 @@ TEST_F(Conformance, AClientGoesOnWithAServerWhoseClockIsAMinuteBehind) {
   }
 }
 
-// What controllers remember goes from either client into a snapshot, and from it to either.
-TEST_F(Conformance, StateOfControllersGoesThroughSnapshotsAndGivesTheSameBits) {
+// The state of controllers goes from either client into a snapshot, and from a snapshot to either client.
+TEST_F(Conformance, ControllerStateInSnapshotsGivesIdenticalResults) {
   const std::string experiment = experiment_with("    delay: 1\n");
   const std::string expected = hash_in_process(experiment);
   const std::string file = folder / "saved.snap";
@@ -194,7 +194,7 @@ TEST_F(Conformance, StateOfControllersGoesThroughSnapshotsAndGivesTheSameBits) {
     const auto foreign = start_foreign("0..7", remembering);
     const auto own = start_own("8..15", remembering);
     control(domain, {"step", "150"});
-    EXPECT_EQ(control(domain, {"save", file}).find("anew"), std::string::npos);
+    EXPECT_EQ(control(domain, {"save", file}).find("without state"), std::string::npos);
     control(domain, {"step", "100"});
     control(domain, {"load", file});
     control(domain, {"resume"});
@@ -213,7 +213,7 @@ TEST_F(Conformance, StateOfControllersGoesThroughSnapshotsAndGivesTheSameBits) {
   EXPECT_NE(foreign->output().find("loaded "), std::string::npos) << foreign->output();
 }
 
-TEST_F(Conformance, AClientThatTakesOverAtTheRestoredTickIsGivenTheState) {
+TEST_F(Conformance, AClientThatTakesOverAtTheRestoredTickGetsTheState) {
   const std::string experiment = experiment_with("");
   const std::string file = folder / "saved.snap";
   {
@@ -236,8 +236,8 @@ TEST_F(Conformance, AClientThatTakesOverAtTheRestoredTickIsGivenTheState) {
   EXPECT_NE(again->output().find("from tick 150, reason 4"), std::string::npos) << again->output();
 }
 
-// Larger than a datagram: they go in fragments, both ways.
-TEST_F(Conformance, FramesAndAnswersOfAThousandRobotsGiveTheSameBits) {
+// Messages are larger than a datagram and are fragmented in both directions.
+TEST_F(Conformance, AThousandRobotsGiveIdenticalResults) {
   write_file(folder / "world.yaml",
              "world:\n  name: swarm\n"
              "  model: {name: ground, static: true, link: {collision: {geometry: {plane: {}}}}}\n"

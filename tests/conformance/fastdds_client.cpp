@@ -1,5 +1,5 @@
-// Drives robots of a run as any client does, on Fast DDS: fastdds_client PLUGIN DOMAIN ROBOT[,ROBOT...] [LOSES_EVERY].
-// Exit code 0 when the run finished.
+// Drives robots of a run like any client, on Fast DDS: fastdds_client PLUGIN DOMAIN ROBOT[,ROBOT...] [LOSES_EVERY].
+// Exit code 0 if the run finished.
 
 #include <cstdio>
 #include <exception>

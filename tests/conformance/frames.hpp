@@ -12,8 +12,8 @@ namespace cohort::conformance {
 
 namespace message = ::cohort::v1;
 
-/// The frames of one lease, in the order in which docs/protocol.md wants them answered ("Order when frames are lost"),
-/// and the latest answers ("Sending again"). Pure logic.
+/// The frames of one lease, in the order in which docs/protocol.md requires answers ("Order when frames are lost"), and
+/// the latest answers ("Sending again"). Has no input or output.
 class Frames {
  public:
   explicit Frames(const message::Admit& admit);
@@ -21,11 +21,11 @@ class Frames {
   enum class Kind { of_the_lease, of_an_earlier_one, of_a_later_one };
   Kind kind_of(const message::Observation& frame) const;
 
-  /// A frame of the lease came. Gives its answer if it has been answered.
+  /// Adds a received frame of the lease. Returns its answer if it has been answered.
   const message::Command* arrive(message::Observation frame);
-  /// The frame to answer now, if there is one.
+  /// Returns the frame to answer now, if any.
   std::optional<message::Observation> next();
-  /// The answer to what `next` gave last.
+  /// Keeps the answer to the last frame that `next` returned.
   void keep(const message::Command& answer);
 
  private:

@@ -8,7 +8,7 @@ namespace cohort::conformance {
 
 using OwnedController = std::unique_ptr<Controller, void (*)(Controller*)>;
 
-/// A controller's plugin. Its controllers must be gone before it is.
+/// The plugin of a controller. Its controllers must be destroyed before it.
 class PluginFile {
  public:
   /// Throws std::runtime_error if there is none at `path`.

@@ -14,21 +14,22 @@ namespace cohort::conformance {
 
 namespace message = ::cohort::v1;
 
-/// The controllers of an admitted client's robots.
+/// The controllers of the robots of an admitted client.
 class Robots {
  public:
   explicit Robots(const std::string& plugin) : plugin_(plugin) {}
 
-  /// As docs/protocol.md has it under "Leases": new controllers, but for a reset or restored world. Throws what a
-  /// controller throws, and std::runtime_error if `descriptions` lacks one.
+  /// Creates new controllers, except for a reset or restored world (docs/protocol.md, "Leases"). Throws exceptions of
+  /// controllers, and std::runtime_error if `descriptions` lacks one.
   void start(const message::Admit& admit, const std::map<std::uint32_t, message::RobotDescription>& descriptions);
 
-  /// What the controllers remember, by robot.
+  /// Returns the state of the controllers, by robot.
   std::vector<RobotState> save() const;
-  /// Throws std::runtime_error where it is the state of other controllers.
+  /// Restores the state; throws std::runtime_error if it is that of other controllers.
   void load(const std::vector<RobotState>& states);
 
-  /// Throws what a controller throws, and std::runtime_error if the frame is not as the descriptions say.
+  /// Returns the answer to a frame. Throws exceptions of controllers, and std::runtime_error if the frame does not
+  /// match the descriptions.
   message::Command answer(const message::Observation& frame);
 
  private:

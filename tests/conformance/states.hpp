@@ -9,7 +9,7 @@
 
 #include "cohort.h"
 
-/// The state of controllers, as docs/protocol.md has it under "State of controllers".
+/// The state of controllers (docs/protocol.md, "State of controllers").
 namespace cohort::conformance {
 
 namespace message = ::cohort::v1;
@@ -22,18 +22,18 @@ struct RobotState {
 };
 
 std::vector<std::uint8_t> pack(const std::vector<RobotState>& states);
-/// Throws std::runtime_error if it is not as the page says.
+/// Unpacks states; throws std::runtime_error if the format is invalid.
 std::vector<RobotState> unpack(const std::vector<std::uint8_t>& bytes);
 
-/// The part of `bytes` that answers `wanted`.
+/// Returns the part of `bytes` that answers `wanted`.
 message::ControllerState part_of(const std::vector<std::uint8_t>& bytes, const message::ControllerState& wanted);
 
-/// State that is fetched part by part.
+/// State that is fetched in parts.
 class FetchedState {
  public:
   explicit FetchedState(const message::Admit& admit) : admit_(admit) {}
 
-  /// The question that is due now, if one is.
+  /// Returns the request that is due now, if any.
   std::optional<message::ControllerState> question(std::chrono::steady_clock::time_point now);
   void take(const message::ControllerState& part);
   bool is_complete() const { return size_ && bytes_.size() == *size_; }

@@ -38,7 +38,7 @@ Handle* made(Handle* handle, const char* what) {
   return handle;
 }
 
-// The star: own transport without shared memory, the server as the only peer, no multicast.
+// Star topology: a separate transport without shared memory, the server as the only peer, no multicast.
 dds::DomainParticipantQos participant_qos(std::uint32_t domain) {
   dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -55,8 +55,8 @@ dds::DomainParticipantQos participant_qos(std::uint32_t domain) {
   rtps::IPLocator::setIPv4(own, loopback);
   auto& builtin = qos.wire_protocol().builtin;
   builtin.initialPeersList.push_back(server);
-  // An own locator for discovery, so that none for multicast is opened. Index 0 is the server's, also if it is not
-  // there yet: Fast DDS begins at this index and takes the next one whose ports are free.
+  // A separate locator for discovery avoids multicast. Index 0 is that of the server, even if it has not started: Fast
+  // DDS begins at this index and takes the next one with free ports.
   builtin.metatrafficUnicastLocatorList.push_back(own);
   qos.wire_protocol().participant_id = 1;
   builtin.discovery_config.leaseDuration = Duration_t(5, 0);
@@ -64,7 +64,7 @@ dds::DomainParticipantQos participant_qos(std::uint32_t domain) {
   return qos;
 }
 
-// Of a topic in the table of docs/protocol.md.
+// QoS of a topic in the table of docs/protocol.md.
 struct Quality {
   bool transient_local = false;
   int depth = 1;
@@ -85,7 +85,7 @@ Qos endpoint_qos(Qos qos, const Quality& quality) {
   qos.durability().kind = quality.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = quality.depth;
-  // Unbounded: by default there is room for ten keys, and there may be more kinds of robots.
+  // Unlimited: the default is ten keys, and there may be more kinds of robots.
   qos.resource_limits().max_samples = 0;
   qos.resource_limits().max_instances = 0;
   qos.resource_limits().max_samples_per_instance = 0;
@@ -94,7 +94,7 @@ Qos endpoint_qos(Qos qos, const Quality& quality) {
     qos.liveliness().lease_duration = join_lease;
     qos.liveliness().announcement_period = Duration_t(0, 300'000'000);
   }
-  // fastddsgen takes a sequence without a bound for one of at most a hundred.
+  // fastddsgen treats an unbounded sequence as one of at most a hundred elements.
   qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   return qos;
 }
@@ -142,7 +142,7 @@ struct Wire::State final : dds::DataReaderListener {
   template <class PubSubType>
   dds::DataWriter* make_writer(dds::Publisher* publisher, const char* topic, const Quality& quality) {
     dds::DataWriterQos qos = endpoint_qos(dds::DATAWRITER_QOS_DEFAULT, quality);
-    // A lost Join or Report is found missing by the next heartbeat, which by default comes every three seconds.
+    // The loss of a Join or Report is detected at the next heartbeat, by default every three seconds.
     qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 100'000'000);
     return made(publisher->create_datawriter(make_topic<PubSubType>(topic), qos), topic);
   }

@@ -11,7 +11,7 @@
 
 #include "cohort.h"  // made of idl/cohort.idl by fastddsgen
 
-/// The topics of docs/protocol.md on Fast DDS, as one client has them. All of Fast DDS is behind this.
+/// The topics of docs/protocol.md on Fast DDS for one client. Only this file uses Fast DDS.
 namespace cohort::conformance {
 
 namespace message = ::cohort::v1;
@@ -27,16 +27,16 @@ struct Received {
 
 class Wire {
  public:
-  /// Makes the readers, then the writers; waits for no server. Throws std::runtime_error if Fast DDS refuses.
+  /// Makes the readers, then the writers; does not wait for a server. Throws std::runtime_error if Fast DDS fails.
   Wire(std::uint32_t domain, std::uint64_t client);
   Wire(const Wire&) = delete;
   Wire& operator=(const Wire&) = delete;
   ~Wire();
 
-  /// Returns as soon as anything has come since the last call, or `at_most` later.
+  /// Returns when a message has arrived since the last call, or after `at_most`.
   void wait_for_news(std::chrono::milliseconds at_most);
 
-  /// The next message of a kind, if there is one. Call from one thread.
+  /// Returns the next message of a kind, if any. Call from one thread.
   std::optional<Received<message::Admit>> take_admit();
   std::optional<Received<message::RobotDescription>> take_description();
   std::optional<message::Observation> take_observation();
@@ -51,7 +51,7 @@ class Wire {
   /// Waits until the server has the report, but not for long.
   void wait_for_reports_to_arrive();
 
-  /// Whether a writer of this client's Admit is there.
+  /// Returns whether a writer for the Admit of this client has been discovered.
   bool sees_server() const;
 
  private:

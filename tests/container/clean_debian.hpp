@@ -23,7 +23,7 @@ class CleanDebian {
   std::filesystem::path operator/(const std::string& name) const { return root_ / name; }
 
   Ended run(const std::string& script) const { return run_for_long(command(script), environment); }
-  /// What runs the script in there, with these variables.
+  /// Returns the command that runs the script in there, with these variables.
   std::vector<std::string> command(const std::string& script) const {
     return {
         "unshare",    "--mount", "/bin/sh", "-ec", R"(mount -t proc proc "$0/proc"; exec chroot "$0" /bin/sh -ec "$1")",

@@ -67,7 +67,7 @@ class Container : public ::testing::Test {
   static inline std::optional<Podman> podman;
 };
 
-TEST_F(Container, OfTheServerIsSmallAndWithoutCompilersRightsAndSecrets) {
+TEST_F(Container, ImageOfTheServerIsSmallAndHasNoCompilersPrivilegesOrSecrets) {
   const Ended size = (*podman)({"image", "inspect", "--format", "{{.Size}}", image});
   EXPECT_LT(std::stoull(size.out), most_bytes);
   RecordProperty("megabytes", std::to_string(std::stoull(size.out) / 1'000'000));
@@ -153,7 +153,7 @@ TEST_F(Container, ShowsThePageOfAServerInAnotherOneThroughItsPublishedPort) {
   ASSERT_TRUE(reaches(containers, 50)) << containers.logs("server");
 }
 
-TEST_F(Container, OfTheSdkBuildsAControllerThatTheServersRuns) {
+TEST_F(Container, ImageOfTheSdkBuildsAControllerThatTheServersImageRuns) {
   const ScratchFolder folder;
   fs::copy(COHORT_SOURCE_DIR "/tests/install/outside", folder / "robots", fs::copy_options::recursive);
   fs::permissions(folder.path(), fs::perms::all);
@@ -193,7 +193,7 @@ TEST_P(ComposeFiles, RunServerControllersAndRecorderToTheBitsOfOneProcess) {
 INSTANTIATE_TEST_SUITE_P(Variants, ComposeFiles, ::testing::Values("", COHORT_SOURCE_DIR "/docker/compose.secure.yaml"),
                          [](const auto& variant) { return *variant.param == '\0' ? "Open" : "Secure"; });
 
-TEST_F(Container, OfAViewShowsTheRunOfTheComposeFilesInTheHostsBrowser) {
+TEST_F(Container, WithAViewShowsTheRunOfTheComposeFilesInTheHostsBrowser) {
   if (!is_installed("podman-compose")) GTEST_SKIP() << "there is no podman-compose" << install_list;
   const std::string project = fmt::format("cohort-test-view-{}", getpid());
   const std::string port = free_port();

@@ -22,7 +22,7 @@ std::string npm_setting(const std::string& name) {
   return first_line(run_to_end({"/bin/sh", "-c", "npm config get " + name}).out);
 }
 
-// What gives a build this machine's way to npm's registry, and leaves nothing of it in the image.
+// Returns options that give a build this machine's npm settings, and leave nothing of them in the image.
 std::vector<std::string> with_settings_of_npm(const fs::path& folder) {
   if (!is_installed("npm")) return {};
   std::string settings = "registry=" + npm_setting("registry") + "\n";

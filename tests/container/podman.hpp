@@ -24,7 +24,7 @@ class Podman {
 
   /// Why there are no containers here, or nothing. Imports the base of all images.
   std::optional<std::string> prepare(const std::filesystem::path& base) const;
-  /// Of docker/Dockerfile. The compiler's cache of this machine is used, and its way to npm's registry.
+  /// Builds a target of docker/Dockerfile. Uses the compiler cache and the npm registry of this machine.
   Ended build(const std::string& target, const std::string& tag) const;
 
  private:

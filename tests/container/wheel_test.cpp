@@ -13,7 +13,7 @@ TEST(Wheel, InstallsInAnEmptyEnvironmentOfACleanDebianAndRunsToTheSameBits) {
   if (const auto reason = make_base(folder)) GTEST_SKIP() << *reason;
   const Ended made = run_for_long({COHORT_SOURCE_DIR "/tools/wheel"});
   ASSERT_EQ(made.exit_code, 0) << made.out;
-  // What it needs, in the version that is tested.
+  // The dependencies, in the version that is tested.
   const ScratchFolder wheels;
   const std::string script = "cd " COHORT_SOURCE_DIR
                              " && cp build/wheels/*.whl \"$1\" && build/python/bin/pip freeze | grep '^numpy==' > "

@@ -1,4 +1,4 @@
-// Links whose surfaces run: conveyors carry, tracks drive, and friction alone says how much.
+// Links with moving surfaces: conveyors and tracks, limited by friction alone.
 
 #include <cmath>
 
@@ -23,7 +23,7 @@ Surface with_friction(double friction) {
   return surface;
 }
 
-// 6 m along x, the top at the origin, tied to the world.
+// Returns a conveyor of 6 m along x with its top at the origin, fixed to the world.
 description::Model conveyor(double friction) {
   description::Model model =
       loose("conveyor", Box{{6.0, 1.0, 0.1}}, solid_box(20.0, {6.0, 1.0, 0.1}), with_friction(friction));
@@ -36,10 +36,10 @@ description::Model conveyor(double friction) {
 
 description::Model crate() { return loose("crate", Box{{0.2, 0.2, 0.1}}, solid_box(2.0, {0.2, 0.2, 0.1})); }
 
-// At rest on the top of what stands at X_WB, `x` along it.
+// Returns the pose of a body at rest on the top of an object at X_WB, `x` along it.
 Pose on(const Pose& X_WB, double x, double half_height) { return X_WB * Pose{{x, 0, half_height}}; }
 
-// Two tracks of 0.6 m, 0.4 m apart.
+// Returns a vehicle with two tracks of 0.6 m, 0.4 m apart.
 description::Model tracked_vehicle(double friction) {
   description::Model model = loose("vehicle", Box{{0.6, 0.24, 0.1}}, solid_box(10.0, {0.6, 0.24, 0.1}));
   model.links[0].collisions[0].X_LC.position.z() = 0.05;
@@ -66,7 +66,7 @@ void run_tracks(SmallWorld& small, BodyId body, double left, double right) {
   small.world().set_device_target(body, DeviceId{0}, 1, right);
 }
 
-// That the body's belts do in this time [J].
+// Returns the work of the body's belts in this time [J].
 double work_of(SmallWorld& small, BodyId body, double time) {
   const double step = std::chrono::duration<double>(small.description.step).count();
   double work = 0.0;
@@ -77,7 +77,7 @@ double work_of(SmallWorld& small, BodyId body, double time) {
   return work;
 }
 
-TEST_P(Belts, BringWhatTheyCarryToTheirSpeedWithNoMoreThanFrictionGives) {
+TEST_P(Belts, AccelerateTheirLoadByFriction) {
   constexpr double friction = 0.3, speed = 0.9;
   for (const double yaw : {0.0, 0.6, -2.0}) {
     for (const double sense : {1.0, -1.0}) {
@@ -104,7 +104,7 @@ TEST_P(Belts, BringWhatTheyCarryToTheirSpeedWithNoMoreThanFrictionGives) {
   }
 }
 
-TEST_P(Belts, CarryUpASlopeAndDownWhatFrictionHolds) {
+TEST_P(Belts, CarryALoadUpAndDownASlope) {
   constexpr double friction = 0.6, slope = 0.35, speed = 0.5;
   for (const double sense : {1.0, -1.0}) {
     SmallWorld small(GetParam().world());
@@ -121,8 +121,8 @@ TEST_P(Belts, CarryUpASlopeAndDownWhatFrictionHolds) {
   }
 }
 
-// Steeper than friction holds: it slides down, however fast the belt runs.
-TEST_P(Belts, DoNotCarryWhatIsTooSteep) {
+// The slope is steeper than the friction angle: the crate slides down at any speed of the belt.
+TEST_P(Belts, DoNotCarryALoadBeyondTheFrictionAngle) {
   constexpr double friction = 0.2, slope = 0.35;
   SmallWorld small(GetParam().world());
   const Pose X_WB = turned(0, 0, 2, Vector3d::UnitY(), -slope);
@@ -134,8 +134,8 @@ TEST_P(Belts, DoNotCarryWhatIsTooSteep) {
   EXPECT_NEAR(-(X_WB.orientation.conjugate() * small.velocity(box)).x(), 0.5 * acceleration, 0.02 * acceleration);
 }
 
-// What a surface of several coefficients says of its directions stays so.
-TEST_P(Belts, CarryWithTheFrictionThatIsAlongThem) {
+// A belt does not change the directions of a surface with several coefficients.
+TEST_P(Belts, UseTheFrictionAlongTheirDirection) {
   constexpr double along = 0.2, across = 0.7;
   SmallWorld small(GetParam().world());
   description::Model model = conveyor(along);
@@ -149,7 +149,7 @@ TEST_P(Belts, CarryWithTheFrictionThatIsAlongThem) {
   EXPECT_NEAR(small.velocity(box).x(), along * g * 0.2, 0.01 * along * g);
 }
 
-TEST_P(Belts, OfAnyAxisRunAboutIt) {
+TEST_P(Belts, RunAboutAnyAxis) {
   SmallWorld small(GetParam().world());
   description::Model model = conveyor(1.0);
   std::get<description::Belt>(model.devices[0]).axis_L = {-3.0, 0, 0};  // y of the world on top
@@ -160,7 +160,7 @@ TEST_P(Belts, OfAnyAxisRunAboutIt) {
   EXPECT_LT((small.velocity(box) - Vector3d(0, 0.4, 0)).norm(), 1e-3) << small.velocity(box).transpose();
 }
 
-TEST_P(Belts, CarryRobotsWhoseTracksMeasureWhatTheyRollOnThem) {
+TEST_P(Belts, CarryRobotsThatMeasureTheirMotionOnTheBelt) {
   SmallWorld small(GetParam().world());
   const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
   const auto robot = small.add(GetParam().robot(), at(-1, 0, 1));
@@ -192,10 +192,11 @@ class LongBelts : public EveryPhysics {};
 INSTANTIATE_TEST_SUITE_P(Iterative, LongBelts,
                          ::testing::Values(articulated, by_bullet(articulated), treel, by_bullet(treel)), name_of);
 
-// Each point slips across as far as it is from the middle: for 12 of 16 points 0.25 m, which is more than half the
-// gauge. Balance of their moments: 0.57 rad/s, where wheels on an axle would turn it with 1.5 rad/s. Of the direct
-// solver each direction has its friction for itself, and where tracks are long none is left to turn it.
-TEST_P(LongBelts, TurnAVehicleOnTheSpotToTheSideOfTheSlowerTrack) {
+// Each point slips sideways in proportion to its distance from the middle: for 12 of 16 points 0.25 m, which is more
+// than half the gauge. The balance of moments gives 0.57 rad/s; wheels on an axle would turn the vehicle at 1.5 rad/s.
+// The direct solver limits the two directions of friction separately, so that long tracks have none left to turn the
+// vehicle.
+TEST_P(LongBelts, TurnAVehicleOnTheSpotTowardsTheSlowerTrack) {
   for (const double sense : {1.0, -1.0}) {
     SmallWorld small(GetParam().world());
     const auto vehicle = small.add(tracked_vehicle(1.0), at(0, 0, 0.05));
@@ -206,7 +207,7 @@ TEST_P(LongBelts, TurnAVehicleOnTheSpotToTheSideOfTheSlowerTrack) {
   }
 }
 
-// Tracks that are short and far apart, where friction of any shape lets them turn it.
+// Short tracks far apart: any shape of the friction limit lets them turn the vehicle.
 TEST_P(Belts, TurnAWideVehicleWithEverySolver) {
   for (const double sense : {1.0, -1.0}) {
     SmallWorld small(GetParam().world());
@@ -238,8 +239,8 @@ TEST_P(Belts, ClimbASlopeUpToTheFrictionAngle) {
   }
 }
 
-// Half of the work is the crate's kinetic energy, m v^2 / 2; while it slips friction turns as much into heat.
-TEST_P(Belts, DoTheWorkThatBringsWhatTheyCarryToTheirSpeed) {
+// Half of the work is the crate's kinetic energy, m v^2 / 2; while it slips, friction turns the same amount into heat.
+TEST_P(Belts, DoTheWorkThatAcceleratesTheirLoad) {
   constexpr double friction = 0.3, speed = 0.9, mass = 2.0;
   for (const double sense : {1.0, -1.0}) {
     SmallWorld small(GetParam().world());
@@ -254,7 +255,7 @@ TEST_P(Belts, DoTheWorkThatBringsWhatTheyCarryToTheirSpeed) {
   }
 }
 
-TEST_P(Belts, OfAVehicleDoTheWorkOfLiftingIt) {
+TEST_P(Belts, DoTheWorkThatLiftsAVehicle) {
   constexpr double slope = 0.3, speed = 0.3, mass = 14.0;
   for (const double sense : {1.0, -1.0}) {
     SmallWorld small(GetParam().world());
@@ -269,7 +270,7 @@ TEST_P(Belts, OfAVehicleDoTheWorkOfLiftingIt) {
 }
 
 // A restored world continues with the load of the belt. With the direct solver all bodies sleep.
-TEST_P(Belts, GoOnRubbingWhatIsJammedThroughASnapshot) {
+TEST_P(Belts, KeepTheLoadOfAJammedCrateAfterRestore) {
   constexpr double friction = 0.3, speed = 0.5, mass = 2.0;
   BodyId belt;
   const auto jammed = [&] {
@@ -293,7 +294,7 @@ TEST_P(Belts, GoOnRubbingWhatIsJammedThroughASnapshot) {
   EXPECT_EQ(second->driven_power(belt), first->driven_power(belt));
 }
 
-TEST_P(Belts, OnBeltsAddUp) {
+TEST_P(Belts, AddTheirSpeeds) {
   SmallWorld small(GetParam().world());
   const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
   const auto vehicle = small.add(tracked_vehicle(1.0), at(0, 0, 1.05));
@@ -306,7 +307,7 @@ TEST_P(Belts, OnBeltsAddUp) {
   EXPECT_NEAR(small.velocity(vehicle).x(), 0.3, 0.003);
 }
 
-// Crates on conveyors that a vehicle crosses.
+// Crates on conveyors, crossed by a vehicle.
 struct Hall {
   Hall(const Physics& physics, unsigned threads) : small(physics.world(), threads) {
     for (int i = 0; i < 6; ++i) {
@@ -325,7 +326,7 @@ struct Hall {
   BodyId vehicle;
 };
 
-TEST_P(Belts, AreTheSameOnAnyThreadsAndAfterRestore) {
+TEST_P(Belts, AreTheSameForAnyThreadCountAndAfterRestore) {
   Hall one(GetParam(), 1), many(GetParam(), 3), restored(GetParam(), 2);
   for (Hall* hall : {&one, &many}) {
     hall->command();
@@ -334,22 +335,22 @@ TEST_P(Belts, AreTheSameOnAnyThreadsAndAfterRestore) {
   ASSERT_EQ(hash_of(one.small.world()), hash_of(many.small.world()));
   restore_from(one.small.world(), restored.small.world());
   ASSERT_EQ(hash_of(one.small.world()), hash_of(restored.small.world()));
-  for (Hall* hall : {&one, &many, &restored}) hall->small.run(1.0);  // nobody says again how fast
+  for (Hall* hall : {&one, &many, &restored}) hall->small.run(1.0);  // without setting the speed again
   EXPECT_EQ(hash_of(one.small.world()), hash_of(many.small.world()));
   EXPECT_EQ(hash_of(one.small.world()), hash_of(restored.small.world()));
 }
 
-TEST_P(Belts, AreToldApartByTheirSpeedAlone) {
+TEST_P(Belts, ChangeTheHashOnlyByTheirSpeed) {
   SmallWorld small(GetParam().world());
   const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
   const std::uint64_t before = hash_of(small.world());
   small.world().set_device_target(belt, DeviceId{0}, 0, 0.0);
-  EXPECT_EQ(hash_of(small.world()), before) << "the same again is no change";
+  EXPECT_EQ(hash_of(small.world()), before) << "setting the same speed is no change";
   small.world().set_device_target(belt, DeviceId{0}, 0, 0.1);
   EXPECT_NE(hash_of(small.world()), before);
 }
 
-TEST_P(Belts, WakeWhatSleepsOnThem) {
+TEST_P(Belts, WakeSleepingBodiesOnThem) {
   SmallWorld small(GetParam().world());
   const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
   const auto box = small.add(crate(), at(0, 0, 1.05));
@@ -357,20 +358,20 @@ TEST_P(Belts, WakeWhatSleepsOnThem) {
   const std::uint64_t asleep = hash_of(small.world());
   small.world().set_device_target(belt, DeviceId{0}, 0, 0.0);
   small.run(0.1);
-  EXPECT_EQ(hash_of(small.world()), asleep) << "the same again wakes nobody";
+  EXPECT_EQ(hash_of(small.world()), asleep) << "setting the same speed wakes no body";
   small.world().set_device_target(belt, DeviceId{0}, 0, 0.3);
   small.run(0.5);
   EXPECT_NEAR(small.velocity(box).x(), 0.3, 1e-3);
 }
 
-TEST(PlanarBelts, AreRefused) {
+TEST(PlanarBelts, AreRejected) {
   SmallWorld small(planar.world());
   small.add(tracked_vehicle(1.0), at(0, 0, 0.05));
   try {
     small.world();
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("the belts of 'drive' cannot be planar"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("planar physics does not support the belts of 'drive'"), std::string::npos)
         << error.what();
   }
 }

@@ -17,7 +17,7 @@ SmallWorld on_slope(double slope, double friction) {
   return SmallWorld(std::move(world));
 }
 
-TEST(Contacts, ABoxOnASlopeSlidesWithWhatFrictionLeaves) {
+TEST(Contacts, ABoxOnASlopeSlidesAgainstFriction) {
   constexpr double slope = 0.4;
   SmallWorld small = on_slope(slope, 0.2);
   const Vector3d size(0.2, 0.2, 0.1);
@@ -51,7 +51,7 @@ TEST(Contacts, FrictionIsTheSameInEveryDirection) {
     small.run(0.2);
     small.world().set_root_twist(box, {Vector3d::Zero(), Vector3d(std::cos(heading), std::sin(heading), 0)});
     small.run(1.0);
-    // v^2 / (2 mu g), straight on.
+    // It slides v^2 / (2 mu g), straight on.
     const Vector3d way = small.position(box);
     EXPECT_NEAR(way.head<2>().norm(), 1.0 / (2.0 * 0.3 * g), 0.01);
     EXPECT_NEAR(std::atan2(way.y(), way.x()), heading, 0.01);
@@ -88,7 +88,7 @@ TEST(Contacts, RollingResistanceStopsARollingBall) {
   small.run(0.1);
   small.world().set_root_twist(ball, {Vector3d(0, 5.0, 0), Vector3d(0.5, 0, 0)});
   small.run(10.0);
-  // The torque c m g takes the energy 7/10 m v^2 over the angle x / r.
+  // The torque c m g removes the energy 7/10 m v^2 over the angle x / r.
   EXPECT_NEAR(small.position(ball).x(), 0.7 * 0.25 / (g * 0.005 / 0.1), 0.02);
   EXPECT_LT(small.velocity(ball).norm(), 1e-3);
 }
@@ -124,7 +124,7 @@ TEST(Contacts, AStackOfBoxesStands) {
   }
 }
 
-TEST(Contacts, ReportPartnersPointsAndForces) {
+TEST(Contacts, ReportBodiesPointsAndForces) {
   SmallWorld small;
   const Vector3d size(0.2, 0.2, 0.1);
   const auto box = small.add(loose("box", Box{size}, solid_box(3.0, size)), at(0, 0, 0.05));
@@ -140,7 +140,7 @@ TEST(Contacts, ReportPartnersPointsAndForces) {
   EXPECT_NEAR(force, 3.0 * g, 1e-3);
 }
 
-TEST(Contacts, MomentumStaysInACollision) {
+TEST(Contacts, ACollisionConservesMomentum) {
   SmallWorld small(world_with_floor());
   small.description.gravity = Vector3d::Zero();
   const auto one = small.add(loose("one", Sphere{0.05}, solid_sphere(1.0, 0.05), {0.5, 0.9}), at(-0.5, 0, 1));

@@ -1,4 +1,4 @@
-// What a robot holds until it is told to let go.
+// Detachable joints: a robot holds objects until it is commanded to release them.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ using description::Dynamics;
 using description::Fidelity;
 using Eigen::Vector3d;
 
-// A robot with a crate of 50 g in the air beside it, both 0.2 m apart and hung on the robot's turret.
+// A robot with a crate of 50 g in the air beside it, 0.2 m apart and attached to the robot's turret.
 class DetachableJoints : public ::testing::TestWithParam<std::pair<Fidelity, Dynamics>> {
  protected:
   DetachableJoints() { put_together(world_); }
@@ -27,7 +27,7 @@ class DetachableJoints : public ::testing::TestWithParam<std::pair<Fidelity, Dyn
   }
   Pose pose_of_crate(SensingWorld& world) { return world.simulation().world().link_pose(BodyId{crate_}, LinkId{0}); }
   Vector3d crate() { return pose_of_crate(world_).position; }
-  // As the turret sees it.
+  // Returns the position of the crate in the turret's frame.
   Vector3d held_at() {
     const BodyId body = world_.simulation().body_of(0);
     return world_.simulation().world().link_pose(body, LinkId{turret}).inverse() * crate();
@@ -54,7 +54,7 @@ TEST_P(DetachableJoints, HoldFromTheStartWithoutACommand) {
   EXPECT_NEAR(crate().z(), 0.1, 2e-3);
 }
 
-TEST_P(DetachableJoints, LetGoAndHoldAgainAsBothThenStand) {
+TEST_P(DetachableJoints, ReleaseAndAttachAgainInTheNewRelativePose) {
   attach(1.0);
   world_.step(20);
   attach(0.5);
@@ -71,7 +71,7 @@ TEST_P(DetachableJoints, LetGoAndHoldAgainAsBothThenStand) {
   EXPECT_GT((crate() - Vector3d(0.2, 0, 0.02)).norm(), 0.05) << "it goes along";
 }
 
-TEST_P(DetachableJoints, HoldAgainWhatWasTakenFromThemOnceTheyHaveLetGo) {
+TEST_P(DetachableJoints, AttachALostObjectAgainAfterARelease) {
   world_.step(10);
   world_.simulation().act(SetPose{"crate", at(0.3, 0, 0.3)});
   attach(1.0);
@@ -87,7 +87,7 @@ TEST_P(DetachableJoints, HoldAgainWhatWasTakenFromThemOnceTheyHaveLetGo) {
   EXPECT_LT((held_at() - before).norm(), 2e-3);
 }
 
-TEST_P(DetachableJoints, GoOnFromASnapshotAndTheSameOnAnyThreads) {
+TEST_P(DetachableJoints, AreTheSameForAnyThreadCountAndAfterRestore) {
   const auto hash_after = [&](SensingWorld& world, int ticks) {
     world.step(ticks);
     return world.simulation().state_hash();
@@ -101,7 +101,7 @@ TEST_P(DetachableJoints, GoOnFromASnapshotAndTheSameOnAnyThreads) {
   ASSERT_EQ(hash_after(world_, 30), hash_after(other, 30));
   restored.simulation().restore(world_.simulation().save());
   ASSERT_EQ(restored.simulation().state_hash(), world_.simulation().state_hash());
-  // What it holds is part of the state: the restored one can let go of it.
+  // The held object is part of the state: the restored robot can release it.
   for (const double value : {1.0, 0.0, 1.0}) {
     for (SensingWorld* each : {&world_, &other, &restored}) {
       drive(*each, 0.1, 0.05);
@@ -113,7 +113,7 @@ TEST_P(DetachableJoints, GoOnFromASnapshotAndTheSameOnAnyThreads) {
   }
 }
 
-TEST_P(DetachableJoints, OfWhatIsNotThereHoldNothing) {
+TEST_P(DetachableJoints, HoldNothingWithoutTheirObject) {
   SensingWorld world;
   description::Model model = tracked_robot();
   model.devices.push_back(description::DetachableJoint{"hook", turret, "nobody"});

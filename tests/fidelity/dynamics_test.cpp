@@ -4,8 +4,8 @@
 #include "server/physics/dynamics/equations.hpp"
 #include "tests/support/worlds/small_world.hpp"
 
-// Bullet's articulated bodies and our own mass matrix give the same velocities and the same answers to impulses,
-// whatever the mechanism and its state.
+// Bullet's articulated bodies and Cohort's own mass matrix give the same velocities and the same responses to impulses,
+// for any mechanism and state.
 namespace cohort::test {
 namespace {
 
@@ -30,7 +30,7 @@ class Draws {
   std::uint32_t next_ = 0;
 };
 
-// One to ten links in a tree, whose centres and axes lie anywhere; every other one is tied to the world.
+// Returns a tree of one to ten links with arbitrary centres and axes; every other tree is fixed to the world.
 description::Model random_mechanism(Draws& draws) {
   constexpr JointType types[] = {JointType::revolute, JointType::prismatic, JointType::ball, JointType::universal,
                                  JointType::fixed};
@@ -43,7 +43,7 @@ description::Model random_mechanism(Draws& draws) {
     link.X_ML = {draws.vector(0.3), draws.rotation()};
     link.inertial.mass = draws.between(0.05, 2.0);
     link.inertial.X_LI = {draws.vector(0.05), draws.rotation()};
-    // Of a solid box, so that no axis has more than the other two together.
+    // The inertia of a solid box, so that no principal moment exceeds the sum of the other two.
     const Vector3d squares =
         Vector3d(draws.between(0.02, 0.2), draws.between(0.02, 0.2), draws.between(0.02, 0.2)).cwiseAbs2();
     link.inertial.inertia = (link.inertial.mass / 12.0 *
@@ -96,7 +96,7 @@ void set_random_state(physics::BodyMotion& body, Draws& draws) {
 
 using Numbers = Eigen::Map<const Eigen::VectorXd>;
 
-TEST(Dynamics, BulletsAndOursAgreeOnRandomMechanisms) {
+TEST(Dynamics, BothImplementationsAgreeOnRandomMechanisms) {
   constexpr double most = 1e-10;
   constexpr double step = 0.01;
   const Vector3d gravity(0.3, -0.2, -9.81);

@@ -1,4 +1,4 @@
-// What moves further in a step than it is thick passes through nothing.
+// A body that moves further in a step than its thickness passes through nothing.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 class FastBodies : public EveryPhysics {
  protected:
-  // Without a floor.
+  // Returns a world without a floor.
   description::World space(double gravity = 0.0) const {
     description::World world = GetParam().world();
     world.models.clear();
@@ -28,7 +28,7 @@ class FastBodies : public EveryPhysics {
 };
 INSTANTIATE_TEST_SUITE_P(Every, FastBodies, ::testing::Values(treel, by_bullet(treel)), name_of);
 
-// A plate of this thickness [m], in the xy plane.
+// Returns plates of this thickness [m], in the xy plane.
 std::vector<description::Shape> plates(double thickness) {
   const Vector3d size(1.0, 1.0, thickness);
   description::Mesh hull = box_mesh(size);
@@ -82,19 +82,19 @@ TEST_P(FastBodies, AreStoppedByAThinWall) {
   }
 }
 
-TEST_P(FastBodies, BounceAsTheirRestitutionSays) {
+TEST_P(FastBodies, BounceWithTheirRestitution) {
   SmallWorld small(space());
   const description::Surface springy{0.0, 0.8};
   small.add(static_shape("wall", Box{Vector3d(0.02, 1.0, 1.0)}, springy), at(0.51, 0, 0));
   const auto body = small.add(ball(0.01, springy), at(0, 0, 0));
   small.world().set_root_twist(body, {Vector3d::Zero(), Vector3d(8.0, 0, 0)});
   small.run(0.2);
-  // The solver gives way by 1e-5 of the 14.4 m/s.
+  // The solver's compliance is 1e-5 of the 14.4 m/s.
   EXPECT_NEAR(small.velocity(body).x(), -6.4, 2e-4);
 }
 
-// Neither the corner beside its way nor the wall behind its end holds it up.
-TEST_P(FastBodies, AreNotHeldByWhatTheyPass) {
+// Neither the corner beside its path nor the wall behind its end stops it.
+TEST_P(FastBodies, AreNotStoppedByObstaclesThatTheyPass) {
   SmallWorld small(space());
   small.add(static_shape("corner", Box{Vector3d::Constant(0.2)}), at(0.5, 0.1 + 0.01 + 0.006, 0));
   const auto body = small.add(ball(0.01), at(0, 0, 0));
@@ -105,7 +105,7 @@ TEST_P(FastBodies, AreNotHeldByWhatTheyPass) {
   EXPECT_EQ(small.velocity(body).x(), 8.0);
 }
 
-TEST_P(FastBodies, MeetEachOther) {
+TEST_P(FastBodies, HitEachOther) {
   for (const double offset : {0.0, 0.03, 0.05, 0.077}) {
     SCOPED_TRACE("half a step apart by " + std::to_string(offset) + " m");
     SmallWorld small(space());
@@ -120,7 +120,7 @@ TEST_P(FastBodies, MeetEachOther) {
   }
 }
 
-TEST_P(FastBodies, PushWhatIsSlow) {
+TEST_P(FastBodies, PushSlowBodies) {
   for (const bool is_first : {true, false}) {  // the fast one
     SmallWorld small(space());
     const Vector3d size(0.01, 0.2, 0.2);
@@ -137,8 +137,8 @@ TEST_P(FastBodies, PushWhatIsSlow) {
   }
 }
 
-// Forty balls at 8 m/s in a box of thin walls, which hit it and each other.
-TEST_P(FastBodies, StayInABoxAndAreTheSameForAnyThreadsAndAfterASnapshot) {
+// Forty balls at 8 m/s in a box of thin walls hit the walls and each other.
+TEST_P(FastBodies, StayInABoxWithTheSameBitsForAnyThreadCountAndAfterRestore) {
   const auto filled = [&](unsigned threads) {
     auto small = std::make_unique<SmallWorld>(space(9.81), threads);
     for (const double side : {-1.0, 1.0})

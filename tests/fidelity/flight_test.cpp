@@ -1,4 +1,4 @@
-// Bodies of several links that nothing holds.
+// Bodies of several links in free flight.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ class Flight : public EveryPhysics {
     world.gravity.setZero();
     return world;
   }
-  // Two links: a hull, and one on a hinge with this axis.
+  // Returns a model of two links: a hull, and one on a hinge with this axis.
   static description::Model hinged(const description::Inertial& hull, const description::Inertial& other,
                                    const Vector3d& place, const Vector3d& axis) {
     description::Model model;
@@ -51,7 +51,7 @@ class Flight : public EveryPhysics {
 };
 INSTANTIATE_TEST_SUITE_P(Every, Flight, ::testing::Values(treel, by_bullet(treel)), name_of);
 
-TEST_P(Flight, AHullWithAWheelThatSpinsKeepsItsEnergy) {
+TEST_P(Flight, AHullWithASpinningWheelKeepsItsEnergy) {
   SmallWorld small(space());
   const auto body = small.add(hinged(solid_box(1.0, {0.3, 0.2, 0.1}), description::solid_cylinder(0.2, 0.05, 0.02, 0.0),
                                      {0.05, 0.02, 0.1}, Vector3d::UnitZ()),
@@ -63,7 +63,7 @@ TEST_P(Flight, AHullWithAWheelThatSpinsKeepsItsEnergy) {
   expect_kept(small, body, 0.01);
 }
 
-// Its motor holds it where it is.
+// The motor holds the link in place.
 TEST_P(Flight, ATumblingBoxWithALinkOnAMotorKeepsItsEnergy) {
   SmallWorld small(space());
   const Vector3d size(0.3, 0.2, 0.1);
@@ -76,8 +76,8 @@ TEST_P(Flight, ATumblingBoxWithALinkOnAMotorKeepsItsEnergy) {
   expect_kept(small, body, 0.01);
 }
 
-// As it falls, and when someone pushes it: what comes from outside changes the momentum of the whole, and only that.
-TEST_P(Flight, PushesAndGravityChangeTheMomentumOfTheWhole) {
+// In free fall and when pushed: external forces, and only they, change the total momentum.
+TEST_P(Flight, OnlyExternalForcesChangeTheTotalMomentum) {
   SmallWorld small(space());
   small.description.gravity = {0, 0, -9.81};
   const auto body = small.add(hinged(solid_box(1.0, {0.3, 0.2, 0.1}), description::solid_cylinder(0.2, 0.05, 0.02, 0.0),

@@ -1,4 +1,4 @@
-// What flies and swims, against closed forms.
+// Bodies in air and water, compared with closed forms.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ class Fluids : public EveryPhysics {
     world.water = {0.0, water_density, current};
     return world;
   }
-  // Of water_density times `density`, with the centre of mass in the middle.
+  // Returns a body with the density water_density times `density`, with the centre of mass in the middle.
   static Model floating(const description::Shape& shape, double volume, double density, const Vector3d& size) {
     return loose("floating", shape, solid_box(density * water_density * volume, size));
   }
@@ -77,7 +77,7 @@ void spin(physics::World& world, BodyId body, double velocity) {
   for (std::size_t device = 0; device < 4; ++device) world.set_device_target(body, DeviceId{device}, 0, velocity);
 }
 
-TEST_P(Fluids, AQuadcopterHoversAtTheThrustThatItsWeightAsksFor) {
+TEST_P(Fluids, AQuadcopterHoversWhenThrustEqualsWeight) {
   SmallWorld small(air());
   const auto body = small.add(quadcopter(), at(1, 2, 3, 0.4));
   spin(small.world(), body, hover);
@@ -125,7 +125,7 @@ TEST_P(Fluids, ARotorReaches63PercentAfterItsTimeConstant) {
   EXPECT_NEAR(small.world().device_state(body, DeviceId{1}, 0).velocity, before * std::exp(-2.0), 1e-9);
 }
 
-TEST_P(Fluids, ARotorIsDraggedAcrossItsAxis) {
+TEST_P(Fluids, ARotorHasDragAcrossItsAxis) {
   SmallWorld small(air());
   small.description.gravity.setZero();
   Model model = loose("rotor", Box{Vector3d::Constant(0.1)}, solid_box(2.0, Vector3d::Constant(0.1)));
@@ -141,7 +141,7 @@ TEST_P(Fluids, ARotorIsDraggedAcrossItsAxis) {
   EXPECT_LT((small.velocity(body) - Vector3d(3 * share, -share, motor_constant * 400 * 400 / 2.0)).norm(), 1e-9);
 }
 
-// The momentum of the whole is kept in flight: what the air does counts to it.
+// In flight only external forces change the total momentum, and those of the air are among them.
 TEST_P(Fluids, ARotorLiftsABodyWithAJoint) {
   SmallWorld small(air());
   Model model = quadcopter();
@@ -159,7 +159,7 @@ TEST_P(Fluids, ARotorLiftsABodyWithAJoint) {
   EXPECT_LT((small.position(body) - Vector3d(0, 0, 3)).norm(), 1e-6);
 }
 
-// A link that is welded to the world by the joint above it: what the joint bears is what acts on the link.
+// Returns a link that the joint above welds to the world, so that the joint carries exactly the forces on the link.
 Model anchored() {
   Model model;
   model.name = "anchored";
@@ -202,7 +202,7 @@ TEST_P(Fluids, AThrusterPushesBothWaysAndInItsOwnFluid) {
   }
 }
 
-TEST_P(Fluids, ARotorThatComesBackAfterItsBodyWasLostStandsStill) {
+TEST_P(Fluids, ARotorStandsStillAfterItsBodyIsPutBack) {
   SmallWorld small(air());
   small.description.physics.lowest = 0.0;
   const auto body = small.add(quadcopter(), at(0, 0, 1));
@@ -236,7 +236,7 @@ TEST_P(Fluids, ABoxFloatsAtTheDraughtOfArchimedesAndRightsItself) {
   EXPECT_GT(small.up(body).z(), 1.0 - 1e-9) << "its metacentre is 22 mm above its centre of mass";
 }
 
-TEST_P(Fluids, WhatFloatsAtRestStaysThere) {
+TEST_P(Fluids, AFloatingBodyAtRestStaysAtRest) {
   SmallWorld small(water());
   const auto body = small.add(crate({0.4, 0.3, 0.2}, 0.6), at(0, 0, -0.02, 0.3));
   small.run(10.0);
@@ -271,7 +271,7 @@ TEST_P(Fluids, ABoxBobsWithThePeriodOfItsDraught) {
   EXPECT_NEAR((last - first) / (crossings - 1), 2 * pi * std::sqrt(0.2 / g), 0.005);
 }
 
-TEST_P(Fluids, SpheresAndCylindersFloatWhereTheyDisplaceTheirMass) {
+TEST_P(Fluids, SpheresAndCylindersDisplaceTheirMass) {
   Drag drag;
   drag.damping.setConstant(20.0);
   drag.angular_damping.setConstant(0.5);
@@ -284,7 +284,7 @@ TEST_P(Fluids, SpheresAndCylindersFloatWhereTheyDisplaceTheirMass) {
   };
   const double r = 0.1;
   const double ball = 4.0 / 3.0 * pi * r * r * r;
-  // Of a cap of height h, pi h^2 (3 r - h) / 3: 5/32 of the ball where h = r / 2.
+  // The volume of a cap of height h is pi h^2 (3 r - h) / 3: 5/32 of the ball for h = r / 2.
   EXPECT_NEAR(height_of(floating(description::Sphere{r}, ball, 5.0 / 32.0, {r, r, r}), at(0, 0, 0)), 0.5 * r, 1e-6);
   const double length = 0.05;
   const double disc = pi * r * r * length;
@@ -295,8 +295,8 @@ TEST_P(Fluids, SpheresAndCylindersFloatWhereTheyDisplaceTheirMass) {
   EXPECT_NEAR(height_of(floating(description::Cylinder{r, 0.6}, log, 0.5, {r, r, 0.6}), lying), 0.0, 1e-4);
 }
 
-// Each below a surface at many heights and angles, against sums over layers.
-TEST(FloatingShapes, DisplaceWhatIsBelowTheSurface) {
+// Each is tested at many levels and angles against sums over layers.
+TEST(FloatingShapes, DisplaceTheirVolumeBelowTheSurface) {
   const double r = 0.1, length = 0.3;
   const physics::FloatingShape cylinder(description::Cylinder{r, length}), capsule(description::Capsule{r, length}),
       sphere(description::Sphere{r}), box(Box{{0.2, 0.2, 0.3}}), ellipsoid(description::Ellipsoid{{r, r, 2 * r}});
@@ -320,7 +320,8 @@ TEST(FloatingShapes, DisplaceWhatIsBelowTheSurface) {
     EXPECT_NEAR(edge_down.area, 2 * depth * 0.3, 1e-12);
     EXPECT_NEAR(edge_down.second_moment_W.trace(), edge_down.area / 12.0 * (4 * depth * depth + 0.09), 1e-12);
   }
-  // What the section says is how the volume and its moment change with the level, for any shape at any angle.
+  // The section gives the derivative of the volume and its moment with respect to the level, for any shape at any
+  // angle.
   for (const physics::FloatingShape* shape : {&cylinder, &capsule, &ellipsoid, &box}) {
     const Pose X_WC = turned(0.3, -0.2, 0.05, {1, 2, 0.5}, 0.8);
     constexpr double change = 1e-5;
@@ -332,7 +333,7 @@ TEST(FloatingShapes, DisplaceWhatIsBelowTheSurface) {
   }
 }
 
-TEST_P(Fluids, WhatIsLightAndFlatSettlesOnTheWater) {
+TEST_P(Fluids, ALightPlateSettlesOnTheWater) {
   SmallWorld small(water());
   Model model = crate({1.0, 1.0, 0.05}, 0.02);
   Drag drag;
@@ -348,7 +349,7 @@ TEST_P(Fluids, WhatIsLightAndFlatSettlesOnTheWater) {
   EXPECT_GT(small.up(body).z(), 1.0 - 1e-9);
 }
 
-TEST_P(Fluids, ABoatReachesTheSpeedAtWhichItsDragIsItsThrust) {
+TEST_P(Fluids, ABoatReachesTheSpeedWhereDragEqualsThrust) {
   const Vector3d current(0.2, -0.1, 0);
   SmallWorld small(water(current));
   Model boat = crate({0.6, 0.3, 0.2}, 0.5);
@@ -405,7 +406,7 @@ TEST_P(Fluids, ARudderTurnsABoatToItsSide) {
     small.world().set_device_target(body, DeviceId{1}, 0, 100.0);
     small.run(3.0);
     EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position, 0.3 * side, 0.02);
-    // The end of the blade is on the right: the stern goes left.
+    // The trailing end of the blade is on the right: the stern moves left.
     EXPECT_LT(side * small.world().link_twist(body, LinkId{0}).angular_W.z(), -0.1);
     EXPECT_GT(small.up(body).z(), 0.95);
   }
@@ -413,7 +414,7 @@ TEST_P(Fluids, ARudderTurnsABoatToItsSide) {
 
 // ---- Drag, fins and wind ----
 
-TEST_P(Fluids, WhatFallsReachesItsTerminalVelocity) {
+TEST_P(Fluids, AFallingBodyReachesItsTerminalVelocity) {
   SmallWorld small(air());
   const double mass = 0.5, linear = 0.1, quadratic = 0.02;
   Model model = loose("ball", description::Sphere{0.1}, solid_sphere(mass, 0.1));
@@ -428,7 +429,7 @@ TEST_P(Fluids, WhatFallsReachesItsTerminalVelocity) {
   EXPECT_NEAR(small.velocity(body).z(), -expected, 1e-6 * expected);
 }
 
-TEST_P(Fluids, DragNeverTurnsTheMotionRound) {
+TEST_P(Fluids, DragNeverReversesTheMotion) {
   SmallWorld small(air());
   small.description.gravity.setZero();
   Model model = loose("leaf", Box{{0.1, 0.1, 0.001}}, solid_box(1e-3, {0.1, 0.1, 0.001}));
@@ -451,7 +452,7 @@ TEST_P(Fluids, DragNeverTurnsTheMotionRound) {
   EXPECT_LT(small.velocity(body).norm(), 0.1);
 }
 
-TEST_P(Fluids, AFinHasTheLiftAndDragOfItsAngle) {
+TEST_P(Fluids, AFinHasTheLiftAndDragOfItsAngleOfAttack) {
   const double speed = 2.0;
   Fin fin;
   fin.name = "fin";
@@ -485,7 +486,7 @@ TEST_P(Fluids, AFinHasTheLiftAndDragOfItsAngle) {
   }
 }
 
-// A glider of 30 g at 300 m/s: the lift of one step would throw it up 180 times as fast as it sinks.
+// For a glider of 30 g at 300 m/s, the lift of one step would throw it up 180 times as fast as it sinks.
 TEST_P(Fluids, ALightFinAtHighSpeedIsStable) {
   for (const double cla_stall : {0.0, -3.0}) {
     SmallWorld small(air());
@@ -512,7 +513,7 @@ TEST_P(Fluids, ALightFinAtHighSpeedIsStable) {
   }
 }
 
-TEST_P(Fluids, WindBlowsThoseWhoFeelIt) {
+TEST_P(Fluids, WindActsOnLinksThatFeelIt) {
   SmallWorld small(air());
   small.description.gravity.setZero();
   small.description.air.wind = {3, 1, 0};
@@ -533,7 +534,7 @@ TEST_P(Fluids, WindBlowsThoseWhoFeelIt) {
   EXPECT_LT((small.velocity(both) - Vector3d(3, 1, 0) * (1.0 - std::pow(1.005, -200))).norm(), 1e-9);
 }
 
-TEST_P(Fluids, WhatARotorLiftsGoesThroughTheJointsThatHoldIt) {
+TEST_P(Fluids, JointsCarryTheThrustOfARotor) {
   SmallWorld small(air());
   Model model = anchored();
   model.devices.push_back(rotor_at({0.3, 0, 0}));
@@ -546,7 +547,7 @@ TEST_P(Fluids, WhatARotorLiftsGoesThroughTheJointsThatHoldIt) {
 }
 
 // Too many degrees of freedom for the inverse of its mass matrix.
-TEST(FluidsByBothDynamics, AreTheSameForAChainOfFloatsThatIsTowed) {
+TEST(FluidsByBothDynamics, AgreeOnATowedChainOfFloats) {
   const auto places_by = [](description::Dynamics dynamics) {
     SmallWorld small(empty_world());
     small.description.physics.dynamics = dynamics;
@@ -643,7 +644,7 @@ TEST_P(Fluids, HaveTheSameBitsForAnyNumberOfThreads) {
   for (const unsigned threads : {2u, 4u}) EXPECT_EQ(hash_with(threads), expected) << threads;
 }
 
-TEST_P(Fluids, GoOnFromASnapshotWithTheSameBits) {
+TEST_P(Fluids, ContinueFromASnapshotWithTheSameBits) {
   Regatta regatta(water(), 1), restored(water(), 2);
   for (int tick = 0; tick < 100; ++tick) regatta.step(tick);
   restore_from(regatta.small.world(), restored.small.world());
@@ -655,7 +656,7 @@ TEST_P(Fluids, GoOnFromASnapshotWithTheSameBits) {
   }
 }
 
-TEST(PlanarFluids, AreRefused) {
+TEST(PlanarFluids, AreRejected) {
   const auto reason = [](const Model& model, void (*change)(description::World&)) -> std::string {
     SmallWorld small;
     small.description.physics.fidelity = description::Fidelity::planar;
@@ -671,14 +672,15 @@ TEST(PlanarFluids, AreRefused) {
   const auto nothing = [](description::World&) {};
   const Model plain = loose("box", Box{Vector3d::Constant(0.1)}, solid_box(1.0, Vector3d::Constant(0.1)));
   EXPECT_EQ(reason(plain, nothing), "");
-  EXPECT_EQ(reason(plain, [](description::World& world) { world.water.emplace(); }), "planar physics has no water");
-  EXPECT_EQ(reason(quadcopter(), nothing), "model 'quadcopter': rotor 'rotor0' cannot be planar");
+  EXPECT_EQ(reason(plain, [](description::World& world) { world.water.emplace(); }),
+            "planar physics does not support water");
+  EXPECT_EQ(reason(quadcopter(), nothing), "model 'quadcopter': planar physics does not support rotor 'rotor0'");
   Model model = plain;
   model.fins.emplace_back().name = "wing";
-  EXPECT_EQ(reason(model, nothing), "model 'box': fin 'wing' cannot be planar");
+  EXPECT_EQ(reason(model, nothing), "model 'box': planar physics does not support fin 'wing'");
   model = plain;
   model.drags.emplace_back().name = "hull";
-  EXPECT_EQ(reason(model, nothing), "model 'box': drag 'hull' cannot be planar");
+  EXPECT_EQ(reason(model, nothing), "model 'box': planar physics does not support drag 'hull'");
   model = plain;
   model.links[0].feels_wind = true;
   EXPECT_EQ(reason(model, nothing), "");
@@ -686,7 +688,7 @@ TEST(PlanarFluids, AreRefused) {
                    [](description::World& world) {
                      world.air.wind = {1, 0, 0};
                    }),
-            "model 'box': what feels the wind cannot be planar");
+            "model 'box': planar physics does not support links with wind");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Connections that give, that lift, and many at once.
+// Compliant connections, connections that lift, and many at once.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 using physics::ConnectionGive;
 using physics::Wrench;
 
-// A box of 0.5 kg that a connection holds to the world at its middle, without gravity.
+// A box of 0.5 kg, connected to the world at its middle, without gravity.
 struct HeldBox {
   static constexpr double mass = 0.5;
   static constexpr double size = 0.1;
@@ -40,7 +40,7 @@ struct HeldBox {
   }
 };
 
-TEST(Give, ASpringYieldsByForceOverStiffness) {
+TEST(Compliance, ASpringDeflectsByForceOverStiffness) {
   ConnectionGive give;
   give.linear_stiffness = 200.0;
   give.linear_damping = 10.0;
@@ -57,7 +57,7 @@ TEST(Give, ASpringYieldsByForceOverStiffness) {
   EXPECT_NEAR(held.angle(), 0.0, 1e-5) << "it came back, and is rigid about z";
 }
 
-TEST(Give, ASpringSwingsAtItsFrequencyAndLosesNoMoreThanItsDamperTakes) {
+TEST(Compliance, ASpringOscillatesAtItsFrequencyAndDamping) {
   ConnectionGive give;
   give.linear_stiffness = 20.0;  // 1 s for 0.5 kg
   HeldBox held(give);
@@ -80,7 +80,7 @@ TEST(Give, ASpringSwingsAtItsFrequencyAndLosesNoMoreThanItsDamperTakes) {
   EXPECT_NEAR((at_last - first) / (crossings - 1), 2.0 * M_PI * std::sqrt(0.5 / 20.0), 0.01);
 }
 
-TEST(Give, IsStableAtAnyStiffnessAndDamping) {
+TEST(Compliance, IsStableAtAnyStiffnessAndDamping) {
   for (const double stiffness : {1.0, 1e4, 1e8, 1e12}) {
     for (const double damping : {0.0, 1.0, 1e6}) {
       ConnectionGive give;
@@ -100,7 +100,7 @@ TEST(Give, IsStableAtAnyStiffnessAndDamping) {
   }
 }
 
-TEST(Give, AboveItsHoldingForceItSlipsAndStaysWhereItCame) {
+TEST(Compliance, SlipsAboveItsHoldingForceAndStays) {
   ConnectionGive give;
   give.holding_force = 2.0;
   HeldBox held(give);
@@ -115,7 +115,7 @@ TEST(Give, AboveItsHoldingForceItSlipsAndStaysWhereItCame) {
   EXPECT_NEAR(held.small.velocity(held.box).x(), 0.0, 1e-9);
 }
 
-TEST(Give, WithoutATorqueAboutAnAxisItTurnsFreelyAboutThatAlone) {
+TEST(Compliance, TurnsFreelyOnlyAboutAnAxisWithoutHoldingTorque) {
   ConnectionGive give;
   give.holding_torque.z() = 0.0;
   HeldBox held(give);
@@ -130,7 +130,7 @@ TEST(Give, WithoutATorqueAboutAnAxisItTurnsFreelyAboutThatAlone) {
   EXPECT_NEAR(held.angle(), angle, 1e-6) << "closed again it holds it as it is now";
 }
 
-TEST(Give, IsSavedAndRestored) {
+TEST(Compliance, IsSavedAndRestored) {
   ConnectionGive give;
   give.linear_stiffness = 50.0;
   give.holding_force = 2.0;
@@ -147,7 +147,7 @@ TEST(Give, IsSavedAndRestored) {
   }
 }
 
-TEST(Connections, BothEndsFeelTheSameAboutTheirOwnFrames) {
+TEST(Connections, BothEndsReportTheSameWrenchInTheirFrames) {
   HeldBox held({});
   held.push({1.0, 2.0, 3.0}, {0.1, 0.2, 0.3}, 0.5);
   const Wrench on_a = held.small.world().connections().wrench(held.connection);
@@ -158,7 +158,7 @@ TEST(Connections, BothEndsFeelTheSameAboutTheirOwnFrames) {
   EXPECT_LT((on_a.torque_W + on_b.torque_W).norm(), 1e-5);
 }
 
-TEST(Connections, TellWhatBrokeThemForOneStep) {
+TEST(Connections, ReportTheBreakingWrenchForOneStep) {
   HeldBox held({}, {.force = 2.0});
   held.push({3.0, 0, 0}, Vector3d::Zero(), 0.01);
   ASSERT_EQ(held.small.world().connections().broken().size(), 1u);
@@ -187,7 +187,7 @@ TEST(Lifting, AnArmLiftsARobotAndDoesNotSag) {
   EXPECT_LT(gap, 0.2e-3);
   EXPECT_NEAR(world.joint_state(lifter, JointId{elevation_joint}).position, -0.5, 1e-4);
   EXPECT_NEAR(-world.connections().wrench(grip).force_W.z(), 0.7 * g, 1e-3);
-  // Both hang on the elevation joint: the arm at half its length, the robot with its centre of mass below the jaw.
+  // Both load the elevation joint: the arm at half its length, the robot with its centre of mass below the jaw.
   const double arm = 0.05 * g * 0.5 * arm_length * std::cos(0.5);
   const Vector3d joint = world.link_pose(lifter, LinkId{arm_link}).position;
   const Vector3d chassis = world.link_pose(lifted, LinkId{0}) * Vector3d(0, 0, 0.033);
@@ -196,7 +196,7 @@ TEST(Lifting, AnArmLiftsARobotAndDoesNotSag) {
   EXPECT_NEAR(world.joint_state(lifter, JointId{elevation_joint}).effort, -(arm + robot), 1e-3);
 }
 
-TEST(Lifting, ARobotThatTwoOthersHoldBackLiftsAFourth) {
+TEST(Lifting, ARobotHeldByTwoOthersLiftsAFourth) {
   SmallWorld small;
   const auto lifter = small.add(with_arm(), at(0, 0, 0));
   const auto second = small.add(tracked_robot(), at(-0.13, 0, 0));

@@ -1,4 +1,4 @@
-// What spins on a joint to the world or on the ground, at default settings.
+// Spinning bodies on a joint to the world or on the ground, at default settings.
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@ namespace {
 using description::JointType;
 using Eigen::Vector3d;
 
-constexpr double radius = 0.05;    // of the discs [m]
-constexpr double height = 0.05;    // of their centres above the foot [m]
+constexpr double radius = 0.05;    // radius of the discs [m]
+constexpr double height = 0.05;    // height of their centres above the foot [m]
 constexpr double disc_mass = 0.5;  // [kg]
 
 description::Inertial disc(double above) {
@@ -33,7 +33,7 @@ struct Gyroscope {
     return whole.kinetic_energy + whole.potential_energy;
   }
   double tilt() { return std::acos(small.up(body).z()); }
-  // Mean rate over `seconds` at which its axis goes round the vertical [rad/s].
+  // Returns the mean precession rate over `seconds` [rad/s].
   double precession(double seconds) {
     double turned = 0.0;
     for (double time = 0.0; time < seconds; time += 0.1) {
@@ -46,7 +46,7 @@ struct Gyroscope {
   }
 };
 
-// A disc whose foot is held by a ball joint, let go at a tilt.
+// A top: a disc whose foot is held by a ball joint, released at a tilt.
 struct Top : Gyroscope {
   Top(const description::World& world, double spin) : Gyroscope(world) {
     description::Model model;
@@ -59,7 +59,7 @@ struct Top : Gyroscope {
   }
 };
 
-// A disc on the axle of a frame, which stands on a small ball.
+// A gyroscope: a disc on the axle of a frame, which stands on a small ball.
 struct OnTheGround : Gyroscope {
   static constexpr double frame_mass = 0.1;
 
@@ -83,8 +83,8 @@ class Gyroscopes : public EveryPhysics {};
 INSTANTIATE_TEST_SUITE_P(Every, Gyroscopes, ::testing::Values(treel, by_bullet(treel), direct, by_bullet(direct)),
                          name_of);
 
-// Of a steady precession, the slower one (Goldstein, "Classical mechanics", 3rd edition, 2002, equation 5.76);
-// `across`: the moment of inertia about the foot, across the axis [kg m^2].
+// Returns the slower rate of steady precession (Goldstein, "Classical mechanics", 3rd edition, 2002, equation 5.76).
+// `across`: the moment of inertia about the foot, perpendicular to the axis [kg m^2].
 double rate_of(double mass, double spin, double across, double tilt) {
   const double along = disc_moment * spin;
   const double difference = (across - disc_moment) * std::cos(tilt);
@@ -102,7 +102,7 @@ TEST_P(Gyroscopes, ATopOnAJointKeepsItsEnergy) {
   }
 }
 
-// On a ball joint, swinging about and turning slowly about itself. The bound was set after 1.1 % was seen.
+// A pendulum on a ball joint swings and spins slowly about its axis. The bound was set after 1.1 % was measured.
 TEST_P(Gyroscopes, ASlowPendulumOnABallJointKeepsItsEnergy) {
   for (const double spin : {0.0, 1.0, 2.0, 4.0, 8.0}) {
     SCOPED_TRACE(spin);
@@ -124,7 +124,7 @@ TEST_P(Gyroscopes, ASlowPendulumOnABallJointKeepsItsEnergy) {
   }
 }
 
-// A ball in a frame that turns about the vertical; it spins across that, and feels nothing of the frame.
+// A ball in a frame that turns about the vertical spins about a perpendicular axis; the frame exerts no torque on it.
 TEST_P(Gyroscopes, ABallInATurningFrameKeepsItsSpin) {
   Gyroscope mount(GetParam().world());
   description::Model model;
@@ -146,8 +146,8 @@ TEST_P(Gyroscopes, ABallInATurningFrameKeepsItsSpin) {
   EXPECT_NEAR((spin_W - Vector3d(5.0, 0.0, 0.0)).norm(), 0.0, 0.05);
 }
 
-// It turns by 0.2 rad in a step; one that turns by 2 rad goes round a third too slowly.
-TEST_P(Gyroscopes, ATopOnAJointGoesRoundAsFastAsItsWeightAsksFor) {
+// It turns by 0.2 rad in a step; a top that turns by 2 rad precesses a third too slowly.
+TEST_P(Gyroscopes, ATopOnAJointPrecessesAtTheRateOfItsWeight) {
   description::World world = GetParam().world();
   world.step = std::chrono::milliseconds(1);
   Top top(world, 200.0);
@@ -155,7 +155,7 @@ TEST_P(Gyroscopes, ATopOnAJointGoesRoundAsFastAsItsWeightAsksFor) {
   EXPECT_NEAR(top.precession(10.0), rate, 0.02 * rate);
 }
 
-TEST_P(Gyroscopes, AGyroscopeStandsOnItsFootAndGoesRound) {
+TEST_P(Gyroscopes, AGyroscopePrecessesOnItsFoot) {
   OnTheGround gyroscope(GetParam().world(), 200.0);
   const double energy = gyroscope.energy();
   const double rate = rate_of(disc_mass + OnTheGround::frame_mass, 200.0,

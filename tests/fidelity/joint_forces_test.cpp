@@ -1,4 +1,4 @@
-// What goes through joints, against statics and dynamics by hand.
+// Forces and torques through joints, compared with statics and dynamics computed by hand.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ description::Inertial mass_at(double mass, const Vector3d& p_LI) {
   return inertial;
 }
 
-// A boom tied to the world at its origin by a hinge about y or a weld, and a weight welded to its end.
+// A boom fixed to the world at its origin by a hinge about y or a weld, and a weight welded to its end.
 constexpr double boom_mass = 0.2;
 constexpr double weight_mass = 0.5;
 constexpr double boom_length = 0.3;
@@ -37,19 +37,19 @@ void expect_wrench(const Wrench& wrench, const Vector3d& force_W, const Vector3d
   EXPECT_LT((wrench.torque_W - torque_W).norm(), within) << "torque " << wrench.torque_W.transpose();
 }
 
-TEST(JointForces, AWeldedWeightIsHeldUpByItsWeightAndItsMoment) {
+TEST(JointForces, AWeldCarriesAWeightAndItsMoment) {
   SmallWorld small(empty_world());
   const auto body = small.add(crane(JointType::fixed), at(1, 2, 3));
   small.world().record(body);
   small.run(0.05);
   expect_wrench(small.world().joint_wrench(body, JointId{1}), {0, 0, weight_mass * g}, Vector3d::Zero(), 1e-9);
-  // The torque upwards at x = l against a weight that pulls down: about -y.
+  // The upward torque at x = l against a weight that pulls down is about -y.
   const double moment = (0.5 * boom_mass + weight_mass) * g * boom_length;
   expect_wrench(small.world().joint_wrench(body, JointId{0}), {0, 0, (boom_mass + weight_mass) * g}, {0, -moment, 0},
                 1e-9);
 }
 
-TEST(JointForces, AMotorThatHoldsAnArmGivesItsWeightTimesItsLength) {
+TEST(JointForces, AMotorHoldsAnArmWithTheTorqueOfItsWeight) {
   SmallWorld small(empty_world());
   description::Model model = crane(JointType::revolute);
   model.devices.push_back(description::VelocityMotor{"motor", 0, 1.0, 10.0});
@@ -62,7 +62,7 @@ TEST(JointForces, AMotorThatHoldsAnArmGivesItsWeightTimesItsLength) {
                 1e-6);
 }
 
-TEST(JointForces, APushOnALinkGoesThroughTheJointsAboveIt) {
+TEST(JointForces, APushOnALinkLoadsTheJointsAboveIt) {
   SmallWorld small(empty_world());
   const auto body = small.add(crane(JointType::fixed), at(0, 0, 0));
   small.world().record(body);
@@ -80,7 +80,7 @@ TEST(JointForces, APushOnALinkGoesThroughTheJointsAboveIt) {
   expect_wrench(small.world().joint_wrench(body, JointId{1}), -weight, Vector3d::Zero(), 1e-9);
 }
 
-TEST(JointForces, AMassThatGoesRoundIsPulledInwards) {
+TEST(JointForces, ARotatingMassIsPulledInwards) {
   SmallWorld small(empty_world());
   small.description.gravity.setZero();
   description::Model model = crane(JointType::revolute);
@@ -98,9 +98,9 @@ TEST(JointForces, AMassThatGoesRoundIsPulledInwards) {
               (weight_mass + 0.5 * boom_mass) * rate * rate * boom_length, 1e-9);
 }
 
-// A tree of every kind of joint that swings, with motors, damping, springs and friction: what goes through a joint
-// along its axis is what these give, whatever else happens.
-TEST(JointForces, AlongItsAxisAJointPassesWhatItsMotorSpringAndDamperGive) {
+// A swinging tree of every kind of joint, with motors, damping, springs and friction. The force through a joint along
+// its axis is the sum of these, regardless of the motion.
+TEST(JointForces, AlongItsAxisAJointTransmitsMotorSpringAndDamper) {
   SmallWorld small(empty_world());
   description::Model model;
   model.name = "tree";
@@ -138,8 +138,8 @@ TEST(JointForces, AlongItsAxisAJointPassesWhatItsMotorSpringAndDamperGive) {
   }
 }
 
-TEST(JointForces, LegsOnTheFloorCarryWhatStandsOnThem) {
-  // A table of a top and two legs that are welded to it: each joint carries the leg's share less the leg's own weight.
+TEST(JointForces, LegsOnTheFloorCarryTheTable) {
+  // A table of a top and two legs welded to it: each joint carries the leg's share less the leg's own weight.
   SmallWorld small;
   description::Model model;
   model.name = "table";
@@ -160,7 +160,7 @@ TEST(JointForces, LegsOnTheFloorCarryWhatStandsOnThem) {
   EXPECT_NEAR(left - right, 0.0, 0.1) << "on both alike, as far as their feet are thin";
 }
 
-TEST(JointForces, OneRobotOnAnotherRestsOnItsTurretJoint) {
+TEST(JointForces, ATurretJointCarriesARobotOnTop) {
   SmallWorld small;
   const auto below = small.add(tracked_robot(), at(0, 0, 0));
   const auto above = small.add(loose("weight", description::Cylinder{0.04, 0.04}, solid_cylinder(0.5, 0.04, 0.04, 0.0)),
@@ -171,8 +171,8 @@ TEST(JointForces, OneRobotOnAnotherRestsOnItsTurretJoint) {
   EXPECT_NEAR(small.world().joint_wrench(below, JointId{0}).force_W.z(), (0.3 + 0.5) * g, 0.01);
 }
 
-// What the turret's joint passes on when the robot pulls at a wall is what the tracks pull.
-TEST(JointForces, TheTurretsJointFeelsThePullOfTheTracks) {
+// When the robot pulls at a wall, the turret's joint transmits the pull of the tracks.
+TEST(JointForces, ATurretJointTransmitsThePullOfTheTracks) {
   for (const double turret_yaw : {0.0, 0.7}) {
     SmallWorld small;
     const auto robot = small.add(tracked_robot(), at(0, 0, 0, 0.4));
@@ -191,7 +191,7 @@ TEST(JointForces, TheTurretsJointFeelsThePullOfTheTracks) {
   }
 }
 
-TEST(JointForces, WhatNobodyAskedForAndWhatWasRestoredTellsNothing) {
+TEST(JointForces, AreZeroUnlessRecordedAndAfterRestore) {
   SmallWorld small(empty_world());
   const auto body = small.add(crane(JointType::fixed), at(0, 0, 0));
   small.run(0.02);
@@ -213,7 +213,7 @@ TEST(JointForces, WhatNobodyAskedForAndWhatWasRestoredTellsNothing) {
   EXPECT_EQ(restored->joint_wrench(body, JointId{0}).force_W, Vector3d::Zero());
 }
 
-TEST(Acceleration, IsGravityInFreeFallAndNothingAtRest) {
+TEST(Acceleration, IsGravityInFreeFallAndZeroAtRest) {
   SmallWorld small;
   const auto falling = small.add(loose("ball", description::Sphere{0.05}, solid_sphere(0.2, 0.05)), at(1, 0, 5));
   const auto resting = small.add(tracked_robot(), at(0, 0, 0));
@@ -223,7 +223,7 @@ TEST(Acceleration, IsGravityInFreeFallAndNothingAtRest) {
   EXPECT_LT(small.world().link_acceleration(resting, LinkId{1}, {0.01, 0, 0.03}).norm(), 1e-6);
 }
 
-TEST(Acceleration, OfAPointThatGoesRoundIsTowardsTheMiddle) {
+TEST(Acceleration, OfARotatingPointIsCentripetal) {
   for (const description::Fidelity fidelity : {description::Fidelity::treel, description::Fidelity::planar}) {
     SmallWorld small;
     small.description.physics.fidelity = fidelity;

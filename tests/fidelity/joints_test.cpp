@@ -9,7 +9,7 @@ using description::Joint;
 using description::JointType;
 using Eigen::Vector3d;
 
-// A bob on a rod of length 1 m without mass, hung up at the origin of the model.
+// Returns a bob on a massless rod of length 1 m, attached at the origin of the model.
 description::Model pendulum(JointType type, double mass = 2.0) {
   description::Model model;
   model.name = "pendulum";
@@ -27,7 +27,7 @@ description::Model pendulum(JointType type, double mass = 2.0) {
   return model;
 }
 
-// Seconds between the first and the last of `count` returns of x from negative to positive.
+// Returns the mean period over `count` zero crossings of x from negative to positive.
 double period(SmallWorld& small, const std::function<double()>& x, int count) {
   const double step = std::chrono::duration<double>(small.description.step).count();
   double first = -1.0;
@@ -57,7 +57,7 @@ TEST(Joints, APendulumHasThePeriodOfItsLength) {
   for (const JointType type : {JointType::revolute, JointType::ball, JointType::universal}) {
     SmallWorld small(empty_world(std::chrono::milliseconds(1)));
     const auto body = small.add(pendulum(type), turned(0, 0, 0, Vector3d::UnitY(), 0.1));
-    // 2 pi sqrt(l / g) (1 + a^2 / 16), of a small amplitude a.
+    // 2 pi sqrt(l / g) (1 + a^2 / 16) for a small amplitude a.
     const double expected = 2.0 * M_PI * std::sqrt(1.0 / g) * (1.0 + 0.01 / 16.0);
     EXPECT_NEAR(period(
                     small, [&] { return bob_of(small, body).x(); }, 5),
@@ -66,7 +66,7 @@ TEST(Joints, APendulumHasThePeriodOfItsLength) {
   }
 }
 
-TEST(Joints, AConicalPendulumOnABallJointGoesRoundAtItsHeight) {
+TEST(Joints, AConicalPendulumOnABallJointKeepsItsHeight) {
   SmallWorld small(empty_world(std::chrono::milliseconds(1)));
   const double angle = 0.5;
   const auto body = small.add(pendulum(JointType::ball), turned(0, 0, 0, Vector3d::UnitY(), -angle));
@@ -87,7 +87,7 @@ TEST(Joints, AUniversalJointTurnsAboutTwoAxesAndNotAboutTheThird) {
   const auto body = small.add(pendulum(JointType::universal), turned(0, 0, 0, Vector3d(1, 1, 0), 0.3));
   for (int i = 0; i < 500; ++i) {
     small.world().step();
-    // The second axis, x of the child, turns about the first, y of the model: so the two stay square to each other.
+    // The second axis, x of the child, turns about the first, y of the model; the two stay perpendicular.
     const Pose X_WL = small.world().link_pose(body, LinkId{0});
     const Eigen::Quaterniond q_ML =
         Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3d(1, 1, 0).normalized())).conjugate() * X_WL.orientation;
@@ -112,7 +112,7 @@ description::Model cart(double stiffness, double damping) {
   return model;
 }
 
-TEST(Joints, ASpringSwingsAtTheFrequencyOfItsStiffness) {
+TEST(Joints, ASpringOscillatesAtTheFrequencyOfItsStiffness) {
   SmallWorld small(empty_world(std::chrono::milliseconds(1)));
   const auto body = small.add(cart(50.0, 0.0), at(0, 0, 0));
   EXPECT_NEAR(period(
@@ -175,7 +175,7 @@ TEST(Joints, ALimitStopsAJointThatFallsOnIt) {
   EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position, -0.5, 1e-3) << "it hangs against its limit";
 }
 
-// About the axis of the middle moment of inertia a body turns over again and again.
+// A body repeatedly flips over while it rotates about the axis of its intermediate moment of inertia.
 TEST(Bodies, ATumblingBoxKeepsItsAngularMomentumAndItsEnergy) {
   SmallWorld small;
   small.description.gravity.setZero();
@@ -200,7 +200,7 @@ TEST(Bodies, ATumblingBoxKeepsItsAngularMomentumAndItsEnergy) {
   EXPECT_NEAR(energy(), energy_before, 1e-4 * energy_before);
 }
 
-// Two links on two hinges, let go from the side: without damping its energy stays.
+// Two links on two hinges, released sideways: without damping, the energy stays constant.
 TEST(Joints, ADoublePendulumKeepsItsEnergy) {
   SmallWorld small(empty_world(std::chrono::milliseconds(1)));
   description::Model model = pendulum(JointType::revolute, 1.0);
@@ -233,8 +233,8 @@ TEST(Joints, ADoublePendulumKeepsItsEnergy) {
   }
 }
 
-// It comes to rest where the spring bears its weight, on either side of the joint, whatever the damper does.
-TEST(Joints, ASoftLimitGivesWayByItsStiffness) {
+// It comes to rest where the spring carries its weight, on either side of the joint, with any damping.
+TEST(Joints, ASoftLimitDeflectsByItsStiffness) {
   constexpr double weight = 2.0 * g, stiffness = 500.0;
   for (const double damping : {5.0, 50.0}) {
     for (const double sense : {1.0, -1.0}) {
@@ -255,7 +255,7 @@ TEST(Joints, ASoftLimitGivesWayByItsStiffness) {
   }
 }
 
-// A cart with four wheels as real links, which touch the ground.
+// Returns a cart with four wheels as real links, which touch the ground.
 description::Model four_wheels() {
   description::Model model;
   model.name = "rover";
@@ -284,7 +284,7 @@ TEST(Joints, WheelsRollAtTheirRadiusTimesTheirRate) {
   EXPECT_NEAR(small.position(body).z(), 0.0, 1e-3);
 }
 
-TEST(Joints, AWheelWithoutAMotorRollsDownASlopeAsItsInertiaSays) {
+TEST(Joints, AWheelWithoutAMotorRollsDownASlopeWithItsInertia) {
   constexpr double slope = 0.1;
   SmallWorld small;
   small.description.instances.clear();
@@ -296,7 +296,7 @@ TEST(Joints, AWheelWithoutAMotorRollsDownASlopeAsItsInertiaSays) {
       loose("wheel", description::Cylinder{0.1, 0.05}, solid_cylinder(1.0, 0.1, 0.05, 0.0), {1.0, 0.0});
   const auto body = small.add(wheel, {0.1 * normal, lying});
   small.run(2.0);
-  // a = g sin(slope) / (1 + I / m r^2), of a solid cylinder 2/3 of a slide.
+  // a = g sin(slope) / (1 + I / m r^2): for a solid cylinder, 2/3 of a slide.
   EXPECT_NEAR(small.velocity(body).norm(), 2.0 * g * std::sin(slope) * 2.0 / 3.0, 0.01);
 }
 

@@ -1,4 +1,4 @@
-// Links that move as they are told, whatever they touch.
+// Kinematic links: they move as commanded, regardless of contacts.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ description::Model kinematic_box(const std::string& name, const Vector3d& size) 
 class Kinematic : public EveryPhysics {};
 INSTANTIATE_TEST_SUITE_P(Every, Kinematic, every_physics, name_of);
 
-TEST_P(Kinematic, ABoxPushesWhatIsInItsWayAndIsNotHeldUp) {
+TEST_P(Kinematic, ABoxPushesObstaclesAndKeepsItsVelocity) {
   SmallWorld small(GetParam().world());
   const auto pusher = small.add(kinematic_box("pusher", {0.2, 0.2, 0.2}), at(0, 0, 0.1));
   const auto pushed =
@@ -32,7 +32,7 @@ TEST_P(Kinematic, ABoxPushesWhatIsInItsWayAndIsNotHeldUp) {
   EXPECT_NEAR(small.velocity(pushed).x(), 0.5, 1e-2);
 }
 
-TEST_P(Kinematic, OnesGoThroughEachOtherAndThroughTheWorld) {
+TEST_P(Kinematic, BodiesPassThroughEachOtherAndTheWorld) {
   SmallWorld small(GetParam().world());
   const auto moves = small.add(kinematic_box("moves", {0.2, 0.2, 0.2}), at(0, 0, 0.05));
   const auto stands = small.add(kinematic_box("stands", {0.2, 0.2, 0.2}), at(0.5, 0, 0.05));
@@ -46,7 +46,7 @@ class KinematicInSpace : public EveryPhysics {};
 INSTANTIATE_TEST_SUITE_P(Every, KinematicInSpace,
                          ::testing::Values(articulated, by_bullet(articulated), direct, by_bullet(direct)), name_of);
 
-TEST_P(KinematicInSpace, ALiftCarriesWhatStandsOnIt) {
+TEST_P(KinematicInSpace, ALiftCarriesItsLoad) {
   SmallWorld small(GetParam().world());
   const auto lift = small.add(kinematic_box("lift", {1.0, 1.0, 0.1}), at(0, 0, 0.5));
   const auto load = small.add(loose("load", Box{{0.2, 0.2, 0.2}}, solid_box(1000.0, {0.2, 0.2, 0.2})), at(0, 0, 0.65));
@@ -58,7 +58,7 @@ TEST_P(KinematicInSpace, ALiftCarriesWhatStandsOnIt) {
   EXPECT_NEAR(small.position(load).x(), 0.5, 5e-3) << "it starts within a step or two";
 }
 
-// A rod that hangs on a hinge about y.
+// Returns a rod that hangs on a hinge about y.
 description::Model rod(bool of_the_world) {
   description::Model model;
   model.name = "pendulum";
@@ -74,7 +74,7 @@ description::Model rod(bool of_the_world) {
   return model;
 }
 
-TEST_P(KinematicInSpace, WhatHangsOnAJointMovesAsOnTheWorld) {
+TEST_P(KinematicInSpace, AJointedLinkMovesAsOnTheWorld) {
   SmallWorld small(GetParam().world());
   const auto of_the_world = small.add(rod(true), at(0, 0, 2));
   const auto of_a_base = small.add(rod(false), at(0, 1, 2));
@@ -88,7 +88,7 @@ TEST_P(KinematicInSpace, WhatHangsOnAJointMovesAsOnTheWorld) {
   EXPECT_EQ(small.position(of_a_base), Vector3d(0, 1, 2));
 }
 
-TEST_P(KinematicInSpace, OneThatTurnsTakesWhatHangsOnItRound) {
+TEST_P(KinematicInSpace, ARotatingBodyCarriesItsLinks) {
   SmallWorld small(GetParam().world());
   const auto body = small.add(rod(false), at(0, 0, 2));
   const Vector3d rate_W(0, 0, 0.5);

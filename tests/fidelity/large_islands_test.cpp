@@ -1,4 +1,4 @@
-// Islands that are cut into parts and solved by all workers at once.
+// Large islands, which are cut into parts and solved by all workers at once.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 using physics::IslandParts;
 
-// Robots that drive about at random.
+// Robots that drive at random.
 struct DrivenRobots {
   DrivenRobots(const Physics& physics, unsigned threads) : small(physics.world(), threads) {}
 
@@ -34,7 +34,7 @@ struct DrivenRobots {
   }
 };
 
-// Robots in a square, each held to the one before it in its row and in its column.
+// Robots in a square, each connected to the previous one in its row and in its column.
 struct Raft : DrivenRobots {
   static constexpr double spacing = 0.13;
 
@@ -57,7 +57,7 @@ struct Raft : DrivenRobots {
   }
 };
 
-// A loose board with robots that drive about on it and push each other; some stand half on it, half on the floor.
+// A loose board with robots that drive on it and push each other; some stand half on it, half on the floor.
 struct CrowdedBoard : DrivenRobots {
   BodyId board;
 
@@ -79,7 +79,7 @@ TEST_P(LargeIslands, HaveTheSameBitsForAnyNumberOfThreads) {
   for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(Raft(GetParam(), 12, threads).run(60), expected) << threads;
 }
 
-TEST_P(LargeIslands, OnABoardThatMovesHaveTheSameBitsForAnyNumberOfThreads) {
+TEST_P(LargeIslands, OnAMovingBoardHaveTheSameBitsForAnyNumberOfThreads) {
   CrowdedBoard one(GetParam(), 1);
   const std::uint64_t expected = one.run(100);
   EXPECT_NEAR(one.small.position(one.board).z(), 0.005, 1e-3);
@@ -88,7 +88,7 @@ TEST_P(LargeIslands, OnABoardThatMovesHaveTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(CrowdedBoard(GetParam(), threads).run(100), expected) << threads;
 }
 
-TEST_P(LargeIslands, HoldTogetherAsSmallOnesDo) {
+TEST_P(LargeIslands, HoldTogetherLikeSmallOnes) {
   Raft raft(GetParam(), 12, 2);
   raft.run(200);
   for (std::size_t i = 1; i < raft.robots.size(); ++i) {
@@ -100,7 +100,7 @@ TEST_P(LargeIslands, HoldTogetherAsSmallOnesDo) {
   for (const BodyId robot : raft.robots) EXPECT_GT(raft.small.up(robot).z(), 0.99);
 }
 
-TEST_P(LargeIslands, GoOnWithoutABodyThatBreaks) {
+TEST_P(LargeIslands, ContinueWithoutABodyThatBreaks) {
   const auto broken_run = [](unsigned threads) {
     Raft raft(GetParam(), 11, threads);
     raft.run(10);
@@ -127,7 +127,7 @@ void link_all(IslandParts& parts, std::uint32_t count) {
   for (std::uint32_t body = 0; body + 50 < count; body += 3) parts.link(body, body + 50);
 }
 
-TEST(IslandParts, HaveEveryBodyOnceAndAreFullButForTheLast) {
+TEST(IslandParts, ContainEveryBodyOnceAndAreFullExceptTheLast) {
   IslandParts parts;
   link_all(parts, 100);
   parts.cut(16);
@@ -143,7 +143,7 @@ TEST(IslandParts, HaveEveryBodyOnceAndAreFullButForTheLast) {
   EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), 100);
 }
 
-TEST(IslandParts, OfARowAreStretchesOfIt) {
+TEST(IslandParts, OfARowAreContiguous) {
   IslandParts parts;
   parts.reset(96);
   for (std::uint32_t body = 1; body < 96; ++body) parts.link(body, body - 1);
@@ -152,7 +152,7 @@ TEST(IslandParts, OfARowAreStretchesOfIt) {
   for (std::uint32_t body = 0; body < 96; ++body) EXPECT_EQ(parts.part_of(body), body / 32);
 }
 
-TEST(IslandParts, OfBodiesThatOnlyShareOneAreStillFull) {
+TEST(IslandParts, OfAStarAreFull) {
   IslandParts parts;
   parts.reset(200);
   for (std::uint32_t body = 1; body < 200; ++body) parts.link(0, body);

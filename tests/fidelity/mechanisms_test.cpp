@@ -20,7 +20,7 @@ class Mechanisms : public EveryPhysics {
     world.gravity = {0, 0, -gravity};
     return world;
   }
-  // A bar from its origin along `along`.
+  // Returns a bar from its origin along `along`.
   static description::Link bar(const std::string& name, const Vector3d& place, const Vector3d& along) {
     const Vector3d size = Vector3d::Constant(0.02) + along.cwiseAbs();
     description::Link link{name, {place}, solid_box(0.5, size), {}};
@@ -28,7 +28,7 @@ class Mechanisms : public EveryPhysics {
     link.collisions.push_back({"bar", {0.5 * along}, description::Box{size}, {}});
     return link;
   }
-  // Two bars on the world, of which the second follows the first.
+  // Returns two bars on the world, of which the second follows the first.
   static description::Model pair(JointType second, double multiplier, double offset) {
     description::Model model;
     model.name = "pair";
@@ -42,9 +42,9 @@ class Mechanisms : public EveryPhysics {
 };
 INSTANTIATE_TEST_SUITE_P(Every, Mechanisms, ::testing::Values(treel, by_bullet(treel)), name_of);
 
-// Two bars of 0.2 m that stand 0.3 m apart and a coupler on top: what the crank turns by, the rocker does. Bars that a
-// joint connects overlap there and do not push each other, that of the loop included.
-TEST_P(Mechanisms, AFourBarLinkageTurnsAsAParallelogram) {
+// Two bars of 0.2 m stand 0.3 m apart with a coupler on top: the rocker turns by the same angle as the crank. Bars that
+// a joint connects overlap there and do not collide, including at the loop joint.
+TEST_P(Mechanisms, AFourBarLinkageMovesAsAParallelogram) {
   description::Model linkage;
   linkage.name = "linkage";
   linkage.self_collide = true;
@@ -76,7 +76,7 @@ TEST_P(Mechanisms, AFourBarLinkageTurnsAsAParallelogram) {
   EXPECT_NEAR(small.position(body, 1).y(), 0.0, 1e-6) << "it stays in its plane";
 }
 
-// A bar on a ball joint at one end; what holds its other end leaves it no way, or a hinge's.
+// A bar on a ball joint at one end; the loop joint at its other end leaves it no freedom, or that of a hinge.
 TEST_P(Mechanisms, EveryKindOfLoopHolds) {
   for (const JointType type : {JointType::fixed, JointType::ball, JointType::revolute, JointType::universal}) {
     SCOPED_TRACE("joint type " + std::to_string(static_cast<int>(type)));
@@ -103,7 +103,7 @@ TEST_P(Mechanisms, EveryKindOfLoopHolds) {
 }
 
 // Both hinges turn bars; one follows the other, backwards and twice as fast.
-TEST_P(Mechanisms, AFollowerFollowsAndIsFelt) {
+TEST_P(Mechanisms, AFollowerFollowsAndLoadsItsLeader) {
   description::Model model = pair(JointType::revolute, -2.0, 0.0);
   model.devices.emplace_back(description::EffortMotor{"motor", 0, 1.0, 0.0});
   SmallWorld small(space());
@@ -127,7 +127,7 @@ TEST_P(Mechanisms, AFollowerKeepsItsOffset) {
   EXPECT_NEAR(small.world().joint_state(body, JointId{1}).position, 0.4, 1e-4);
 }
 
-// A weight on a thread without friction turns itself down.
+// A weight on a frictionless thread turns as it sinks.
 TEST_P(Mechanisms, AWeightOnAScrewTurnsAsItSinks) {
   constexpr double pitch = 0.05;
   description::Model nut;
@@ -147,7 +147,7 @@ TEST_P(Mechanisms, AWeightOnAScrewTurnsAsItSinks) {
               1e-6);
 }
 
-TEST_P(Mechanisms, GoOnFromASnapshotAndPassTheirForcesOn) {
+TEST_P(Mechanisms, ContinueFromASnapshotAndReportForces) {
   description::Model model;
   model.name = "frame";
   model.links.push_back(bar("left", {0, 0, 0}, {0, 0, -0.2}));
@@ -163,7 +163,7 @@ TEST_P(Mechanisms, GoOnFromASnapshotAndPassTheirForcesOn) {
   const auto body = small.add(model, at(0, 0, 1));
   small.world().record(body);
   small.run(1.0);
-  // At rest both bars bear half of what hangs on them.
+  // At rest, each bar carries half of the load.
   EXPECT_NEAR(small.world().joint_wrench(body, JointId{0}).force_W.z(), 0.75 * 9.81, 1e-3);
   EXPECT_NEAR(small.world().joint_wrench(body, JointId{1}).force_W.z(), 0.75 * 9.81, 1e-3);
   SmallWorld restored(small.description);

@@ -1,4 +1,4 @@
-// Motors that are told a position or an effort.
+// Motors with position and effort commands.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr double moved_mass = 0.4;
 constexpr double lever = 0.2;  // from the hinge to the centre of mass
 
-// A mass on a hinge about y, or on a rail along x, that a motor drives.
+// Returns a mass on a hinge about y, or on a rail along x, driven by a motor.
 description::Model driven(JointType type, double max_velocity, double max_effort) {
   description::Model model;
   model.name = "driven";
@@ -32,7 +32,7 @@ description::Model driven(JointType type, double max_velocity, double max_effort
   return model;
 }
 
-TEST(Motors, GoToAPositionNoFasterThanTheyMayAndStay) {
+TEST(Motors, MoveToAPositionWithinTheirVelocityLimit) {
   SmallWorld small(empty_world());
   const auto body = small.add(driven(JointType::prismatic, 0.5, 100.0), at(0, 0, 0));
   physics::World& world = small.world();
@@ -49,10 +49,10 @@ TEST(Motors, GoToAPositionNoFasterThanTheyMayAndStay) {
   EXPECT_NEAR(world.joint_state(body, JointId{0}).position, -0.1, 1e-6);
 }
 
-TEST(Motors, ThatAreWeakBrakeInTimeForTheirPosition) {
+TEST(Motors, WithLittleEffortBrakeInTimeForTheirPosition) {
   for (const auto step : {1, 10, 20}) {
     SmallWorld small(empty_world(std::chrono::milliseconds(step)));
-    // 1 m/s^2 to speed up and to brake: it never gets to its greatest velocity.
+    // 1 m/s^2 for acceleration and braking: it never reaches its greatest velocity.
     const auto body = small.add(driven(JointType::prismatic, 5.0, moved_mass * 1.0), at(0, 0, 0));
     physics::World& world = small.world();
     world.set_joint_target(body, JointId{0}, physics::JointTarget::position(1.0));
@@ -64,7 +64,7 @@ TEST(Motors, ThatAreWeakBrakeInTimeForTheirPosition) {
       greatest = std::max(greatest, world.joint_state(body, JointId{0}).velocity);
       ASSERT_LE(world.joint_state(body, JointId{0}).position, 1.0 + 1e-9) << "after " << seconds << " s";
     }
-    // Half the way faster, half the way slower: t = 2 sqrt(s / a), v = sqrt(s a).
+    // It accelerates over half the way and brakes over the other: t = 2 sqrt(s / a), v = sqrt(s a).
     EXPECT_NEAR(seconds, 2.0, 0.1) << "steps of " << step << " ms";
     EXPECT_NEAR(greatest, 1.0, 0.03);
   }
@@ -76,7 +76,7 @@ TEST(Motors, HoldAnArmAgainstItsWeightWithoutSagging) {
     SmallWorld small(empty_world());
     const auto body = small.add(driven(JointType::revolute, 2.0, strength * moment), at(0, 0, 0));
     physics::World& world = small.world();
-    for (const double target : {0.0, -0.4, 0.3}) {  // level, above and below
+    for (const double target : {0.0, -0.4, 0.3}) {  // horizontal, above and below
       world.set_joint_target(body, JointId{0}, physics::JointTarget::position(target));
       const double from = world.joint_state(body, JointId{0}).position;
       double beyond = 0.0;
@@ -92,7 +92,7 @@ TEST(Motors, HoldAnArmAgainstItsWeightWithoutSagging) {
   }
 }
 
-TEST(Motors, ThatAreTooWeakForAPositionGiveAllTheyHave) {
+TEST(Motors, TooWeakForAPositionGiveTheirGreatestEffort) {
   SmallWorld small(empty_world());
   const auto body = small.add(driven(JointType::revolute, 2.0, 0.3), at(0, 0, 0));
   small.world().set_joint_target(body, JointId{0}, physics::JointTarget::position(0.0));
@@ -101,7 +101,7 @@ TEST(Motors, ThatAreTooWeakForAPositionGiveAllTheyHave) {
   EXPECT_NEAR(small.world().joint_state(body, JointId{0}).effort, -0.3, 1e-9);
 }
 
-TEST(Motors, GoNoFurtherThanTheJointsLimits) {
+TEST(Motors, RespectJointLimits) {
   SmallWorld small(empty_world());
   description::Model model = driven(JointType::prismatic, 0.5, 10.0);
   model.joints[0].axis.upper = 0.2;
@@ -112,7 +112,7 @@ TEST(Motors, GoNoFurtherThanTheJointsLimits) {
   EXPECT_NEAR(small.world().joint_state(body, JointId{0}).effort, 0.0, 1e-6) << "and do not push against them";
 }
 
-TEST(Motors, GiveAnEffortThatIsToldNoMoreThanTheyMay) {
+TEST(Motors, GiveTheCommandedEffortWithinTheirLimit) {
   SmallWorld small(empty_world());
   const auto body = small.add(driven(JointType::prismatic, 0.5, 2.0), at(0, 0, 0));
   physics::World& world = small.world();
@@ -134,19 +134,19 @@ TEST(Motors, GiveAnEffortThatIsToldNoMoreThanTheyMay) {
   EXPECT_NEAR(world.joint_state(body, JointId{0}).velocity, 0.0, 1e-9) << "told a velocity again, it brakes";
 }
 
-TEST(Motors, AnEffortHasTheSameEffectWithEverySolver) {
+TEST(Motors, ApplyTheSameEffortWithEverySolver) {
   for (const description::Solver solver : {description::Solver::iterative, description::Solver::direct}) {
     SmallWorld small;
     small.description.physics.solver = solver;
     const auto robot = small.add(tracked_robot(), at(0, 0, 0));
     small.world().set_joint_target(robot, JointId{0}, physics::JointTarget::effort(1e-4));
     small.run(0.2);
-    // The turret against the chassis, which stands: its own moment of inertia about z.
+    // The turret turns against the standing chassis: its own moment of inertia about z counts.
     EXPECT_NEAR(small.world().joint_state(robot, JointId{0}).velocity, 0.2 * 1e-4 / (0.3 * 0.058 * 0.058 / 2.0), 1e-3);
   }
 }
 
-TEST(Motors, InThePlaneGoToTheirPositionAndStayWhereAnEffortIsTold) {
+TEST(Motors, InThePlaneMoveToPositionsButNotByEfforts) {
   SmallWorld small;
   small.description.physics.fidelity = description::Fidelity::planar;
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
@@ -160,7 +160,7 @@ TEST(Motors, InThePlaneGoToTheirPositionAndStayWhereAnEffortIsTold) {
   EXPECT_NEAR(small.world().joint_state(robot, JointId{0}).position, 0.5, 1e-12);
 }
 
-TEST(Motors, WhatTheyAreToldIsSavedAndIsPartOfTheHash) {
+TEST(Motors, SaveAndHashTheirCommands) {
   for (const description::Fidelity fidelity : {description::Fidelity::treel, description::Fidelity::planar}) {
     SmallWorld small;
     small.description.physics.fidelity = fidelity;

@@ -36,7 +36,7 @@ TEST(Planar, ARobotDrivesAtTheCommandedSpeed) {
   EXPECT_EQ(small.position(robot).z(), 0.0);
 }
 
-TEST(Planar, ARobotTurnsAsItsTracksDiffer) {
+TEST(Planar, ARobotTurnsByTheDifferenceOfItsTracks) {
   SmallWorld small(planar.world());
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   small.drive(robot, -0.02, 0.06);
@@ -47,7 +47,7 @@ TEST(Planar, ARobotTurnsAsItsTracksDiffer) {
   EXPECT_NEAR(heading(small, robot) - before, 1.0, 0.005);
 }
 
-TEST(Planar, ARobotToldToStandStillStandsStill) {
+TEST(Planar, ARobotCommandedToStandStillStandsStill) {
   SmallWorld small(planar.world());
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   small.run(10.0);
@@ -63,7 +63,7 @@ TEST(Planar, AWallStopsARobotAndItsTractionIsLimited) {
     small.run(4.0);
     EXPECT_NEAR(small.position(robot).x(), 0.2 - 0.058, 1e-3);
     EXPECT_LT(small.velocity(robot).norm(), 1e-3);
-    // The torque of a motor over the radius of the wheels, or friction under half the weight.
+    // The limit is the torque of a motor over the radius of the wheels, or friction under half the weight.
     const double most = std::min(0.02 / 0.022, friction * 0.5 * 0.7 * g);
     for (const std::size_t side : {0, 1})
       EXPECT_NEAR(small.world().device_state(robot, DeviceId{0}, side).effort, most, 1e-6);
@@ -73,7 +73,7 @@ TEST(Planar, AWallStopsARobotAndItsTractionIsLimited) {
   }
 }
 
-TEST(Planar, APlaneThatStandsUprightIsAWall) {
+TEST(Planar, AnUprightPlaneIsAWall) {
   SmallWorld small(planar.world());
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   small.add(static_shape("wall", description::Plane{-Vector3d::UnitX()}), at(0.2, 0, 0));
@@ -82,7 +82,7 @@ TEST(Planar, APlaneThatStandsUprightIsAWall) {
   EXPECT_NEAR(small.position(robot).x(), 0.2 - 0.058, 1e-3);
 }
 
-TEST(Planar, WhatIsLowerThanABodyIsNoWall) {
+TEST(Planar, AnObjectLowerThanABodyIsNoWall) {
   SmallWorld small(planar.world());
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   small.add(static_shape("step", Box{{0.1, 2, 0.01}}), at(0.25, 0, 0.005));
@@ -113,7 +113,7 @@ TEST(Planar, RobotsInACrowdNeverPassThroughEachOther) {
   }
 }
 
-TEST(Planar, MomentumStaysInACollisionOfDiscs) {
+TEST(Planar, ACollisionOfDiscsConservesMomentum) {
   SmallWorld small(planar.world(0.0));
   const description::Surface bouncy{0.5, 0.9};
   const auto one = small.add(disc(1.0, 0.05, bouncy), at(-0.5, 0, 0.02));
@@ -135,7 +135,7 @@ TEST(Planar, MomentumStaysInACollisionOfDiscs) {
   EXPECT_GT(small.velocity(two).x(), 0.3);
 }
 
-TEST(Planar, DiscsBounceByTheirRestitution) {
+TEST(Planar, DiscsBounceWithTheirRestitution) {
   SmallWorld small(planar.world(0.0));
   const description::Surface bouncy{0.0, 0.8};
   const auto one = small.add(disc(1.0, 0.05, bouncy), at(-0.5, 0, 0.02));
@@ -204,7 +204,7 @@ TEST(Planar, ABoxPushedAtItsEdgeTurns) {
   EXPECT_LT(heading(small, loose_box), -0.1);
 }
 
-TEST(Planar, BoxesInARowStayBeforeTheWallTheyArePushedAgainst) {
+TEST(Planar, BoxesPushedAgainstAWallDoNotEnterIt) {
   SmallWorld small(planar.world(0.1));
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   const auto first = small.add(box(0.2, {0.1, 0.1, 0.1}), at(0.12, 0, 0.05));
@@ -253,7 +253,7 @@ TEST(Planar, AMotorTurnsItsJointAsCommandedUpToItsLimit) {
   EXPECT_EQ(small.world().joint_state(robot, JointId{0}).velocity, 0.0);
 }
 
-TEST(Planar, WhatATurretCarriesSweepsAwayWhatIsLoose) {
+TEST(Planar, AnArmOnATurretSweepsLooseObjectsAway) {
   description::Model model = tracked_robot();
   model.links[turret].collisions.push_back({"arm", {{0.1, 0, 0.02}}, Box{{0.1, 0.02, 0.02}}, {0.3, 0}});
   SmallWorld small(planar.world(0.3));
@@ -266,7 +266,7 @@ TEST(Planar, WhatATurretCarriesSweepsAwayWhatIsLoose) {
   EXPECT_GT((small.position(post) - small.position(robot)).head<2>().norm(), 0.058 + 0.02 - 2e-3);
 }
 
-TEST(Planar, GoesWhereTheFullModelGoesOnFreeGround) {
+TEST(Planar, AgreesWithTheFullModelOnFreeGround) {
   const auto end_of = [](Fidelity fidelity, double left, double right) {
     SmallWorld small;
     small.description.physics.fidelity = fidelity;
@@ -284,7 +284,7 @@ TEST(Planar, GoesWhereTheFullModelGoesOnFreeGround) {
   }
 }
 
-// The message with which a world is refused.
+// Returns the message with which a world is rejected.
 std::string refusal_of(const description::World& world) {
   WorkerPool workers(1);
   try {
@@ -295,18 +295,18 @@ std::string refusal_of(const description::World& world) {
   return "";
 }
 
-TEST(Planar, RefusesWhatCannotBePlanarByTheNameOfItsModel) {
+TEST(Planar, RejectsUnsupportedModelsByName) {
   description::World leaning = planar.world();
   place(leaning, tracked_robot(), "robot", turned(0, 0, 0, Vector3d::UnitX(), 0.002));
-  EXPECT_EQ(refusal_of(leaning), "model 'tracked_robot': a robot that leans cannot be planar");
+  EXPECT_EQ(refusal_of(leaning), "model 'tracked_robot': planar physics requires upright robots");
 
   description::World slope = planar.world();
   slope.instances[0].X_WM = turned(0, 0, 0, Vector3d::UnitX(), 0.1);
-  EXPECT_EQ(refusal_of(slope), "model 'floor': a plane that is neither level nor upright cannot be planar");
+  EXPECT_EQ(refusal_of(slope), "model 'floor': planar physics supports only level and upright planes");
 
   description::World moon = planar.world();
   moon.gravity = {0.0, 1.0, -1.6};
-  EXPECT_EQ(refusal_of(moon), "planar physics needs gravity along -z");
+  EXPECT_EQ(refusal_of(moon), "planar physics requires gravity along -z");
 
   description::World door = planar.world();
   description::Model hinged = loose("door", Box{{1, 0.1, 1}}, solid_box(1, {1, 0.1, 1}));
@@ -316,15 +316,15 @@ TEST(Planar, RefusesWhatCannotBePlanarByTheNameOfItsModel) {
   hinge.child = 0;
   hinged.joints.push_back(hinge);
   place(door, hinged, "door", at(0, 0, 0.5));
-  EXPECT_EQ(refusal_of(door), "model 'door': a joint that moves against the world cannot be planar");
+  EXPECT_EQ(refusal_of(door), "model 'door': planar physics does not support moving joints to the world");
 
   description::World hole = planar.world();
   hole.instances.clear();
   place(hole, tracked_robot(), "robot", at(0, 0, 0));
-  EXPECT_EQ(refusal_of(hole), "model 'tracked_robot': there is no ground under it, so it cannot be planar");
+  EXPECT_EQ(refusal_of(hole), "model 'tracked_robot': planar physics requires ground under it");
 }
 
-TEST(Planar, ABodyAddedWhereThereIsNoGroundIsRefusedAndTheWorldGoesOn) {
+TEST(Planar, ABodyAddedWithoutGroundIsRejectedAndTheWorldContinues) {
   SmallWorld small(planar.world());
   small.description.models.clear();
   small.description.instances.clear();
@@ -336,7 +336,7 @@ TEST(Planar, ABodyAddedWhereThereIsNoGroundIsRefusedAndTheWorldGoesOn) {
   EXPECT_GT(small.position(robot).x(), 0.09);
 }
 
-TEST(Planar, ABodyFixedToTheWorldStaysAndIsInTheWay) {
+TEST(Planar, ABodyFixedToTheWorldIsAnObstacle) {
   SmallWorld small(planar.world());
   description::Model post = loose("post", Box{{0.1, 0.1, 0.2}}, solid_box(1, {0.1, 0.1, 0.2}));
   description::Joint weld;

@@ -8,7 +8,7 @@ namespace {
 using description::Box;
 using Eigen::Vector3d;
 
-// A dozen robots that drive about and push each other.
+// A dozen robots that drive and push each other.
 struct Crowd {
   SmallWorld small;
   std::vector<BodyId> robots;
@@ -24,7 +24,7 @@ struct Crowd {
 class Quarantine : public EveryPhysics {};
 INSTANTIATE_TEST_SUITE_P(Every, Quarantine, every_physics, name_of);
 
-TEST_P(Quarantine, AnExplodingBodyIsTakenOutAndTheOthersNeverNotice) {
+TEST_P(Quarantine, AnExplodingBodyIsRemovedWithoutEffectOnOthers) {
   Crowd undisturbed(GetParam());
   undisturbed.small.add(GetParam().robot(), at(3, 3, 0));
   undisturbed.set_off();
@@ -46,7 +46,7 @@ TEST_P(Quarantine, AnExplodingBodyIsTakenOutAndTheOthersNeverNotice) {
   EXPECT_EQ(hash_of(disturbed.small.world(), disturbed.robots), hash_of(undisturbed.small.world(), undisturbed.robots));
 }
 
-TEST_P(Quarantine, ABodyThatBreaksWhileItTouchesOthersLeavesThemWhole) {
+TEST_P(Quarantine, ABodyThatBreaksInContactDoesNotBreakOthers) {
   Crowd crowd(GetParam());
   crowd.set_off();
   crowd.small.run(1.0);
@@ -59,7 +59,7 @@ TEST_P(Quarantine, ABodyThatBreaksWhileItTouchesOthersLeavesThemWhole) {
   }
 }
 
-TEST_P(Quarantine, ABodyThatGoesTooFarHasLeftTheWorld) {
+TEST_P(Quarantine, ABodyTooFarAwayHasLeftTheWorld) {
   SmallWorld small(GetParam().world(0.0));
   const auto puck = small.add(loose("puck", Box{{0.1, 0.1, 0.1}}, solid_box(1, {0.1, 0.1, 0.1})), at(999990, 0, 0.05));
   small.world().set_root_twist(puck, {Vector3d::Zero(), Vector3d(100, 0, 0)});
@@ -69,7 +69,7 @@ TEST_P(Quarantine, ABodyThatGoesTooFarHasLeftTheWorld) {
   EXPECT_FALSE(small.world().is_active(puck));
 }
 
-TEST(Falling, ABodyThatFallsOutOfTheWorldIsTakenOut) {
+TEST(Falling, ABodyThatFallsOutOfTheWorldIsRemoved) {
   SmallWorld small;
   small.description.instances.clear();
   small.description.models.clear();

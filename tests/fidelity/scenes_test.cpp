@@ -99,7 +99,7 @@ TEST(Scenes, ARobotDrivesUpASlopeAndStandsOnIt) {
   const Vector3d settled = small.position(robot);
   small.run(5.0);
   EXPECT_LT((small.position(robot) - settled).norm(), 0.4e-3) << "creep in 5 s";
-  // Standing still takes the drives the weight along the slope, shared by both sides.
+  // To stand still, the drives hold the weight along the slope, shared by both sides.
   const double holding = small.world().device_state(robot, DeviceId{0}, 0).effort;
   EXPECT_NEAR(2.0 * holding, robot_mass * g * std::sin(slope), 0.01);
   small.drive(robot, 0.05, 0.05);
@@ -107,7 +107,7 @@ TEST(Scenes, ARobotDrivesUpASlopeAndStandsOnIt) {
   EXPECT_NEAR((small.position(robot) - settled).dot(along), 0.2, 0.01);
 }
 
-// A board on the floor, as thick as the tracks can climb.
+// Returns a board on the floor, as thick as the tracks can climb.
 description::Model board(description::Surface surface) {
   const Vector3d size(0.5, 0.4, 0.01);
   return loose("board", Box{size}, solid_box(0.5, size), surface);
@@ -127,7 +127,7 @@ TEST(Scenes, ARobotDrivesOverALooseBoard) {
   EXPECT_NEAR(small.position(plank).z(), 0.005, 1e-3);
 }
 
-TEST(Scenes, ARobotThatSetsOffOnALooseBoardPushesItBack) {
+TEST(Scenes, ARobotThatAcceleratesOnALooseBoardPushesItBack) {
   SmallWorld small(world_with_floor(0.0));
   const auto plank = small.add(board({0.0, 0.0}), at(0, 0, 0.005));
   small.description.models.edit(small.description.models.size() - 1).links[0].collisions[0].surface.friction =
@@ -155,7 +155,7 @@ TEST(Scenes, ARobotPushesALooseBoxAsFarAsItDrives) {
   EXPECT_NEAR(small.position(box).z(), 0.05, 1e-3);
 }
 
-TEST(Scenes, SmallThingsLieOnAVeryLargeOneThatMoves) {
+TEST(Scenes, SmallBodiesRestOnAVeryLargeMovingBody) {
   SmallWorld small;
   const Vector3d raft_size(6.0, 6.0, 0.5);
   const auto raft = small.add(loose("raft", Box{raft_size}, solid_box(400.0, raft_size), {0.0, 0.0}), at(0, 0, 0.25));

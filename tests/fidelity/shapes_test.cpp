@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 struct GroundKind {
   const char* name;
   description::Shape shape;
-  double z;  // of its origin
+  double z;  // height of its origin
 };
 
 std::vector<GroundKind> grounds() {
@@ -81,13 +81,13 @@ TEST(Shapes, ABallRollsDownAHillOfAHeightMap) {
   SmallWorld small(std::move(world));
   const auto ball = small.add(loose("ball", description::Sphere{0.1}, solid_sphere(1.0, 0.1)), at(0.2, 0, 0.085));
   small.run(2.0);
-  // a = 5/7 g sin of the angle, along the slope. The edges between the triangles brake it by a tenth.
+  // a = 5/7 g sin(angle) along the slope. The edges between the triangles slow it down by a tenth.
   const double expected = 2.0 * 5.0 / 7.0 * g * std::sin(std::atan(slope));
   EXPECT_LT(small.velocity(ball).norm(), expected + 0.01);
   EXPECT_GT(small.velocity(ball).norm(), 0.85 * expected);
 }
 
-TEST(Shapes, RollingBodiesOfEveryRoundShapeRollAsTheirInertiaSays) {
+TEST(Shapes, RoundShapesRollWithTheirInertia) {
   struct Case {
     description::Shape shape;
     double k;  // I / m r^2

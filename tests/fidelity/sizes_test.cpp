@@ -1,4 +1,4 @@
-// A step takes as long for what is tiny as for what is a metre wide.
+// The time of a step does not depend on the size of bodies, from tiny to a metre.
 
 #include <gtest/gtest.h>
 #include <time.h>
@@ -54,7 +54,7 @@ std::vector<description::Shape> grounds(description::Fidelity fidelity) {
 
 description::Inertial heavy_enough(double size) { return solid_sphere(0.1, std::max(size, 0.01)); }
 
-// What five steps take.
+// Returns the CPU time of five steps.
 double seconds_of_ticks(SmallWorld& small) {
   const double before = cpu_seconds();
   for (int tick = 0; tick < 5; ++tick) small.world().step();
@@ -69,17 +69,17 @@ class Sizes : public EveryPhysics {
     world.instances.clear();
     return world;
   }
-  // A planar body looks for its ground no further than 10 m below its middle.
+  // A planar body searches for ground at most 10 m below its middle.
   static double widest() { return GetParam().fidelity == description::Fidelity::planar ? 5.0 : 1000.0; }
 };
 INSTANTIATE_TEST_SUITE_P(Every, Sizes, ::testing::Values(articulated, treel, by_bullet(treel), hybrid, planar),
                          name_of);
 
-// Generous, for other work takes its share of the CPU's caches.
+// Generous, because other processes use the CPU's caches too.
 constexpr double much_longer = 30.0;
 constexpr double too_short_to_compare = 0.002;  // [s]
 
-TEST_P(Sizes, OfOneMetreOrOfATinyPartOfOneTakeAsLong) {
+TEST_P(Sizes, DoNotAffectTheTimeOfAStep) {
   for (const Kind& kind : kinds)
     for (const description::Shape& ground : grounds(GetParam().fidelity)) {
       const auto time_of = [&](double size) {
@@ -100,8 +100,8 @@ TEST_P(Sizes, OfOneMetreOrOfATinyPartOfOneTakeAsLong) {
     }
 }
 
-// As a box that rests on points, which others model as tiny spheres.
-TEST_P(Sizes, OfOneBodyMayBeOfAnyKind) {
+// Like a box that rests on points, modelled as tiny spheres.
+TEST_P(Sizes, MayDifferWithinABody) {
   const auto time_of = [&](double size) {
     SmallWorld small(empty_world());
     small.add(static_shape("ground", description::Plane{}), at(0, 0, 0));
@@ -119,14 +119,14 @@ TEST_P(Sizes, OfOneBodyMayBeOfAnyKind) {
   for (int decade = -3; decade >= -9; --decade) ASSERT_LT(time_of(std::pow(10.0, decade)), allowed) << decade;
 }
 
-TEST_P(Sizes, OfATinyBodyBesideAHugeOneCostNothing) {
+TEST_P(Sizes, MayDifferBetweenBodies) {
   const auto time_of = [&](double tiny, double huge) {
     SmallWorld small(empty_world());
     small.add(static_shape("ground", description::Plane{}), at(0, 0, 0));
     small.add(loose("huge", Sphere{huge}, heavy_enough(huge)), at(1.5 * huge, 0, huge));
     for (int i = 0; i < 3; ++i) small.add(loose("tiny", Sphere{tiny}, heavy_enough(tiny)), at(-0.1 * i, 0, tiny));
     const double seconds = seconds_of_ticks(small);
-    // A ray across all of it as well.
+    // A ray across the whole world must be fast too.
     const double before = cpu_seconds();
     for (int i = 0; i < 100; ++i)
       small.world().scene().cast_ray({-1e3, 0.01 * i, 0.5}, Vector3d::UnitX(), std::numeric_limits<double>::infinity());

@@ -1,4 +1,4 @@
-// Bodies that have come to rest: they cost nothing, and wake as if they had never slept.
+// Sleeping bodies cost nothing, and wake as if they had never slept.
 
 #include <gtest/gtest.h>
 
@@ -10,14 +10,14 @@
 namespace cohort::test {
 namespace {
 
-constexpr double edge = 0.1;  // of the boxes [m]
+constexpr double edge = 0.1;  // edge of the boxes [m]
 
 description::Model small_box(double mass = 1.0) {
   const Eigen::Vector3d size = Eigen::Vector3d::Constant(edge);
   return loose("box", description::Box{size}, solid_box(mass, size));
 }
 
-// Boxes on each other at x, from the bottom up.
+// Adds a stack of boxes at x; returns them from the bottom up.
 std::vector<BodyId> add_stack(SmallWorld& small, double x, int boxes, double mass = 1.0) {
   std::vector<BodyId> stack;
   stack.reserve(static_cast<std::size_t>(boxes));
@@ -42,7 +42,7 @@ class Sleeping : public EveryPhysics {
 };
 INSTANTIATE_TEST_SUITE_P(Every, Sleeping, ::testing::Values(treel, by_bullet(treel)), name_of);
 
-TEST_P(Sleeping, WhatHasBeenStillForHalfASecondSleepsWithAllThatItTouches) {
+TEST_P(Sleeping, AnIslandThatIsStillForHalfASecondSleeps) {
   SmallWorld small = floor();
   const auto stack = add_stack(small, 0.0, 5);
   const BodyId robot = small.add(GetParam().robot(), at(1, 0, 0));
@@ -56,7 +56,7 @@ TEST_P(Sleeping, WhatHasBeenStillForHalfASecondSleepsWithAllThatItTouches) {
   EXPECT_GT(small.world().contacts().size(), 5u * 4u) << "what presses on what is still told";
 }
 
-TEST_P(Sleeping, AHashTellsWhoSleepsAndASnapshotKeepsIt) {
+TEST_P(Sleeping, IsPartOfTheHashAndOfSnapshots) {
   SmallWorld small = floor();
   const auto stack = add_stack(small, 0.0, 3);
   small.run(3.0);
@@ -79,7 +79,7 @@ TEST_P(Sleeping, AHashTellsWhoSleepsAndASnapshotKeepsIt) {
 }
 
 // A ball rolls into one of two stacks.
-TEST_P(Sleeping, ABlowWakesWhatItHitsAsIfThatHadBeenAwakeAndNothingElse) {
+TEST_P(Sleeping, AnImpactWakesOnlyItsIslandWithTheSameBits) {
   const auto end_of = [&](bool sleeping, bool other_stack, unsigned threads) {
     description::World world = GetParam().world();
     world.physics.sleeping = sleeping;
@@ -106,7 +106,7 @@ TEST_P(Sleeping, ABlowWakesWhatItHitsAsIfThatHadBeenAwakeAndNothingElse) {
   EXPECT_EQ(end_of(true, true, 4).second, hash) << "with any number of threads";
 }
 
-TEST_P(Sleeping, EveryChangeFromOutsideWakes) {
+TEST_P(Sleeping, EveryExternalChangeWakes) {
   const auto wakes = [&](const std::function<void(SmallWorld&)>& change) {
     SmallWorld small = floor();
     small.add(small_box(), at(0, 0, 0.05));      // 1
@@ -146,7 +146,7 @@ TEST_P(Sleeping, EveryChangeFromOutsideWakes) {
   EXPECT_EQ(wakes([](SmallWorld& small) { small.world().add_body(1, at(2, 0, 0.15)); }), "4") << "it comes to lie on 4";
 }
 
-TEST_P(Sleeping, WhatLiesOnSomethingFallsWhenThatGoes) {
+TEST_P(Sleeping, ABodyFallsWhenItsSupportIsRemoved) {
   SmallWorld small = floor();
   const BodyId table = small.add(static_shape("table", description::Box{{1, 1, 0.1}}), at(0, 0, 0.95));
   const BodyId box = small.add(small_box(), at(0, 0, 1.05));
@@ -158,7 +158,7 @@ TEST_P(Sleeping, WhatLiesOnSomethingFallsWhenThatGoes) {
   EXPECT_TRUE(small.world().is_asleep(box));
 }
 
-TEST_P(Sleeping, AConnectionHoldsWhatSleepsAndLetsItGo) {
+TEST_P(Sleeping, ASleepingBodyFallsWhenItsConnectionIsReleased) {
   SmallWorld small = floor();
   const BodyId post = small.add(static_shape("post", description::Box{{0.1, 0.1, 2}}), at(0, 0, 1));
   const BodyId hanging = small.add(small_box(), at(0.12, 0, 1));
@@ -192,7 +192,7 @@ TEST_P(Sleeping, ARobotOnABoardSleepsAndDrivesOffWithIt) {
   EXPECT_EQ(hash_of(*restored), hash_of(small.world())) << "what it stands on is known after restoring too";
 }
 
-TEST_P(Sleeping, SlowIsNotStill) {
+TEST_P(Sleeping, SlowBodiesStayAwake) {
   SmallWorld small = floor();
   const BodyId slow = small.add(GetParam().robot(), at(0, 0, 0));
   small.drive(slow, 1e-4, 1e-4);
@@ -201,7 +201,7 @@ TEST_P(Sleeping, SlowIsNotStill) {
   EXPECT_FALSE(small.world().is_asleep(slow));
 }
 
-TEST_P(Sleeping, AModelMayAskToStayAwakeAndAWorldToo) {
+TEST_P(Sleeping, ModelsAndWorldsMayDisableSleep) {
   SmallWorld small = floor();
   description::Model insomniac = small_box();
   insomniac.name = "insomniac";
@@ -218,7 +218,7 @@ TEST_P(Sleeping, AModelMayAskToStayAwakeAndAWorldToo) {
   EXPECT_FALSE(awake.world().is_asleep(box));
 }
 
-// The median of steps, of this thread.
+// Returns the median CPU time of a step, in this thread.
 double cost_of_step(SmallWorld& small) {
   const auto now = [] {
     timespec time{};
@@ -235,7 +235,7 @@ double cost_of_step(SmallWorld& small) {
   return costs[5];
 }
 
-TEST_P(Sleeping, TenThousandBoxesAtRestCostATwentiethOfWhatTheyDoAwake) {
+TEST_P(Sleeping, TenThousandSleepingBoxesCostATwentieth) {
   const auto cost = [&](bool sleeping, bool one_is_awake) {
     SmallWorld small = floor(sleeping);
     const description::Model box = small_box();

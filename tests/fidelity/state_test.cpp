@@ -1,4 +1,4 @@
-// The state of a world, whatever its physics: the same bits for any number of threads, and from a snapshot on.
+// The state of a world with any physics has the same bits for any number of threads, and after a snapshot is restored.
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,9 @@
 namespace cohort::test {
 namespace {
 
-// All that has a state: robots that push each other, loose things of shapes with and without a closed form of contact,
-// a wall, joints with limits and friction, and robots that hold each other, leave and come.
+// A world with every kind of state. It has robots that push each other, loose bodies with and without closed forms of
+// contact, and a wall. It also has joints with limits and friction, and robots that are connected, removed and put
+// back.
 struct BusyWorld {
   SmallWorld small;
   std::uint32_t robots;
@@ -65,7 +66,7 @@ TEST_P(State, HasTheSameBitsForAnyNumberOfThreads) {
   for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(hash_with(threads), expected) << threads;
 }
 
-TEST_P(State, RestoredFromASnapshotGoesOnWithTheSameBits) {
+TEST_P(State, ContinuesFromASnapshotWithTheSameBits) {
   BusyWorld busy(GetParam(), 1);
   for (int tick = 0; tick < 150; ++tick) busy.step(tick);
   BusyWorld restored(GetParam(), 2);
@@ -82,7 +83,7 @@ TEST_P(State, RestoredFromASnapshotGoesOnWithTheSameBits) {
   }
 }
 
-TEST_P(State, OfAnotherWorldOrCutOffIsRefused) {
+TEST_P(State, OfAnotherWorldOrTruncatedIsRejected) {
   BusyWorld busy(GetParam(), 1);
   busy.step(0);
   SnapshotWriter writer;

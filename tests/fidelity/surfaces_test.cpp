@@ -1,4 +1,4 @@
-// What models of the field say of their surfaces and links.
+// Properties of surfaces and links that third-party models use.
 
 #include "tests/support/physics.hpp"
 
@@ -21,7 +21,7 @@ Surface with_bitmask(std::uint16_t bits) {
   return surface;
 }
 
-TEST_P(Surfaces, CollideOnlyWithThoseOfTheirBitmask) {
+TEST_P(Surfaces, CollideOnlyWithMatchingBitmasks) {
   SmallWorld small(GetParam().world());
   const auto ball = [&](double x, double z, const Surface& surface) {
     return small.add(loose("ball", Sphere{0.05}, solid_sphere(1.0, 0.05), surface), at(x, 0, z));
@@ -41,8 +41,8 @@ TEST_P(Surfaces, CollideOnlyWithThoseOfTheirBitmask) {
   EXPECT_LT(small.position(by_nothing).z(), -1.0);
 }
 
-// A body without any freedom: the world holds its only link.
-TEST_P(Surfaces, WhatTheWorldHoldsBearsWhatLiesOnItAndStandsInOthers) {
+// A body without any freedom: its only link is fixed to the world.
+TEST_P(Surfaces, AFixedBodyCarriesLoadsAndMayOverlapOthers) {
   SmallWorld small(GetParam().world());
   description::Model held = loose("held", Box{{1, 1, 1}}, solid_box(1.0, {1, 1, 1}));
   description::Joint joint;
@@ -59,8 +59,8 @@ TEST_P(Surfaces, WhatTheWorldHoldsBearsWhatLiesOnItAndStandsInOthers) {
   EXPECT_NEAR(small.position(load).z(), 1.6, 2e-3);
 }
 
-// 100 m/s: a ball that is followed on its way.
-TEST_P(Surfaces, WhatIsFastPassesThroughWhatItDoesNotCollideWith) {
+// At 100 m/s the ball is a fast body.
+TEST_P(Surfaces, FastBodiesPassThroughOtherBitmasks) {
   SmallWorld small(GetParam().world());
   small.add(static_shape("wall", Box{{0.02, 4, 4}}, with_bitmask(1)), at(1, 0, 1));
   const auto through = small.add(loose("ball", Sphere{0.02}, solid_sphere(1.0, 0.02), with_bitmask(2)), at(0, 0, 1));
@@ -72,7 +72,7 @@ TEST_P(Surfaces, WhatIsFastPassesThroughWhatItDoesNotCollideWith) {
   EXPECT_LT(small.position(stopped).x(), 1.0);
 }
 
-// A boom on a hinge about y, and a weight on a hinge at its end. Nothing touches anything.
+// Returns a boom on a hinge about y with a weight on a hinge at its end. Nothing collides.
 description::Model boom(bool feels_gravity) {
   description::Model model;
   model.name = "boom";
@@ -94,7 +94,7 @@ description::Model boom(bool feels_gravity) {
   return model;
 }
 
-TEST_P(Surfaces, ALinkWithoutGravityFloatsAndGoesStraightOn) {
+TEST_P(Surfaces, ALinkWithoutGravityFloatsAndMovesStraight) {
   SmallWorld small(GetParam().world());
   description::Model box = loose("box", Box{{0.1, 0.1, 0.1}}, solid_box(2.0, {0.1, 0.1, 0.1}));
   box.links[0].inertial.X_LI.position = {0.02, 0, 0};
@@ -107,12 +107,12 @@ TEST_P(Surfaces, ALinkWithoutGravityFloatsAndGoesStraightOn) {
   small.run(0.4);
   EXPECT_TRUE(small.position(floats).isApprox(Vector3d(0.04, 0, 1), 1e-12)) << small.position(floats).transpose();
   EXPECT_LT(small.position(falls).z(), 0.3);
-  // What an accelerometer adds to gravity's.
+  // The acceleration that an accelerometer adds to gravity.
   EXPECT_LT(small.world().link_acceleration(floats, LinkId{0}, Vector3d::Zero()).norm(), 1e-9);
   EXPECT_NEAR(small.world().link_acceleration(falls, LinkId{0}, Vector3d::Zero()).z(), -g, 1e-9);
 }
 
-TEST_P(Surfaces, APendulumWithoutGravityStandsAndGoesRound) {
+TEST_P(Surfaces, APendulumWithoutGravityStaysInPlace) {
   SmallWorld small(GetParam().world());
   const auto body = small.add(boom(false), at(0, 0, 2));
   small.world().record(body);
@@ -122,8 +122,8 @@ TEST_P(Surfaces, APendulumWithoutGravityStandsAndGoesRound) {
   EXPECT_LT(small.world().joint_wrench(body, JointId{0}).torque_W.norm(), 1e-9);
 }
 
-// A root that is free, whose momentum is kept: half of the weight is missing.
-TEST_P(Surfaces, WhatHasLinksWithAndWithoutGravityFallsByTheWeightThatIsThere) {
+// A free root, whose momentum is conserved: half of the weight is missing.
+TEST_P(Surfaces, ABodyFallsByTheWeightOfItsLinksWithGravity) {
   SmallWorld small(GetParam().world());
   description::Model model = boom(true);
   model.joints.erase(model.joints.begin());
@@ -135,7 +135,7 @@ TEST_P(Surfaces, WhatHasLinksWithAndWithoutGravityFallsByTheWeightThatIsThere) {
   EXPECT_NEAR(small.velocity(body, 1).z(), -0.5 * g * 0.5, 1e-6);
 }
 
-TEST_P(Surfaces, AJointBearsNothingOfALinkWithoutGravity) {
+TEST_P(Surfaces, AJointCarriesNoWeightOfALinkWithoutGravity) {
   SmallWorld small(GetParam().world());
   description::Model model = boom(true);
   for (description::Joint& joint : model.joints) joint.type = description::JointType::fixed;
@@ -148,7 +148,7 @@ TEST_P(Surfaces, AJointBearsNothingOfALinkWithoutGravity) {
   EXPECT_TRUE(small.world().joint_wrench(body, JointId{0}).torque_W.isApprox(Vector3d(0.01, -0.15, 0) * 0.2 * g, 1e-9));
 }
 
-// Whose x slides and whose y holds, at several headings, and of which one turns as it does so.
+// Boxes with low friction along x and high friction along y, at several headings; one rotates while it slides.
 TEST_P(Surfaces, FrictionHasItsCoefficientsAlongAndAcrossItsDirection) {
   constexpr double along = 0.1, across = 0.4, speed = 1.0;
   for (const double yaw : {0.0, 0.4, 1.3}) {
@@ -172,7 +172,7 @@ TEST_P(Surfaces, FrictionHasItsCoefficientsAlongAndAcrossItsDirection) {
   }
 }
 
-TEST_P(Surfaces, ABoxOnASlopeStaysOnlyAcrossTheDirectionOfLittleFriction) {
+TEST_P(Surfaces, ABoxOnASlopeStaysOnlyAcrossItsLowFrictionDirection) {
   constexpr double slope = 0.3;
   for (const bool is_across : {false, true}) {
     description::World world = GetParam().world();
@@ -197,8 +197,8 @@ TEST_P(Surfaces, ABoxOnASlopeStaysOnlyAcrossTheDirectionOfLittleFriction) {
   }
 }
 
-// Each of four points is a spring.
-TEST_P(Surfaces, ABoxOnSoftGroundSinksAsItsSpringsSay) {
+// Each of the four points is a spring.
+TEST_P(Surfaces, ABoxOnSoftGroundSinksByItsStiffness) {
   const Vector3d size(0.2, 0.2, 0.1);
   for (const double of_ground : {description::Surface{}.stiffness, 2e4}) {
     description::World world = GetParam().world();
@@ -215,8 +215,8 @@ TEST_P(Surfaces, ABoxOnSoftGroundSinksAsItsSpringsSay) {
   }
 }
 
-// Its swing on one spring without damping, by which a step takes a part.
-TEST_P(Surfaces, ABallOnASpringSwingsWithItsPeriod) {
+// A ball oscillates on one spring without damping; implicit integration removes a part of its energy in each step.
+TEST_P(Surfaces, ABallOnASpringOscillatesAtItsPeriod) {
   description::World world = GetParam().world();
   world.step = std::chrono::microseconds(100);
   world.models.edit(0).links[0].collisions[0].surface.damping = 0.0;
@@ -235,8 +235,9 @@ TEST_P(Surfaces, ABallOnASpringSwingsWithItsPeriod) {
   EXPECT_NEAR(small.position(ball).z(), rest + 0.005, 2e-4);
 }
 
-// What most models of Gazebo have: 1e6 N/m and little damping, ten to a step of 10 ms.
-TEST_P(Surfaces, BoxesWithTheSpringsOfGazebosModelsStandOnEachOther) {
+// Values of most Gazebo models: 1e6 N/m and little damping. On four contact points, a box would oscillate by 9 rad in a
+// step of 10 ms.
+TEST_P(Surfaces, BoxesWithTheStiffnessOfGazeboModelsStack) {
   SmallWorld small(GetParam().world());
   Surface surface;
   surface.stiffness = 1e6;
@@ -252,8 +253,8 @@ TEST_P(Surfaces, BoxesWithTheSpringsOfGazebosModelsStandOnEachOther) {
   }
 }
 
-// A ball that spins on the spot: the torque is c m g, and the ground's resistance is the smaller one.
-TEST_P(Surfaces, SpinningResistanceStopsABallThatTurnsOnTheSpot) {
+// A ball spins on the spot: the torque is c m g, with the smaller resistance, that of the ground.
+TEST_P(Surfaces, SpinningResistanceStopsASpinningBall) {
   SmallWorld small(GetParam().world());
   Surface surface;
   surface.spinning_resistance = 0.002;
@@ -296,8 +297,8 @@ TEST_P(Surfaces, BounceOnlyAboveTheLargerThreshold) {
   EXPECT_LT(highest[2], 0.1);  // it is pushed out of the ground that it fell into
 }
 
-// All of them at once, on a heap.
-TEST_P(Surfaces, GoOnFromASnapshotToTheSameBits) {
+// A heap with all of these properties.
+TEST_P(Surfaces, ContinueFromASnapshotWithTheSameBits) {
   const auto fill = [](SmallWorld& small) {
     Surface surface{0.5, 0.3};
     surface.rolling_resistance = 0.001;
@@ -328,7 +329,7 @@ TEST_P(Surfaces, GoOnFromASnapshotToTheSameBits) {
   EXPECT_EQ(hash_of(world.world()), hash_of(other.world()));
 }
 
-TEST(PlanarSurfaces, CollideOnlyWithThoseOfTheirBitmask) {
+TEST(PlanarSurfaces, CollideOnlyWithMatchingBitmasks) {
   SmallWorld small(planar.world());
   const Vector3d size(0.1, 0.1, 0.1);
   small.add(static_shape("wall", Box{{0.02, 4, 1}}, with_bitmask(1)), at(0.3, 0, 0.5));
@@ -340,7 +341,7 @@ TEST(PlanarSurfaces, CollideOnlyWithThoseOfTheirBitmask) {
   EXPECT_LT(small.position(stopped).x(), 0.3);
 }
 
-TEST(TreelSurfaces, BearTracksWhateverTheirBitmask) {
+TEST(TreelSurfaces, CarryTracksWithAnyBitmask) {
   description::World world = treel.world();
   world.models.edit(0).links[0].collisions[0].surface = with_bitmask(0);
   SmallWorld small(std::move(world));

@@ -1,4 +1,4 @@
-// Vehicles as they were made for Gazebo, with its plugins: they go where their kinematics says.
+// Vehicles made for Gazebo, with its plugins, follow their kinematics.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ std::string wheel(const std::string& name, double x, double y, double radius) {
          "<collision name='c'><geometry><cylinder><radius>" + std::to_string(radius) +
          "</radius><length>0.02</length></cylinder></geometry></collision></link>";
 }
-// Turned so that a positive velocity drives forward: the z axis of a wheel's link points to the left.
+// Rotated so that a positive velocity drives forwards: the z axis of a wheel's link points to the left.
 std::string axle(const std::string& name, const std::string& parent, const std::string& child) {
   return "<joint name='" + name + "' type='revolute'><parent>" + parent + "</parent><child>" + child +
          "</child><axis><xyz>0 0 1</xyz></axis></joint>";
@@ -77,7 +77,7 @@ const std::string car =
     "<wheel_radius>0.1</wheel_radius></plugin></model>";
 
 struct Motion {
-  double linear = 0.0;   // of the robot's origin, along its x axis [m/s]
+  double linear = 0.0;   // velocity of the robot's origin along its x axis [m/s]
   double angular = 0.0;  // [rad/s]
 };
 
@@ -91,7 +91,7 @@ class Vehicles : public ::testing::TestWithParam<std::pair<Fidelity, Dynamics>> 
     world_.world().physics.dynamics = GetParam().second;
     EXPECT_TRUE(world_.world().warnings.empty()) << world_.world().warnings.front().text();
   }
-  // After the commands have acted for `time` [s], over the second that follows.
+  // Returns the motion over one second, after the commands have acted for `time` [s].
   Motion drive(double linear, double angular, double time) {
     world_.command(0, "cmd_vel/0/linear", {linear});
     world_.command(0, "cmd_vel/0/angular", {angular});
@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Vehicles,
                                            std::pair(Fidelity::articulated, Dynamics::bullet),
                                            std::pair(Fidelity::treel, Dynamics::bullet)));
 
-TEST_P(Vehicles, OfGazeboWithDiffDriveReachTheTwistThatTheyAreTold) {
+TEST_P(Vehicles, WithDiffDriveReachTheCommandedTwist) {
   load(two_wheels(diff_drive));
   for (const auto& [linear, angular] : {std::pair(0.5, 0.5), std::pair(0.5, 0.0), std::pair(-0.5, -0.6)}) {
     const Motion motion = drive(linear, angular, 2.0);
@@ -137,7 +137,7 @@ TEST_P(Vehicles, OfGazeboWithDiffDriveReachTheTwistThatTheyAreTold) {
   EXPECT_NEAR(height(), 0.0, 0.01) << "it stays on its wheels";
 }
 
-TEST_P(Vehicles, OfGazeboWithAckermannSteeringTurnWithTheRadiusOfTheirKinematics) {
+TEST_P(Vehicles, WithAckermannSteeringTurnAtTheirKinematicRadius) {
   load(car);
   for (const double radius : {1.5, -2.5}) {
     const Motion motion = drive(0.5, 0.5 / radius, 2.0);
@@ -167,7 +167,7 @@ const std::string tracked =
     "</link></left_track><right_track><link>right</link></right_track><tracks_separation>0.4</tracks_separation>"
     "<tracks_height>0.1</tracks_height><steering_efficiency>0.38</steering_efficiency></plugin></model>";
 
-TEST_P(Vehicles, OfGazeboWithTracksDriveAndTurnAsTheyAreTold) {
+TEST_P(Vehicles, WithTracksDriveAndTurnAsCommanded) {
   load(tracked);
   for (const double linear : {0.5, -0.3}) {
     const Motion motion = drive(linear, 0.0, 1.0);
@@ -184,7 +184,7 @@ TEST_P(Vehicles, OfGazeboWithTracksDriveAndTurnAsTheyAreTold) {
   EXPECT_NEAR(height(), 0.0, 0.002);
 }
 
-TEST_P(Vehicles, OfGazeboWithATrackControllerCarryWhatLiesOnThem) {
+TEST_P(Vehicles, WithATrackControllerCarryTheirLoad) {
   load(
       "<model name='conveyor'><pose>0 0 0.5 0 0 0</pose><link name='base'>" + box_inertial(5.0, 0.5) +
       "<collision name='c'><geometry><box><size>5 0.4 0.1</size></box></geometry></collision></link><joint name='tie' "
@@ -198,7 +198,7 @@ TEST_P(Vehicles, OfGazeboWithATrackControllerCarryWhatLiesOnThem) {
   EXPECT_NEAR(world_.simulation().world().link_twist(BodyId{2}, LinkId{0}).linear_W.x(), 0.5, 1e-3);
 }
 
-TEST_P(Vehicles, OfGazeboWithControllersOfJointsMoveThemAsTheyAreTold) {
+TEST_P(Vehicles, WithJointControllersMoveJointsAsCommanded) {
   load("<model name='arm'><pose>0 0 1 0 0 0</pose><link name='base'>" + box_inertial(1.0, 0.1) +
        "</link><link name='a'>" + box_inertial(1.0, 0.1) + "</link><link name='b'>" + box_inertial(1.0, 0.1) +
        "</link><joint name='tie' type='fixed'><parent>world</parent><child>base</child></joint>" +
@@ -214,7 +214,7 @@ TEST_P(Vehicles, OfGazeboWithControllersOfJointsMoveThemAsTheyAreTold) {
 }
 
 // Four of RotorS's motors lift 1.5 kg.
-TEST_P(Vehicles, OfGazeboWithMotorsOfAMulticopterFly) {
+TEST_P(Vehicles, WithMulticopterMotorsFly) {
   std::string copter =
       "<model name='copter'><pose>0 0 1 0 0 0</pose><link name='base'>" + box_inertial(1.46, 0.02) + "</link>";
   for (int i = 0; i < 4; ++i) {
@@ -234,7 +234,7 @@ TEST_P(Vehicles, OfGazeboWithMotorsOfAMulticopterFly) {
   EXPECT_LT(height(), 2.1);
 }
 
-TEST_P(Vehicles, OfGazeboWithAThrusterSwim) {
+TEST_P(Vehicles, WithAThrusterSwim) {
   load(
       "<plugin filename='gz-sim-buoyancy-system' name='gz::sim::systems::Buoyancy'><uniform_fluid_density>1000"
       "</uniform_fluid_density></plugin><model name='boat'><pose>0 0 1 0 0 0</pose><link name='hull'>" +

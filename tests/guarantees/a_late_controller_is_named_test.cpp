@@ -11,7 +11,7 @@
 namespace cohort::test {
 namespace {
 
-// Watches a run as any observer does, so that a test can act in the midst of it.
+// An observer of a run, so that a test can act during it.
 class Observer {
  public:
   explicit Observer(std::uint32_t domain)
@@ -48,7 +48,7 @@ class DisturbedRun : public ::testing::Test {
   Observer observer{domain.number()};
 };
 
-TEST_F(DisturbedRun, AControllerKilledAndStartedAgainBringsTheRunToTheSameBits) {
+TEST_F(DisturbedRun, AKilledAndRestartedControllerKeepsTheBits) {
   const auto steady = start_controllers("0..7");
   const auto killed = start_controllers("8..15");
   control(domain, {"step", "200"});
@@ -63,7 +63,7 @@ TEST_F(DisturbedRun, AControllerKilledAndStartedAgainBringsTheRunToTheSameBits) 
   EXPECT_EQ(steady->wait_for_exit(), 0) << steady->output();
 }
 
-TEST_F(DisturbedRun, AControllerStoppedForThreeSecondsBringsTheRunToTheSameBits) {
+TEST_F(DisturbedRun, AControllerStoppedForThreeSecondsKeepsTheBits) {
   const auto steady = start_controllers("0..7");
   const auto stopped = start_controllers("8..15");
   control(domain, {"step", "200"});
@@ -77,7 +77,7 @@ TEST_F(DisturbedRun, AControllerStoppedForThreeSecondsBringsTheRunToTheSameBits)
   EXPECT_EQ(stopped->wait_for_exit(), 0) << stopped->output();
 }
 
-TEST(ALateControllerIsNamed, CohortRunStartsItsControllerAgainWhenItIsKilled) {
+TEST(ALateControllerIsNamed, CohortRunRestartsAKilledController) {
   const std::string expected = reference_hash(10);
   const ReservedDomain domain;
   Process run({cohort_program(), "run", demo_experiment(), "--duration", "10", "--paused", "--domain", domain.text()});
@@ -87,7 +87,7 @@ TEST(ALateControllerIsNamed, CohortRunStartsItsControllerAgainWhenItIsKilled) {
   control(domain, {"step", "200"});
   kill(children[0], SIGKILL);
   control(domain, {"resume"});
-  EXPECT_TRUE(run.wait_for_output("starting it again")) << run.output();
+  EXPECT_TRUE(run.wait_for_output("restarting it")) << run.output();
   EXPECT_EQ(run.wait_for_exit(), 0) << run.output();
   EXPECT_NE(run.output().find(expected), std::string::npos) << run.output();
 }

@@ -7,13 +7,13 @@
 
 #include "tests/support/controlled_run.hpp"
 
-// Whoever controls a run does it between ticks, and the ticks keep their bits.
+// Clients control a run between ticks, and the ticks keep their bits.
 namespace cohort::test {
 namespace {
 
 using wire::ResultCode;
 
-TEST(ControlAtTickBoundariesOnly, PausesAndChangesOfSpeedLeaveTheRunItsBits) {
+TEST(ControlAtTickBoundariesOnly, PausesAndChangesOfSpeedKeepTheBits) {
   const FieldOfRobots field(4, 20.0);
   const std::string expected = reference(field);
   ControlledRun run(field, {"--paused", "--speed", "20"});
@@ -48,7 +48,7 @@ TEST(ControlAtTickBoundariesOnly, StepsAreCountedExactly) {
   run.finish();
 }
 
-TEST(ControlAtTickBoundariesOnly, TwoWhoStepAtOnceGetTheStepsOfBoth) {
+TEST(ControlAtTickBoundariesOnly, StepsOfTwoClientsAddUp) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   std::atomic<int> failures = 0;
@@ -68,7 +68,7 @@ TEST(ControlAtTickBoundariesOnly, TwoWhoStepAtOnceGetTheStepsOfBoth) {
   run.finish();
 }
 
-TEST(ControlAtTickBoundariesOnly, StatusNamesTheControllerThatTheRunWaitsForAndAPauseWaitsToo) {
+TEST(ControlAtTickBoundariesOnly, StatusNamesTheAwaitedControllerAlsoDuringAPause) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field);
   EXPECT_TRUE(run.comes_to([](const auto& now) { return now["tick"] > 10; }));
@@ -101,7 +101,7 @@ TEST(ControlAtTickBoundariesOnly, StatusNamesTheControllerThatTheRunWaitsForAndA
   run.host().signal(SIGCONT);
 }
 
-TEST(ControlAtTickBoundariesOnly, StatusIsWatchedUntilTheServerGoes) {
+TEST(ControlAtTickBoundariesOnly, StatusIsWatchedUntilTheServerEnds) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   Process watching(run.ctl({"status", "--watch", "--json"}));
@@ -117,7 +117,7 @@ TEST(ControlAtTickBoundariesOnly, StatusIsWatchedUntilTheServerGoes) {
   EXPECT_EQ(watching.wait_for_exit(), 0) << watching.output();
 }
 
-TEST(ControlAtTickBoundariesOnly, AnswersBeforeAnyControllerIsThere) {
+TEST(ControlAtTickBoundariesOnly, AnswersBeforeAnyControllerJoins) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {}, false);
   const auto status = run.status();
@@ -129,7 +129,7 @@ TEST(ControlAtTickBoundariesOnly, AnswersBeforeAnyControllerIsThere) {
   EXPECT_EQ(run.finish()["ticks"], 0);
 }
 
-TEST(ControlAtTickBoundariesOnly, ControllersComeAndGoWhileItIsPaused) {
+TEST(ControlAtTickBoundariesOnly, ControllersJoinAndLeaveDuringAPause) {
   const FieldOfRobots field(2, 5.0);
   const std::string expected = reference(field);
   ControlledRun run(field, {"--paused"});
@@ -146,7 +146,7 @@ TEST(ControlAtTickBoundariesOnly, ControllersComeAndGoWhileItIsPaused) {
   EXPECT_EQ(run.finish()["state_hash"], expected);
 }
 
-TEST(ControlAtTickBoundariesOnly, AClientThatDiesLeavesWhatItAskedFor) {
+TEST(ControlAtTickBoundariesOnly, RequestsOfADeadClientStayInEffect) {
   const FieldOfRobots field(2, 1e5);
   ControlledRun run(field, {"--paused"});
   Process stepping(run.ctl({"step", "100000000"}));
@@ -161,7 +161,7 @@ TEST(ControlAtTickBoundariesOnly, AClientThatDiesLeavesWhatItAskedFor) {
   run.finish();
 }
 
-// What the C++ client never does: it speaks the protocol by itself.
+// A client that speaks the protocol itself, to do what the C++ client never does.
 class Stranger {
  public:
   explicit Stranger(const ReservedDomain& domain, std::uint64_t id)
@@ -198,11 +198,11 @@ class Stranger {
   wire::Writer<wire::Request> requests_;
 };
 
-TEST(ControlAtTickBoundariesOnly, ARequestThatComesAgainIsAnsweredAgainAndDoneOnce) {
+TEST(ControlAtTickBoundariesOnly, ARepeatedRequestIsAnsweredAgainButCarriedOutOnce) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   Stranger stranger(run.domain(), 0x77);
-  // The first may be lost, as between any two who have just met.
+  // The first may be lost, as between any two participants that have just discovered each other.
   std::size_t received = 0;
   for (int i = 0; i < 5; ++i) {
     stranger.send(wire::StepSimulation{4}, 1);
@@ -219,7 +219,7 @@ TEST(ControlAtTickBoundariesOnly, ARequestThatComesAgainIsAnsweredAgainAndDoneOn
   run.finish();
 }
 
-TEST(ControlAtTickBoundariesOnly, WhatCannotBeIsRefusedWithASentence) {
+TEST(ControlAtTickBoundariesOnly, InvalidRequestsAreRejectedWithASentence) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   ControlClient client = client_of(run);
@@ -238,6 +238,7 @@ TEST(ControlAtTickBoundariesOnly, WhatCannotBeIsRefusedWithASentence) {
       {wire::GetEntities{"((a*)*"}, ResultCode::malformed},
       {wire::GetEntities{"a{1,30000}"}, ResultCode::malformed},
       {wire::GetData{}, ResultCode::not_found},
+      {wire::GetExperiment{~std::uint64_t{0}}, ResultCode::malformed},
       {wire::LoadSnapshot{}, ResultCode::incorrect_state},
       {wire::PutData{.size = ~std::uint64_t{0}}, ResultCode::malformed},
       {wire::SetEntityState{.entity = "swarm/sbot_1"}, ResultCode::malformed},
@@ -265,7 +266,7 @@ TEST(ControlAtTickBoundariesOnly, WhatCannotBeIsRefusedWithASentence) {
   run.finish();
 }
 
-// As fast as it can, from two processes' worth of participants: what makes sense, what does not, and another's name.
+// Requests at full speed, from two processes with many participants: valid, invalid, and with another client's id.
 TEST(ControlAtTickBoundariesOnly, FloodsOfRequestsNeverStopARun) {
   const FieldOfRobots field(4, 2.0);
   const std::string expected = reference(field);
@@ -295,7 +296,7 @@ TEST(ControlAtTickBoundariesOnly, FloodsOfRequestsNeverStopARun) {
   EXPECT_TRUE(is_named) << summary["events"].dump(1);
 }
 
-TEST(ControlAtTickBoundariesOnly, AFloodOfResetsLeavesTheSameRun) {
+TEST(ControlAtTickBoundariesOnly, AFloodOfResetsKeepsTheBits) {
   const FieldOfRobots field(4, 2.0);
   const std::string expected = reference(field);
   ControlledRun run(field, {"--paused"});
@@ -310,7 +311,7 @@ TEST(ControlAtTickBoundariesOnly, AFloodOfResetsLeavesTheSameRun) {
   EXPECT_EQ(run.finish()["state_hash"], expected);
 }
 
-TEST(ControlAtTickBoundariesOnly, WithoutAServerItSaysWhatToLookFor) {
+TEST(ControlAtTickBoundariesOnly, WithoutAServerTheErrorSaysWhatToCheck) {
   const ReservedDomain domain;
   const Ended ended = run_to_end({cohort_program(), "ctl", "--domain", domain.text(), "--timeout", "0.3", "status"});
   EXPECT_EQ(ended.exit_code, 1);

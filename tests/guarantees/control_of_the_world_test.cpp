@@ -4,7 +4,7 @@
 
 #include "tests/support/controlled_run.hpp"
 
-// What is added, removed, moved and pushed.
+// Objects are added, removed, moved and pushed.
 namespace cohort::test {
 namespace {
 
@@ -22,7 +22,7 @@ constexpr const char* box = R"(<sdf version="1.9"><model name="box"><link name="
   <collision name="hull"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>
 </link></model></sdf>)";
 
-TEST(ControlAtTickBoundariesOnly, ActionsChangeTheWorldAndAreTheSameTwice) {
+TEST(ControlAtTickBoundariesOnly, ActionsChangeTheWorldAndAreReproducible) {
   const FieldOfRobots field(2, 1e4);
   const std::string model = (field / "box.sdf").string();
   const std::string file = (field / "snapshot").string();
@@ -64,8 +64,8 @@ TEST(ControlAtTickBoundariesOnly, ActionsChangeTheWorldAndAreTheSameTwice) {
   EXPECT_GE(events_of(first, "control").size(), 4u) << first["events"].dump(1);
 }
 
-// However many threads step the world, and whether the controller is there before its robot is asked or long after.
-TEST(ControlAtTickBoundariesOnly, ARobotThatComesIsWaitedForUntilItHasAController) {
+// For any number of threads, and for a controller that joins before its robot is due or long after.
+TEST(ControlAtTickBoundariesOnly, TheRunWaitsForTheControllerOfANewRobot) {
   const FieldOfRobots field(2, 1e4);
   const auto act = [&](const std::string& threads, bool comes_late) {
     const std::string recording = field / (threads + ".mcap");
@@ -97,7 +97,7 @@ TEST(ControlAtTickBoundariesOnly, ARobotThatComesIsWaitedForUntilItHasAControlle
     EXPECT_EQ(run.status()["state_hash"], after["state_hash"]) << "a snapshot brings the robot along";
     run.done({"load", without});
     run.done({"step", "5"});
-    EXPECT_EQ(run.status()["state_hash"], hash) << "nobody waits for a robot that is gone";
+    EXPECT_EQ(run.status()["state_hash"], hash) << "the run does not wait for a removed robot";
     run.done({"shutdown"});
     run.finish();
     const Ended replayed = run_to_end({cohort_program(), "replay", "--verify", recording});
@@ -113,7 +113,7 @@ constexpr const char* lamp = R"(<sdf version="1.9"><model name="lamp"><static>tr
   <light name="bulb" type="point"><pose>0 0 0.6 0 0 0</pose><diffuse>1 1 1 1</diffuse><attenuation><range>5</range></attenuation></light>
 </link></model></sdf>)";
 
-TEST(ControlAtTickBoundariesOnly, LightsAreSwitchedByTheirObjectOrByName) {
+TEST(ControlAtTickBoundariesOnly, LightsAreSetByObjectOrByName) {
   const FieldOfRobots field(2, 1e4);
   const std::string model = (field / "lamp.sdf").string();
   write_file(model, lamp);
@@ -136,7 +136,7 @@ TEST(ControlAtTickBoundariesOnly, LightsAreSwitchedByTheirObjectOrByName) {
   run.finish();
 }
 
-TEST(ControlAtTickBoundariesOnly, ActionsThatCannotBeAreRefusedWithTheReasonAndChangeNothing) {
+TEST(ControlAtTickBoundariesOnly, InvalidActionsAreRejectedWithTheReasonAndChangeNothing) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   ControlClient client = client_of(run);
@@ -171,7 +171,7 @@ TEST(ControlAtTickBoundariesOnly, ActionsThatCannotBeAreRefusedWithTheReasonAndC
   EXPECT_EQ(result_of(wire::SetLight{.entity = "ground"}), ResultCode::operation_failed);
   EXPECT_EQ(run.status()["state_hash"], hash);
 
-  // Another name where that is allowed, and the reply says which.
+  // Gives it another name if that is allowed, and the reply contains it.
   spawn.allow_renaming = true;
   spawn.pose.position = {2, 2, 1};
   const auto renamed = client.ask(spawn, patience, never);

@@ -5,16 +5,16 @@
 
 #include "tests/support/controlled_run.hpp"
 
-// Back to the beginning, to a snapshot, and to what is kept.
+// Returning to the beginning, to a snapshot, and to kept snapshots.
 namespace cohort::test {
 namespace {
 
-TEST(ControlAtTickBoundariesOnly, AResetGivesTheBitsOfTheFirstRunAndAnotherSeedThoseOfAnother) {
+TEST(ControlAtTickBoundariesOnly, AResetGivesTheSameBitsAndAnotherSeedOtherBits) {
   const FieldOfRobots field(4, 5.0);
   const std::string expected = reference(field);
   ControlledRun run(field, {"--speed", "1"});
   EXPECT_TRUE(run.comes_to([](const auto& now) { return now["tick"] > 30; }));
-  EXPECT_NE(run.done({"reset", "--seed", "77"}).find("run 2 stands at tick 0, with seed 77"), std::string::npos);
+  EXPECT_NE(run.done({"reset", "--seed", "77"}).find("run 2 is at tick 0, seed 77"), std::string::npos);
   EXPECT_TRUE(run.comes_to([](const auto& now) { return now["tick"] > 10; }));
   EXPECT_EQ(run.status()["seed"], 77);
   run.done({"reset", "--seed", "1"});
@@ -25,7 +25,7 @@ TEST(ControlAtTickBoundariesOnly, AResetGivesTheBitsOfTheFirstRunAndAnotherSeedT
   EXPECT_EQ(run.host().wait_for_exit(), 0) << "one process for all: " << run.host().output();
 }
 
-TEST(ControlAtTickBoundariesOnly, ASnapshotGoesOnWithTheSameBitsHereAndElsewhere) {
+TEST(ControlAtTickBoundariesOnly, ASnapshotGivesTheSameBitsInAnyProcess) {
   for (const char* team : {"", ", delay: 2"}) {
     const FieldOfRobots field(4, 5.0, team);
     const std::string expected = reference(field);
@@ -35,7 +35,7 @@ TEST(ControlAtTickBoundariesOnly, ASnapshotGoesOnWithTheSameBitsHereAndElsewhere
     run.done({"save", file});
     const std::string hash = run.status()["state_hash"];
     run.done({"step", "150"});
-    EXPECT_NE(run.done({"load", file}).find("run 2 stands at tick 200"), std::string::npos);
+    EXPECT_NE(run.done({"load", file}).find("run 2 is at tick 200"), std::string::npos);
     EXPECT_EQ(run.status()["state_hash"], hash);
     EXPECT_EQ(run.status()["state"], "paused") << "as before";
     run.done({"resume"});
@@ -47,7 +47,7 @@ TEST(ControlAtTickBoundariesOnly, ASnapshotGoesOnWithTheSameBitsHereAndElsewhere
   }
 }
 
-TEST(ControlAtTickBoundariesOnly, ASnapshotOfSomethingElseIsRefusedAndTheRunGoesOn) {
+TEST(ControlAtTickBoundariesOnly, AForeignSnapshotIsRejectedAndTheRunContinues) {
   const FieldOfRobots field(2, 1e4), other(3, 1e4);
   const std::string file = (field / "snapshot").string();
   {
@@ -79,27 +79,45 @@ TEST(ControlAtTickBoundariesOnly, ASnapshotOfSomethingElseIsRefusedAndTheRunGoes
   run.finish();
 }
 
-TEST(ControlAtTickBoundariesOnly, GoesBackToWhatIsKept) {
+TEST(ControlAtTickBoundariesOnly, GoesBackToKeptSnapshots) {
   const FieldOfRobots field(4, 5.0);
   ControlledRun run(field, {"--paused", "--keep-snapshots", "0.5"});
   run.done({"step", "200"});
   const std::string hash = run.status()["state_hash"];
   run.done({"step", "140"});
-  EXPECT_EQ(run.done({"back", "2.3"}), "run 2 stands at tick 200, with seed 1\n");
+  EXPECT_EQ(run.done({"back", "2.3"}), "run 2 is at tick 200, seed 1\n");
   EXPECT_EQ(run.status()["state_hash"], hash);
   EXPECT_EQ(run.status()["state"], "paused") << "as before";
-  EXPECT_EQ(run.done({"back", "0.99"}), "run 3 stands at tick 50, with seed 1\n");
-  EXPECT_EQ(run.done({"back", "4"}), "run 4 stands at tick 50, with seed 1\n") << "what came later has not been yet";
+  EXPECT_EQ(run.done({"back", "0.99"}), "run 3 is at tick 50, seed 1\n");
+  EXPECT_EQ(run.done({"back", "4"}), "run 4 is at tick 50, seed 1\n") << "what came later has not been yet";
   run.done({"step", "150"});
   EXPECT_EQ(run.status()["state_hash"], hash);
-  EXPECT_EQ(run.done({"back", "1"}), "run 5 stands at tick 100, with seed 1\n") << "kept anew";
+  EXPECT_EQ(run.done({"back", "1"}), "run 5 is at tick 100, seed 1\n") << "kept anew";
   run.done({"reset"});
-  EXPECT_EQ(run.done({"back", "1"}), "run 7 stands at tick 0, with seed 1\n") << "another run, with a past of its own";
+  EXPECT_EQ(run.done({"back", "1"}), "run 7 is at tick 0, seed 1\n") << "another run, with a past of its own";
   run.done({"resume"});
   EXPECT_EQ(run.finish()["state_hash"], reference(field));
 }
 
-TEST(ControlAtTickBoundariesOnly, TellsWhatHasHappenedAndHowFarBackItCanGo) {
+TEST(ControlAtTickBoundariesOnly, GoesBackAfterALoad) {
+  const FieldOfRobots field(4, 5.0);
+  const ScratchFolder folder;
+  const std::string file = folder / "run.snap";
+  ControlledRun run(field, {"--paused", "--keep-snapshots", "0.5"});
+  run.done({"step", "120"});
+  run.done({"save", file});
+  const std::string hash = run.status()["state_hash"];
+  run.done({"load", file});
+  EXPECT_EQ(run.done({"back", "2"}), "run 3 is at tick 120, seed 1\n") << "where it was loaded";
+  EXPECT_EQ(run.status()["state_hash"], hash);
+  run.done({"step", "140"});
+  EXPECT_EQ(run.done({"back", "2.3"}), "run 4 is at tick 200, seed 1\n") << "kept since";
+  EXPECT_EQ(run.done({"back", "1.3"}), "run 5 is at tick 120, seed 1\n");
+  run.done({"resume"});
+  EXPECT_EQ(run.finish()["state_hash"], reference(field));
+}
+
+TEST(ControlAtTickBoundariesOnly, ReportsEventsAndTheEarliestKeptSnapshot) {
   const FieldOfRobots field(4, 5.0);
   ControlledRun run(field, {"--paused", "--keep-snapshots", "0.5"});
   ControlClient client = client_of(run);
@@ -123,14 +141,14 @@ TEST(ControlAtTickBoundariesOnly, TellsWhatHasHappenedAndHowFarBackItCanGo) {
   EXPECT_EQ((*speed)["count"], 2);
   EXPECT_EQ((*speed)["tick"], 120);
   EXPECT_EQ((*speed)["last_tick"], 130);
-  EXPECT_NE(run.done({"history"}).find("it can go back to 0.000 s, 1.000 s at the latest"), std::string::npos);
+  EXPECT_NE(run.done({"history"}).find("snapshots to go back to: from 0.000 s to 1.000 s"), std::string::npos);
   run.done({"back", "0.7"});
   EXPECT_EQ(history()["begin_tick"], 50);
   run.done({"shutdown"});
   run.finish();
 }
 
-TEST(ControlAtTickBoundariesOnly, GoesBackToNothingThatIsNotKept) {
+TEST(ControlAtTickBoundariesOnly, RejectsGoingBackBeforeTheFirstKeptSnapshot) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   run.done({"step", "10"});
@@ -142,7 +160,7 @@ TEST(ControlAtTickBoundariesOnly, GoesBackToNothingThatIsNotKept) {
   run.finish();
 }
 
-TEST(ControlAtTickBoundariesOnly, DataOfManyMegabytesGoesInPartsAndIsBounded) {
+TEST(ControlAtTickBoundariesOnly, LargeDataIsSentInPartsAndIsBounded) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   Control control = control_of(run);
@@ -151,7 +169,7 @@ TEST(ControlAtTickBoundariesOnly, DataOfManyMegabytesGoesInPartsAndIsBounded) {
     control.load_snapshot(nonsense);
     ADD_FAILURE() << "it loads anything";
   } catch (const ControlError& error) {
-    EXPECT_NE(std::string(error.what()).find("this is no snapshot"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("this is not a snapshot"), std::string::npos) << error.what();
   }
   const std::vector<std::byte> too_large(wire::largest_data + 1);
   EXPECT_THROW(control.load_snapshot(too_large), ControlError);
@@ -160,7 +178,7 @@ TEST(ControlAtTickBoundariesOnly, DataOfManyMegabytesGoesInPartsAndIsBounded) {
   run.finish();
 }
 
-TEST(ControlAtTickBoundariesOnly, SnapshotsOfManyRobotsComeWhole) {
+TEST(ControlAtTickBoundariesOnly, SnapshotsOfManyRobotsArriveComplete) {
   const FieldOfRobots field(400, 1e4);
   ControlledRun run(field, {"--paused"});
   run.done({"step", "2"});

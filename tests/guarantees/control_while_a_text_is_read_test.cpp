@@ -8,7 +8,7 @@
 #include "server/serving/server.hpp"
 #include "tests/support/controlled_run.hpp"
 
-// The text of a model may take long to read.
+// Reading the text of a model may take a long time.
 namespace cohort::test {
 namespace {
 
@@ -18,7 +18,7 @@ constexpr const char* static_box = R"(<sdf version="1.9"><model name="box"><stat
   <collision name="hull"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>
 </link></model></sdf>)";
 
-/// A served run of robots that need no controller, in this process. Texts of models are read when the test says so.
+/// A served run of robots that need no controller, in this process. The test decides when texts of models are read.
 class RunWithASlowReader {
  public:
   RunWithASlowReader() : server_(std::span(&free_.server, 1)) {
@@ -62,7 +62,7 @@ std::uint64_t tick_of(ControlClient& client) {
   return reply ? reply->tick : 0;
 }
 
-TEST(ControlWhileATextIsRead, GoesOnForOthersAndTheRunGoesOn) {
+TEST(ControlWhileATextIsRead, BlocksNeitherOtherClientsNorTheRun) {
   RunWithASlowReader run;
   std::optional<wire::Reply> spawned;
   std::thread waiting([&] {
@@ -82,10 +82,10 @@ TEST(ControlWhileATextIsRead, GoesOnForOthersAndTheRunGoesOn) {
   EXPECT_GT(spawned->tick, tick + 100);
 }
 
-TEST(ControlWhileATextIsRead, IsDoneInTheOrderOfEachClient) {
+TEST(ControlWhileATextIsRead, KeepsTheOrderOfEachClient) {
   RunWithASlowReader run;
   ControlClient client = run.client();
-  // This client gives up waiting. What it has asked for is done all the same, before what it asks for next.
+  // This client stops waiting. Its request is carried out all the same, before its next one.
   EXPECT_FALSE(client.ask(spawn(static_box), std::chrono::milliseconds(200), never));
   std::thread later([&] {
     ControlClient other = run.client();
@@ -99,7 +99,7 @@ TEST(ControlWhileATextIsRead, IsDoneInTheOrderOfEachClient) {
   EXPECT_EQ(removed->result, ResultCode::ok) << removed->error_message;
 }
 
-TEST(ControlWhileATextIsRead, IsAnsweredWithWhatIsWrongWithTheText) {
+TEST(ControlWhileATextIsRead, ReportsTheErrorInTheText) {
   RunWithASlowReader run;
   run.let_read();
   ControlClient client = run.client();

@@ -10,7 +10,7 @@
 #include "tests/support/controlled_run.hpp"
 #include "tests/support/worlds/sbot_layout.hpp"
 
-// A run goes on from a snapshot with what its controllers remembered.
+// A run continues from a snapshot with the state of its controllers.
 namespace cohort::test {
 namespace {
 
@@ -21,7 +21,7 @@ struct Case {
   const char* experiment;
   double seconds;
   bool has_memory = true;
-  std::uint64_t seed = 1;  // one with which somebody has something to remember
+  std::uint64_t seed = 1;  // the first with controller state
 };
 void PrintTo(const Case& tested, std::ostream* out) { *out << tested.experiment; }
 
@@ -31,7 +31,7 @@ std::string file_of(const Case& tested) {
 
 constexpr std::size_t few = 3;
 
-// Or has no memory at all.
+// Returns true also if no controller has state.
 bool remembers_something(const SessionSnapshot& snapshot) {
   const auto is_blank = [](const std::optional<ControllerState>& state) {
     return state && std::ranges::all_of(state->bytes, [](std::byte byte) { return byte == std::byte{0}; });
@@ -56,8 +56,8 @@ class RunHere {
     session::restore(*from, simulation_);
   }
 
-  /// The hash at the end; of the snapshots in which somebody remembers something the first and the last ones, which
-  /// have been bytes in between.
+  /// Returns the hash at the end. Keeps the first and the last snapshots with controller state, converted to bytes and
+  /// back.
   std::uint64_t finish(Snapshots* snapshots = nullptr) {
     session::RunListener listener;
     listener.can_save = [&](const auto& take) {
@@ -95,7 +95,7 @@ class ControllersRemember : public ::testing::TestWithParam<Case> {
   ScratchFolder folder_;
 };
 
-TEST_P(ControllersRemember, FromASnapshotOfAnyTickTheRunHasTheBitsOfTheUndisturbedOne) {
+TEST_P(ControllersRemember, ARunFromASnapshotOfAnyTickHasTheSameBits) {
   Snapshots snapshots;
   const std::uint64_t straight = RunHere(GetParam(), 2).finish(&snapshots);
   bool state_matters = false;
@@ -115,7 +115,7 @@ TEST_P(ControllersRemember, FromASnapshotOfAnyTickTheRunHasTheBitsOfTheUndisturb
   EXPECT_EQ(state_matters, GetParam().has_memory) << "without what they remember it is another run";
 }
 
-TEST_P(ControllersRemember, WhereverTheyRunAndWhereverTheyRan) {
+TEST_P(ControllersRemember, InAnyPlaceAndFromAnyPlace) {
   Snapshots snapshots;
   RunHere(GetParam(), 2).finish(&snapshots);
   ASSERT_FALSE(snapshots.empty());
@@ -132,7 +132,7 @@ TEST_P(ControllersRemember, WhereverTheyRunAndWhereverTheyRan) {
       ctl.insert(ctl.end(), what.begin(), what.end());
       const Ended ended = run_to_end(ctl);
       ASSERT_EQ(ended.exit_code, 0) << ended.err << run.output();
-      EXPECT_EQ(ended.out.find("anew"), std::string::npos) << ended.out;
+      EXPECT_EQ(ended.out.find("without state"), std::string::npos) << ended.out;
     }
     ASSERT_EQ(run.wait_for_exit(), 0) << run.output();
     EXPECT_NE(run.output().find(expected), std::string::npos) << "saving changes nothing: " << run.output();
@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(OfTheExperiment, ControllersRemember,
                                            Case{"phototaxis", 5.0, false}),
                          [](const auto& tested) { return std::string(tested.param.experiment); });
 
-// Robots that are driven by all that they were ever told, with frames under way.
+// Robots whose commands depend on all frames so far, with pending frames.
 class ServedMemory : public ::testing::Test {
  protected:
   static constexpr const char* policy = ", delay: 2, parameters: {speed: 0.1}";
@@ -166,7 +166,7 @@ class ServedMemory : public ::testing::Test {
   std::vector<std::unique_ptr<Process>> hosts_;
 };
 
-TEST_F(ServedMemory, GoesBackToASnapshotAndForwardToTheSameBits) {
+TEST_F(ServedMemory, GivesTheSameBitsAfterGoingBack) {
   ControlledRun run(field_, {"--paused", "--keep-snapshots", "1"}, false);
   attach(run);
   run.done({"step", "1234"});
@@ -180,7 +180,7 @@ TEST_F(ServedMemory, GoesBackToASnapshotAndForwardToTheSameBits) {
   EXPECT_TRUE(events_of(summary, "unsaved").empty()) << summary["events"].dump(1);
 }
 
-TEST_F(ServedMemory, IsLoadedByControllersThatStayAndByOthers) {
+TEST_F(ServedMemory, IsLoadedByConnectedAndByNewControllers) {
   const std::string file = (field_ / "saved.snap").string();
   {
     ControlledRun run(field_, {"--paused"}, false);
@@ -202,7 +202,7 @@ TEST_F(ServedMemory, IsLoadedByControllersThatStayAndByOthers) {
   EXPECT_EQ(run.finish()["state_hash"], expected_);
 }
 
-TEST_F(ServedMemory, OfAControllerThatDoesNotSaveIsToldToBeMissing) {
+TEST_F(ServedMemory, IsReportedAsMissingIfAControllerDoesNotSave) {
   const FieldOfRobots field(2, 20.0, "", test_controller("misbehaving"));
   const std::string file = (field / "saved.snap").string();
   ControlledRun run(field, {"--paused"}, false);
@@ -210,21 +210,27 @@ TEST_F(ServedMemory, OfAControllerThatDoesNotSaveIsToldToBeMissing) {
   run.done({"step", "10"});
   const std::string saved = run.done({"save", file});
   EXPECT_NE(saved.find("team 'swarm' ("), std::string::npos) << saved;
-  EXPECT_NE(saved.find("anew"), std::string::npos) << saved;
+  EXPECT_NE(saved.find("without state"), std::string::npos) << saved;
   run.done({"save", file});
-  run.done({"load", file});
+  for (int times = 0; times < 2; ++times) run.done({"load", file});
   run.done({"shutdown"});
   const auto unsaved = events_of(run.finish(), "unsaved");
   ASSERT_EQ(unsaved.size(), 1u) << "once";
   EXPECT_NE(unsaved[0]["text"].get<std::string>().find("misbehaving"), std::string::npos) << unsaved[0].dump();
+  const std::vector<std::string> told = lines_of(run.server().output());
+  const auto warnings = std::ranges::count_if(told, [&](const std::string& line) {
+    return line.find("warning: ") != std::string::npos &&
+           line.find(unsaved[0]["text"].get<std::string>()) != std::string::npos;
+  });
+  EXPECT_EQ(warnings, 1) << "once, also where the run goes on: " << run.server().output();
 }
 
-TEST_F(ServedMemory, ThatCannotBeSavedFailsTheSnapshotByNameAndTheRunGoesOn) {
+TEST_F(ServedMemory, FailsTheSnapshotByNameIfItCannotBeSaved) {
   const std::string controller = test_controller("misbehaving");
   const FieldOfRobots field(2, 3.0, "", controller);
   const std::string file = (field / "saved.snap").string();
   const std::map<std::string, std::string> whys = {{"throw in save", "a fault on purpose"},
-                                                   {"save too much", "1048576 are the most"}};
+                                                   {"save too much", "the maximum is 1048576"}};
   for (const auto& [fault, why] : whys) {
     ControlledRun run(field, {"--paused", "--keep-snapshots", "0.5"}, false);
     Process host(FieldOfRobots::host(run.domain(), "all", controller),
@@ -245,21 +251,21 @@ TEST_F(ServedMemory, ThatCannotBeSavedFailsTheSnapshotByNameAndTheRunGoesOn) {
   }
 }
 
-TEST_F(ServedMemory, OfAControllerThatIsStoppedIsNotWaitedForForEver) {
+TEST_F(ServedMemory, IsNotAwaitedForeverFromAStoppedController) {
   const std::string file = (field_ / "saved.snap").string();
   ControlledRun run(field_, {"--paused"}, false);
   attach(run);
   run.done({"step", "50"});
   hosts_[1]->signal(SIGSTOP);
   const std::string saved = run.done({"save", file});
-  EXPECT_NE(saved.find("anew"), std::string::npos) << saved;
+  EXPECT_NE(saved.find("without state"), std::string::npos) << saved;
   hosts_[1]->signal(SIGCONT);
   run.done({"resume"});
   EXPECT_EQ(run.finish()["state_hash"], expected_) << "and the run goes on as it would have";
 }
 
-// The snapshots of ticks 0, 100 … have the state of all controllers; those that stay load it too.
-TEST_F(ServedMemory, ThatIsLostWithAProcessBringsTheRunBackToWhereItIsKnown) {
+// The snapshots of ticks 0, 100 … have the state of all controllers; connected controllers load it too.
+TEST_F(ServedMemory, RewindsTheRunWhenLostWithAProcess) {
   const FieldOfRobots field(4, 20.0, std::string(policy) + ", on_lost: rewind", plugin_);
   ControlledRun run(field, {"--paused", "--keep-snapshots", "1"}, false);
   attach(run);
@@ -276,7 +282,7 @@ TEST_F(ServedMemory, ThatIsLostWithAProcessBringsTheRunBackToWhereItIsKnown) {
   EXPECT_TRUE(events_of(summary, "unsaved").empty()) << summary["events"].dump(1);
 }
 
-TEST_F(ServedMemory, ThatIsLostWithAProcessIsNamedWhereTheRunGoesOn) {
+TEST_F(ServedMemory, IsReportedWhenLostIfTheRunContinues) {
   ControlledRun run(field_, {"--paused"}, false);
   attach(run);
   run.done({"step", "100"});
@@ -295,12 +301,11 @@ TEST_F(ServedMemory, CannotBeRewoundWithoutSnapshots) {
   const FieldOfRobots field(1, 1.0, ", on_lost: rewind");
   const Ended ended = run_to_end({cohort_program(), "run", field.file()});
   EXPECT_EQ(ended.exit_code, 2) << ended.err;
-  EXPECT_NE(ended.err.find("add --keep-snapshots"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("'--keep-snapshots 10' keeps one"), std::string::npos) << ended.err;
   EXPECT_EQ(run_to_end({cohort_program(), "run", field.file(), "--controllers", "inprocess"}).exit_code, 0);
 }
 
-// A client written from docs/protocol.md that drives robot 0 as it should, and gives as its state whatever it is told
-// to.
+// A client written from docs/protocol.md that drives robot 0 correctly, and sends any state that the test chooses.
 class Liar {
  public:
   using Lie = std::function<void(wire::Writer<wire::ControllerState>&, wire::ControllerState)>;
@@ -349,7 +354,7 @@ class Liar {
   wire::Reader<wire::Observation> frames_;
 };
 
-TEST_F(ServedMemory, OfAClientThatLiesIsLeftOutAndHarmsNobody) {
+TEST_F(ServedMemory, IsIgnoredFromADishonestClient) {
   const FieldOfRobots field(2, 20.0, ", parameters: {speed: 0.1}", plugin_);
   const std::string file = (field / "saved.snap").string();
   ControlledRun run(field, {"--paused"}, false);

@@ -14,7 +14,7 @@
 namespace cohort::test {
 namespace {
 
-// Ticks of a run as an observer sees them.
+// The ticks of a run, as an observer receives them.
 class Ticks {
  public:
   explicit Ticks(std::uint32_t domain)
@@ -43,9 +43,9 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// A hundred thousand messages a second, in turns to the server and to another one that has nothing to do: what the
-// flooder itself takes of the machine, more than a core, is the same in both.
-TEST(FloodsNeverStopARun, OfCommandsLeaveOthersAThirdOfTheirPace) {
+// Sends a hundred thousand messages a second, alternately to the server and to an idle one. So the load of the flooder
+// itself, more than a core, is the same in both cases.
+TEST(FloodsNeverStopARun, OfCommandsLeaveOthersOneThirdOfTheirPace) {
   const FieldOfRobots field(64, 1e6);
   const ReservedDomain domain, elsewhere;
   Process server(field.serve(domain));
@@ -66,15 +66,15 @@ TEST(FloodsNeverStopARun, OfCommandsLeaveOthersAThirdOfTheirPace) {
   RecordProperty("ticks_per_second", std::to_string(median(here)) + " flooded, " + std::to_string(median(there)) +
                                          " beside a flood, " + std::to_string(quiet) + " without");
   EXPECT_GT(std::ranges::min(here), 0.0) << "it never stops";
-  // More than half where a core is free to read them; on a busy machine they cost the server its share of the time.
+  // More than half if a core is free to read them; on a busy machine they cost the server its share of the time.
   EXPECT_GT(median(here), median(there) / 3) << median(here) << " ticks/s of " << median(there);
   server.signal(SIGINT);
   EXPECT_EQ(server.wait_for_exit(), 130) << server.output();
   EXPECT_GT(events_of(field.summary(), "rejected").size(), 0u) << "it is named";
 }
 
-// What is no DDS at all, and what nearly is: packets of the protocol below with bytes changed.
-TEST(FloodsNeverStopARun, OfPacketsThatMakeNoSense) {
+// Packets that are not DDS at all, and RTPS packets with changed bytes.
+TEST(FloodsNeverStopARun, OfMalformedPackets) {
   const FieldOfRobots field(4, 20.0);
   const std::string expected = run_experiment(field.file(), {"--controllers", "inprocess"})["state_hash"];
   const ReservedDomain domain;
@@ -120,7 +120,7 @@ TEST(FloodsNeverStopARun, OfPacketsThatMakeNoSense) {
   EXPECT_EQ(field.summary()["state_hash"], expected);
 }
 
-// A client that is stopped reads nothing. Its robots are held; the server goes on at its pace, and nothing piles up.
+// A stopped client reads nothing. Its robots hold their commands, the server keeps its pace, and no memory accumulates.
 TEST(FloodsNeverStopARun, OfFramesToAClientThatNeverReads) {
   const FieldOfRobots field(16, 1e4, ", on_late: hold, deadline: 0.005");
   const ReservedDomain domain;

@@ -25,8 +25,8 @@ void append_parameter(std::string& to, std::uint16_t id, const std::string& valu
   to += value;
 }
 
-// The announcement of a participant that does not exist (SPDP: OMG DDSI-RTPS 2.5, 8.5.3 and 9.6.2.2): with readers and
-// writers for discovery, an address where nobody listens, and a lease of an hour.
+// Returns the announcement of a participant that does not exist (SPDP: OMG DDSI-RTPS 2.5, 8.5.3 and 9.6.2.2). It has
+// readers and writers for discovery, an unused address, and a lease of an hour.
 std::string announcement(std::uint32_t domain, std::mt19937& random) {
   constexpr std::uint16_t discard_port = 9;
   constexpr std::int32_t udp_v4 = 1, seconds_of_lease = 3600;
@@ -67,7 +67,7 @@ std::size_t memory_of(pid_t process) {
   return 0;
 }
 
-// DDS keeps each until its lease is over. What else they cost: nothing that the run or its clients notice.
+// DDS keeps each until its lease ends. They have no other effect on the run or its clients.
 TEST(FloodsNeverStopARun, OfForgedAnnouncementsOfParticipants) {
   constexpr int count = 5'000;
   constexpr std::size_t most_bytes_each = 4'000;

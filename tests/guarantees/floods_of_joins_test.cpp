@@ -6,7 +6,7 @@
 namespace cohort::test {
 namespace {
 
-// Somebody who says that it is a client, and is none.
+// A participant that claims to be a client, and is none.
 class Stranger {
  public:
   explicit Stranger(const ReservedDomain& domain)
@@ -28,7 +28,7 @@ class Stranger {
   wire::Writer<wire::Join> joins_;
 };
 
-// Beginnings of the texts of what was rejected, and how often.
+// Counts rejections whose text begins so.
 std::uint64_t rejected(const nlohmann::json& summary, const std::string& text) {
   std::uint64_t count = 0;
   for (const auto& event : events_of(summary, "rejected"))
@@ -55,11 +55,11 @@ TEST(FloodsNeverStopARun, OfJoinsUnderManyNames) {
   EXPECT_EQ(controllers.wait_for_exit(), 0) << controllers.output();
   const auto summary = field.summary();
   EXPECT_EQ(summary["state_hash"], expected);
-  EXPECT_GT(rejected(summary, "foreign: a participant that has joined joins under another id"), names / 2);
+  EXPECT_GT(rejected(summary, "foreign: a participant that has joined sent a Join with another id"), names / 2);
 }
 
-// It claims all robots under one id, calls itself another one, and goes. Its robots are free like anybody's.
-TEST(FloodsNeverStopARun, OfNamesDoNotHideThatAClientIsGone) {
+// It claims all robots under one id, sends another id, and leaves. Its robots are then free, as usual.
+TEST(FloodsNeverStopARun, OfNamesDoNotHideALostClient) {
   const FieldOfRobots field(4, 5.0);
   const std::string expected = run_experiment(field.file(), {"--controllers", "inprocess"})["state_hash"];
   const ReservedDomain domain;
@@ -77,7 +77,7 @@ TEST(FloodsNeverStopARun, OfNamesDoNotHideThatAClientIsGone) {
   EXPECT_EQ(field.summary()["state_hash"], expected);
 }
 
-TEST(FloodsNeverStopARun, OfLargeJoinsTakeNoMemoryForGood) {
+TEST(FloodsNeverStopARun, OfLargeJoinsDoNotLeakMemory) {
   const FieldOfRobots field(4, 5.0);
   const ReservedDomain domain;
   Process server(field.serve(domain));

@@ -9,7 +9,7 @@
 namespace cohort::test {
 namespace {
 
-// Steps of a server's runs together, as an observer sees them.
+// The steps of all runs of a server, as an observer receives them.
 class Steps {
  public:
   explicit Steps(const ReservedDomain& domain)
@@ -40,7 +40,7 @@ class Steps {
   wire::Reader<wire::WorldState> reader_;
 };
 
-// Somebody who asks for the same thing a thousand times a second, and waits for no answer.
+// A client that sends the same request a thousand times a second, without waiting for replies.
 class Asker {
  public:
   Asker(const ReservedDomain& domain, std::uint64_t id, const wire::Operation& operation)
@@ -63,7 +63,7 @@ class Asker {
 
 class FloodsOf : public ::testing::TestWithParam<wire::Operation> {};
 
-TEST_P(FloodsOf, RequestsLeaveTheRunItsProgress) {
+TEST_P(FloodsOf, RequestsDoNotStopTheProgress) {
   const FieldOfRobots field(400, 1e6);
   ControlledRun run(field);
   const Steps steps(run.domain());
@@ -77,7 +77,7 @@ TEST_P(FloodsOf, RequestsLeaveTheRunItsProgress) {
   std::ranges::sort(quiet);
   std::ranges::sort(flooded);
   RecordProperty("ticks_per_second", std::to_string(flooded[1]) + " of " + std::to_string(quiet[1]));
-  // Requests have a quarter of the time; the askers themselves need a part of the processors too.
+  // Requests take a quarter of the time; the clients themselves also need processor time.
   EXPECT_GT(flooded[1], 0.4 * quiet[1]) << flooded[1] << " ticks/s of " << quiet[1];
   run.done({"pause"});
   const bool is_another_run = run.status()["run"] > 1;
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(, FloodsOf,
                          ::testing::Values(wire::SaveSnapshot{}, wire::ResetSimulation{}, wire::GetEntities{}),
                          [](const auto& flood) { return wire::name_of(wire::code_of(flood.param)); });
 
-TEST(FloodsNeverStopARun, OfDataThatIsHandedOverPushOutTheOldestWhichIsToldWhy) {
+TEST(FloodsNeverStopARun, OfUploadsDropTheOldestWithAReason) {
   const FieldOfRobots field(1, 1e4);
   ControlledRun run(field, {"--paused"}, false);
   constexpr std::uint64_t size = std::uint64_t{140} << 20;
@@ -113,7 +113,7 @@ TEST(FloodsNeverStopARun, OfDataThatIsHandedOverPushOutTheOldestWhichIsToldWhy) 
     const auto reply = client.ask(wire::LoadSnapshot{}, patience, never);
     return reply ? reply->error_message : "";
   };
-  EXPECT_NE(load(first).find("dropped: more than 256 MiB wait for all clients together"), std::string::npos);
+  EXPECT_NE(load(first).find("dropped: more than 256 MiB are kept for all clients"), std::string::npos);
   EXPECT_EQ(load(second).find("dropped"), std::string::npos) << "it is there, if it is no snapshot";
   run.done({"shutdown"});
   const auto dropped = events_of(run.finish(), "dropped");

@@ -10,15 +10,15 @@ namespace {
 
 std::uint64_t tick_of(const nlohmann::json& event) { return event["tick"]; }
 
-// Without a controller a robot that does not require one does nothing; with one it is asked from the tick on that the
-// list of events has; when the controller leaves, the robot stands still again, and the run goes on.
-TEST(JoinAndLeaveAtTickBoundariesOnly, OfControllersThatARunCanDoWithout) {
+// Without a controller, a robot that does not require one does nothing. With one it receives frames from the tick of
+// the event on. When the controller leaves, the robot stops again, and the run continues.
+TEST(JoinAndLeaveAtTickBoundariesOnly, ControllersThatAreNotRequired) {
   const FieldOfRobots field(4, 12.0, ", required: false",
                             "constant, parameters: {treel/left/velocity: 0.1, "
                             "treel/right/velocity: 0.1}");
   const ReservedDomain domain;
   Process server(field.serve(domain, {"--paused"}), {{"COHORT_LOG", "info"}});
-  control(domain, {"step", "100"});  // it begins with nobody
+  control(domain, {"step", "100"});  // without a controller at first
   Process early(FieldOfRobots::host(domain, "0..1", "constant"));
   ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_0")) << server.output();
   control(domain, {"step", "100"});
@@ -47,14 +47,16 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, OfControllersThatARunCanDoWithout) {
   EXPECT_EQ(tick_of(joined[2]), 400u);
 }
 
-// A robot that is free is never waited for: its controller may be stopped for as long as anybody likes.
-TEST(JoinAndLeaveAtTickBoundariesOnly, AFreeControllerThatIsStoppedHoldsNobodyUp) {
+// The run never waits for a robot in free mode: its controller may be stopped for any time.
+TEST(JoinAndLeaveAtTickBoundariesOnly, AStoppedFreeControllerDelaysNoOthers) {
   const FieldOfRobots field(2, 6.0, ", mode: free, on_late: zero, deadline: 0.2",
                             "constant, parameters: {treel/left/velocity: 0.1, "
                             "treel/right/velocity: 0.1}");
   const ReservedDomain domain;
   Process server(field.serve(domain, {"--paused", "--speed", "2"}), {{"COHORT_LOG", "info"}});
   Process controller(FieldOfRobots::host(domain, "all", "constant"));
+  // A run does not wait for free controllers: one that is stopped before it has joined would miss nothing.
+  ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_0")) << server.output();
   control(domain, {"step", "10"});
   controller.signal(SIGSTOP);
   control(domain, {"resume"});
@@ -75,7 +77,7 @@ std::vector<std::string> unfit_host(const ReservedDomain& domain, const std::str
   return FieldOfRobots::host(domain, robots, test_controller("misbehaving"));
 }
 
-TEST(JoinAndLeaveAtTickBoundariesOnly, AControllerThatFailsInStartIsRefusedAndItsRobotsAreAwaitedAsBefore) {
+TEST(JoinAndLeaveAtTickBoundariesOnly, AControllerThatFailsInStartIsRefusedAndTheRunWaitsForAnother) {
   const FieldOfRobots field(4, 3.0);
   const std::string expected = run_experiment(field.file(), {"--controllers", "inprocess"})["state_hash"];
   const ReservedDomain domain;
@@ -100,7 +102,7 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, AControllerThatFailsInStartIsRefusedAndIt
     EXPECT_NE(text.find(said), std::string::npos) << text;
 }
 
-TEST(JoinAndLeaveAtTickBoundariesOnly, ATakeoverThatFailsInStartLeavesTheRunItsBits) {
+TEST(JoinAndLeaveAtTickBoundariesOnly, ATakeoverThatFailsInStartKeepsTheBits) {
   const FieldOfRobots field(2, 20.0);
   const std::string expected = run_experiment(field.file(), {"--controllers", "inprocess"})["state_hash"];
   const ReservedDomain domain;
@@ -118,7 +120,7 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, ATakeoverThatFailsInStartLeavesTheRunItsB
   EXPECT_EQ(events_of(summary, "refused").size(), 1u) << summary.dump(1);
 }
 
-TEST(JoinAndLeaveAtTickBoundariesOnly, ARunEndsWhenAControllerOfItsOwnFailsInStart) {
+TEST(JoinAndLeaveAtTickBoundariesOnly, ARunEndsWhenItsOwnControllerFailsInStart) {
   const FieldOfRobots field(2, 3.0, "", test_controller("misbehaving"));
   for (const char* where : {"process", "inprocess"}) {
     const Ended ended = run_to_end({cohort_program(), "run", field.file(), "--controllers", where}, fails_in_start);

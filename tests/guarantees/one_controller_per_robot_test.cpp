@@ -5,7 +5,7 @@
 namespace cohort::test {
 namespace {
 
-TEST(OneControllerPerRobot, ASecondClaimWaitsWhileTheHolderIsSilentAndIsRefusedByNameOnceItAnswers) {
+TEST(OneControllerPerRobot, ASecondClaimIsRefusedByNameOnceTheHolderAnswers) {
   const ReservedDomain domain;
   Process server({cohort_program(), "serve", demo_experiment(), "--duration", "10", "--domain", domain.text()});
   const auto controllers_of = [&](const char* robots) {

@@ -9,18 +9,18 @@
 #include "tests/support/keys.hpp"
 #include "tests/support/worlds/sbot_layout.hpp"
 
-// With security an identity drives its own robots, and nobody else has any effect.
+// With security an identity drives its own robots, and all others have no effect.
 namespace cohort::test {
 namespace {
 
-constexpr std::uint64_t blue_id = 0xb1e;  // of the client that these tests play themselves
+constexpr std::uint64_t blue_id = 0xb1e;  // for the client that these tests implement themselves
 
 std::vector<std::string> host(const std::string& robots, const ReservedDomain& domain, const std::string& identity) {
   return {cohort_program(), "host",        "obstacle_avoidance", "--robots", robots,
           "--domain",       domain.text(), "--secure",           identity};
 }
 
-TEST(OnlyIdentitiesDrive, AndTheRunHasTheBitsThatItHasWithoutSecurity) {
+TEST(OnlyIdentitiesDrive, AndTheRunHasTheSameBitsAsWithoutSecurity) {
   const ScratchFolder folder;
   const std::string keys = (folder / "keys").string();
   const Ended made = run_to_end(
@@ -44,7 +44,7 @@ TEST(OnlyIdentitiesDrive, AndTheRunHasTheBitsThatItHasWithoutSecurity) {
                                         "--secure",       keys};
   const Ended refused = run_to_end(run);
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("no client of " + keys + " may drive all robots of team 'explorers'"), std::string::npos)
+  EXPECT_NE(refused.err.find("no client in " + keys + " may drive all robots of team 'explorers'"), std::string::npos)
       << refused.err;
   ASSERT_EQ(run_to_end({cohort_program(), "security", "add", keys, "all", "--robots", "all"}).exit_code, 0);
   const Ended done = run_to_end(run);
@@ -52,7 +52,8 @@ TEST(OnlyIdentitiesDrive, AndTheRunHasTheBitsThatItHasWithoutSecurity) {
   EXPECT_NE(done.out.find(expected), std::string::npos) << done.out;
 }
 
-// Blue, who drives 8 to 15 as it always does, and holds its answers back from tick 100 on until it is told to go on.
+// The client "blue", which drives robots 8 to 15 as usual. It holds back its answers from tick 100 on until the test
+// releases them.
 class Blue {
  public:
   Blue(const ReservedDomain& domain, const Keys& keys, bool holds_back)
@@ -85,8 +86,8 @@ std::unique_ptr<Process> attacker(const ReservedDomain& domain, const std::strin
   return std::make_unique<Process>(command);
 }
 
-TEST(OnlyIdentitiesDrive, AndOthersLeaveTheRunItsBitsWhateverTheyTry) {
-  // What observers may do is not left to the certificates of this one, nor is it to those of others' programs.
+TEST(OnlyIdentitiesDrive, AndOthersCannotChangeTheBits) {
+  // The rights of observers come from these certificates only, not from those of another authority.
   const Keys keys("sign", 30, wire::Role::controller), others;
   const auto run = [&](bool attacked) {
     const ReservedDomain domain;
@@ -95,9 +96,9 @@ TEST(OnlyIdentitiesDrive, AndOthersLeaveTheRunItsBitsWhateverTheyTry) {
                     "--secure", keys.folder(), "--summary", (folder / "summary.json").string()});
     Process red(host("0..7", domain, keys.client_folder("red")));
     Blue blue(domain, keys, attacked);
-    // All in blue's name: without an identity, with one of another making, with red's at blue's door …
+    // All use blue's id: without an identity, with one of another authority, with red's on blue's participant …
     std::vector<std::unique_ptr<Process>> outside;
-    // … and these get in, at their own doors: red, and an observer.
+    // … and these are admitted, on their own participants: red, and an observer.
     std::vector<std::unique_ptr<Process>> inside;
     if (attacked) {
       EXPECT_TRUE(server.wait_for_output("waiting for explorers/sbot_8 and 7 more: hand-written")) << server.output();
@@ -122,7 +123,7 @@ TEST(OnlyIdentitiesDrive, AndOthersLeaveTheRunItsBitsWhateverTheyTry) {
   EXPECT_GT(foreign, 1000u) << attacked.dump(1);
 }
 
-TEST(OnlyIdentitiesDrive, AndWhoClaimsMoreThanItMayIsRefusedByName) {
+TEST(OnlyIdentitiesDrive, AndAClaimBeyondItsRightsIsRefusedByName) {
   const Keys keys("sign", 30, wire::Role::controller);
   const ReservedDomain domain;
   Process server({cohort_program(), "serve", demo_experiment(), "--domain", domain.text(), "--secure", keys.folder()});
@@ -135,18 +136,18 @@ TEST(OnlyIdentitiesDrive, AndWhoClaimsMoreThanItMayIsRefusedByName) {
   write_file(keys.client_folder("observer") + "/identity", wire::identity_text(identity));
   Process observer(host("0", domain, keys.client_folder("observer")));
   EXPECT_EQ(observer.wait_for_exit(), 2);
-  EXPECT_NE(observer.output().find("its identity 'observer' may look on, and drive no robot"), std::string::npos)
+  EXPECT_NE(observer.output().find("its identity 'observer' may observe, but not drive robots"), std::string::npos)
       << observer.output();
   EXPECT_TRUE(server.wait_for_output("refused: ")) << server.output();
 }
 
-TEST(OnlyIdentitiesDrive, AndOnlyThoseWithTheRightControl) {
+TEST(OnlyIdentitiesDrive, AndOnlyIdentitiesWithTheRightControl) {
   const ScratchFolder folder;
   const std::string keys = (folder / "keys").string();
   const Ended made = run_to_end({cohort_program(), "security", "init", keys, "--client", "red=all", "--client",
                                  "operator=none,control", "--client", "both=control,all"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_NE(made.out.find("operator  may control the run, and drive nothing"), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find("operator  may control the run, but not drive robots"), std::string::npos) << made.out;
   EXPECT_NE(made.out.find("both  may drive all, and control the run"), std::string::npos) << made.out;
   const auto ctl = [&](const ReservedDomain& domain, const std::string& name, const std::string& what,
                        const std::string& timeout = patience_in_seconds) {
@@ -166,11 +167,11 @@ TEST(OnlyIdentitiesDrive, AndOnlyThoseWithTheRightControl) {
     EXPECT_EQ(ctl(domain, "both", "resume").exit_code, 0) << server.output();
     const Ended refused = ctl(domain, "red", "pause");
     EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_NE(refused.err.find("may neither control a run nor look on"), std::string::npos) << refused.err;
-    // One that says that it may: DDS knows better, by what was signed.
+    EXPECT_NE(refused.err.find("can neither control nor observe a run"), std::string::npos) << refused.err;
+    // Its file claims the right; DDS decides by the signed permissions.
     write_file(disguised, red_identity + "control: yes\n");
     EXPECT_NE(ctl(domain, "red", "pause", "2").exit_code, 0);
-    // Nobody without an identity.
+    // Clients without an identity are refused.
     EXPECT_EQ(run_to_end({cohort_program(), "ctl", "--domain", domain.text(), "--timeout", "2", "pause"}).exit_code, 1);
     EXPECT_NE(ctl(domain, "operator", "status").out.find("playing"), std::string::npos);
     Process operator_that_drives(host("0", domain, keys + "/clients/operator"));
@@ -178,7 +179,7 @@ TEST(OnlyIdentitiesDrive, AndOnlyThoseWithTheRightControl) {
     EXPECT_EQ(ctl(domain, "operator", "shutdown").exit_code, 0);
     EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
   }
-  // What counts is the server's own folder, whatever a client's certificates allow.
+  // Only the server's own folder counts, not the permissions in a client's certificates.
   const std::string servers = keys + "/server/operator/identity";
   std::string text = read_file(servers);
   text.replace(text.find("control: yes"), 12, "control: no");
@@ -193,7 +194,7 @@ TEST(OnlyIdentitiesDrive, AndOnlyThoseWithTheRightControl) {
   EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
 }
 
-TEST(OnlyIdentitiesDrive, AndObserversLookOnAndRecord) {
+TEST(OnlyIdentitiesDrive, AndObserversObserveAndRecord) {
   const ScratchFolder folder;
   const std::string keys = (folder / "keys").string();
   const std::string file = (folder / "run.mcap").string();
@@ -238,7 +239,8 @@ TEST(OnlyIdentitiesDrive, AndAServerOnANetworkWithoutSecurityWarns) {
                     demo_experiment(), "--domain", domain.text(), "--network", address});
     EXPECT_TRUE(server.wait_for_output("serving 16 robots")) << server.output();
     const bool warns =
-        server.output().find("warning: whoever reaches 10.77.0.1 can drive robots, control this run and end it") !=
+        server.output().find(
+            "warning: no security: anyone who can reach 10.77.0.1 can drive robots, control this run and end it") !=
         std::string::npos;
     EXPECT_EQ(warns, address == "10.77.0.1") << server.output();
   }

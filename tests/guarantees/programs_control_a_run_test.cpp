@@ -5,9 +5,12 @@
 #include <functional>
 #include <thread>
 
+#include "client_sdk/src/control/experiment_query.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/simulation/simulation.hpp"
 #include "tests/support/controlled_run.hpp"
 
-// What <cohort/control.hpp> says, each method with a server.
+// Every method of <cohort/control.hpp>, with a server.
 namespace cohort::test {
 namespace {
 
@@ -21,7 +24,7 @@ constexpr const char* lamp = R"(<sdf version="1.9"><model name="lamp"><static>tr
   <light name="bulb" type="point"><pose>0 0 0.6 0 0 0</pose><diffuse>1 1 1 1</diffuse><attenuation><range>5</range></attenuation></light>
 </link></model></sdf>)";
 
-// Why a request was not done; fails if it was, or if it says nothing for people.
+// Returns the result of a refused request; fails if the request succeeds, or has no message.
 ControlResult refusal(const std::function<void()>& request) {
   try {
     request();
@@ -33,14 +36,14 @@ ControlResult refusal(const std::function<void()>& request) {
   return ControlResult::bad_reply;
 }
 
-TEST(ProgramsControlARun, TheyHoldItStepItAndEndIt) {
+TEST(ProgramsControlARun, TheyPauseItStepItAndEndIt) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused", "--keep-snapshots", "0.5"});
   Control control = control_of(run);
   EXPECT_EQ(control.state(), SimulationState::paused);
   EXPECT_EQ(control.step(70).tick, 70u);
   EXPECT_EQ(control.pause().tick, 70u) << "it is paused already";
-  EXPECT_EQ(control.set_speed(0.0).message, "as fast as it goes");
+  EXPECT_EQ(control.set_speed(0.0).message, "as fast as possible");
   EXPECT_EQ(control.back(std::chrono::milliseconds(600)).tick, 50u);
   const ControlReply reset = control.reset(7);
   EXPECT_EQ(reset.run, 3u);
@@ -67,6 +70,35 @@ TEST(ProgramsControlARun, TheyHoldItStepItAndEndIt) {
   EXPECT_EQ(refusal([&] { control.reset({}, ResetScope::time); }), ControlResult::feature_unsupported);
   EXPECT_EQ(refusal([&] { control.step(0); }), ControlResult::malformed);
   EXPECT_EQ(refusal([&] { control.set_speed(std::nan("")); }), ControlResult::malformed);
+  control.quit();
+  run.finish();
+}
+
+// As on another machine, the original files are gone when they are read again.
+TEST(ProgramsControlARun, TheyBuildItsExperimentWithoutItsFiles) {
+  const FieldOfRobots field(3, 1e4);
+  ControlledRun run(field, {"--paused"});
+  Control control = control_of(run);
+  const SimulationStatus status = control.status();
+  std::filesystem::remove(field.file());
+  std::filesystem::remove(field / "world.yaml");
+  ControlClient client = client_of(run);
+  const auto rebuilt = [&] {
+    const auto files = query_experiment([&](const wire::GetExperiment& question) {
+      return client.ask(question, patience, never).value_or(wire::Reply{});
+    });
+    return parsing::read_experiment(std::make_shared<const description::KeptFiles>(messages::kept_files(files)),
+                                    files.seed, std::chrono::nanoseconds(files.duration_ns));
+  };
+  const description::Experiment experiment = rebuilt();
+  EXPECT_EQ(experiment.seed, status.seed);
+  EXPECT_EQ(experiment.name, "experiment");
+  ASSERT_EQ(experiment.world.robots.size(), 3u);
+  EXPECT_EQ(experiment.world.robot(2).name, "swarm/sbot_2");
+  EXPECT_EQ(Simulation(experiment, 1).state_hash(), status.state_hash);
+
+  control.reset(7);
+  EXPECT_EQ(Simulation(rebuilt(), 1).state_hash(), control.status().state_hash) << "of another seed";
   control.quit();
   run.finish();
 }

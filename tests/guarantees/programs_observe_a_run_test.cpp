@@ -5,7 +5,7 @@
 
 #include "tests/support/controlled_run.hpp"
 
-// What <cohort/observer.hpp> says.
+// The functions of <cohort/observer.hpp>.
 namespace cohort::test {
 namespace {
 
@@ -16,7 +16,7 @@ bool is_readable(const Observer& observer, milliseconds at_most = milliseconds(0
   return ::poll(&asked, 1, static_cast<int>(at_most.count())) == 1;
 }
 
-// Steps until the observer sees it: the first ticks may come before both have met.
+// Steps until the observer receives a tick: the first ticks may precede the discovery.
 std::optional<WorldState> step_until_seen(Control& control, Observer& observer) {
   std::optional<WorldState> seen;
   eventually([&] {
@@ -58,12 +58,12 @@ TEST(ProgramsObserveARun, TheySeeEachTickAsItIsPublished) {
 
   control.step(Observer::most_waiting + 10);
   EXPECT_TRUE(eventually([&] { return observer.latest()->tick == before + 13 + Observer::most_waiting; }));
-  EXPECT_EQ(observer.next(patience)->tick, before + 14) << "what nobody takes is dropped, the oldest first";
+  EXPECT_EQ(observer.next(patience)->tick, before + 14) << "the oldest unread ones are dropped";
   control.quit();
   run.finish();
 }
 
-TEST(ProgramsObserveARun, TheyKnowItsRobotsByNameAlsoThoseThatComeLater) {
+TEST(ProgramsObserveARun, TheyKnowAllRobotsByNameIncludingLaterOnes) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   Observer observer({.domain = run.domain().number()});
@@ -85,7 +85,7 @@ TEST(ProgramsObserveARun, TheyKnowItsRobotsByNameAlsoThoseThatComeLater) {
   run.finish();
 }
 
-TEST(ProgramsObserveARun, TheyAreToldWhatHappensOnce) {
+TEST(ProgramsObserveARun, TheyReceiveEachEventOnce) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   Observer observer({.domain = run.domain().number()});
@@ -109,7 +109,7 @@ TEST(ProgramsObserveARun, TheyAreToldWhatHappensOnce) {
   run.finish();
 }
 
-TEST(ProgramsObserveARun, TheyAreToldHowItEnds) {
+TEST(ProgramsObserveARun, TheyReceiveItsResult) {
   const FieldOfRobots field(2, 0.5);
   ControlledRun run(field, {"--paused"});
   Observer observer({.domain = run.domain().number()});
@@ -128,7 +128,7 @@ TEST(ProgramsObserveARun, TheyAreToldHowItEnds) {
   EXPECT_TRUE(is_readable(observer));
 }
 
-TEST(ProgramsObserveARun, TheyMissAServerThatDiesAndGoOnWithAnother) {
+TEST(ProgramsObserveARun, TheyNoticeADeadServerAndContinueWithAnother) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   Observer observer({.domain = run.domain().number()});

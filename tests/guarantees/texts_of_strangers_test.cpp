@@ -4,7 +4,7 @@
 #include "idl/wire/control_messages.hpp"
 #include "tests/support/worlds/field_of_robots.hpp"
 
-// What others say of themselves is shown to people, and is never a command to their terminal or the end of a summary.
+// Texts of clients are shown to people, but never act as commands to the terminal or end a summary.
 namespace cohort::test {
 namespace {
 
@@ -27,7 +27,7 @@ wire::Join join_with(const std::string& text, const std::string& robots) {
 
 class TextsOfStrangers : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(TextsOfStrangers, AreShownHarmlesslyAndTheRunGoesOn) {
+TEST_P(TextsOfStrangers, AreShownHarmlesslyAndTheRunContinues) {
   const FieldOfRobots field(2, 2.0);
   const ReservedDomain domain;
   Process server(field.serve(domain), {{"COHORT_LOG", "info"}});
@@ -49,7 +49,7 @@ TEST_P(TextsOfStrangers, AreShownHarmlesslyAndTheRunGoesOn) {
   for (const auto& event : summary["events"]) EXPECT_TRUE(is_harmless(event["text"])) << event.dump();
 }
 
-TEST_P(TextsOfStrangers, OfAControllerThatFailsAreShownHarmlessly) {
+TEST_P(TextsOfStrangers, OfAFailingControllerAreShownHarmlessly) {
   const FieldOfRobots field(1, 2.0);
   const ReservedDomain domain;
   Process server(field.serve(domain), {{"COHORT_LOG", "info"}});
@@ -86,7 +86,7 @@ TEST(TextsOfControllers, InTheProcessOfTheServerAreShownHarmlessly) {
   }
 }
 
-TEST(TextsOfFiles, WhoseNamesAreNoUtf8OrCommandsAreShownHarmlessly) {
+TEST(TextsOfFiles, WithInvalidUtf8OrTerminalControlsInTheirNamesAreShownHarmlessly) {
   const FieldOfRobots field(1, 1.0);
   const std::filesystem::path file = field / ("a\xff\x1b[2J.yaml");
   std::filesystem::copy_file(field.file(), file);

@@ -14,12 +14,12 @@
 namespace cohort::test {
 namespace {
 
-// The whole minute of the demo, watched at every tick.
+// The whole minute of the demo, checked at every tick.
 class DemoRun : public ::testing::Test {
  protected:
   static constexpr double half_arena = 2.0;       // inner half width of worlds/arenas/obstacles.sdf [m]
   static constexpr double turret_radius = 0.058;  // [m]
-  static constexpr double cell = 0.25;            // of the coverage map [m]
+  static constexpr double cell = 0.25;            // size of a cell of the coverage map [m]
 
   static void SetUpTestSuite() {
     const description::Experiment experiment = parsing::read_experiment(demo_experiment());
@@ -101,7 +101,7 @@ TEST_F(DemoRun, RobotsCoverTheArena) {
               100.0 * static_cast<double>(touches.robots) / static_cast<double>(touches.robot_ticks));
 }
 
-TEST_F(DemoRun, HasTheHashThatTheReadmeAndItsPictureSay) {
+TEST_F(DemoRun, HasTheHashInTheReadmeAndItsPicture) {
   char text[17];
   std::snprintf(text, sizeof text, "%016lx", static_cast<unsigned long>(state_hash));
   for (const char* file : {"README.md", "docs/images/obstacle_avoidance.svg"}) {

@@ -1,11 +1,11 @@
-// docs/tutorial.md, done to the letter: its files are written, its commands are run.
+// Does what docs/tutorial.md says, to the letter: writes its files and runs its commands.
 
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <iterator>
 #include <regex>
 
+#include "tests/pages/page.hpp"
 #include "tests/support/process.hpp"
 
 namespace cohort::test {
@@ -14,34 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string network_section = "## 6. ";
-
-struct Block {
-  std::string language;
-  std::string text;
-};
-
-std::vector<Block> blocks_of(const std::string& document) {
-  const std::regex block("```(\\w+)\\n([\\s\\S]*?)```\\n");
-  std::vector<Block> blocks;
-  for (std::sregex_iterator match(document.begin(), document.end(), block), end; match != end; ++match)
-    blocks.push_back({(*match)[1], (*match)[2]});
-  return blocks;
-}
-
-// A shell script that does what a reader does. The first line of a file names it.
-std::string script_of(const std::string& document) {
-  const std::regex name(R"(^(?:#|//|<!--) ([\w.]+))");
-  std::string script = "set -eu\ncd\n";
-  for (const Block& block : blocks_of(document)) {
-    std::smatch file;
-    if (block.language == "sh") {
-      script += block.text;
-    } else if (block.language != "text" && std::regex_search(block.text, file, name)) {
-      script += "cat > " + file[1].str() + " <<'END OF FILE'\n" + block.text + "END OF FILE\n";
-    }
-  }
-  return script;
-}
 
 std::vector<std::string> hashes_in(const std::string& text) {
   const std::regex line("state hash +([0-9a-f]{16})");
@@ -86,7 +58,8 @@ class Tutorial : public ::testing::Test {
 
 TEST_F(Tutorial, EveryCommandWorksAndGivesTheSameBits) {
   const ReservedDomain domain;
-  Process reader({"/bin/bash", write_script("one_host.sh", script_of(on_one_host))}, environment(domain));
+  Process reader({"/bin/bash", write_script("one_host.sh", "cd\n" + script_of(blocks_of(on_one_host)))},
+                 environment(domain));
   ASSERT_EQ(reader.wait_for_exit(), 0) << reader.output();
   EXPECT_EQ(hashes_in(reader.output()), std::vector<std::string>(3, hash)) << reader.output();
   EXPECT_NE(read_file(*home / "walls/walls.svg").find(hash), std::string::npos);
@@ -115,7 +88,7 @@ TEST_F(Tutorial, TheMistakeIsExplainedAsItSays) {
 TEST_F(Tutorial, AnotherHostGivesTheSameBits) {
   ASSERT_TRUE(fs::exists(*home / "walls/build/wall_follower")) << "the first test builds it";
   const ReservedDomain domain;
-  // A network of our own, in which nothing of this machine is touched and whoever runs the test is root.
+  // A network namespace of our own, which touches nothing of this machine and in which the user of the test is root.
   const std::vector<std::string> alone = {"/usr/bin/unshare", "--map-root-user", "--net", "--mount"};
   const auto in_it = [&](const std::string& script) {
     std::vector<std::string> command = alone;
@@ -126,8 +99,8 @@ TEST_F(Tutorial, AnotherHostGivesTheSameBits) {
   if (possible.wait_for_exit() != 0) GTEST_SKIP() << "no network namespaces here: " << possible.output();
   Process reader(in_it(write_script("two_hosts.sh",
                                     "mount -t tmpfs none /run\nip link set lo up\nsudo() { \"$@\"; }\n"
-                                    "export PATH=~/.local/bin:$PATH\n" +
-                                        script_of("```sh\ncd ~/walls\n```\n" + on_two_hosts))),
+                                    "export PATH=~/.local/bin:$PATH\ncd ~/walls\n" +
+                                        script_of(blocks_of(on_two_hosts)))),
                  environment(domain));
   ASSERT_EQ(reader.wait_for_exit(), 0) << reader.output();
   EXPECT_EQ(hashes_in(reader.output()), std::vector<std::string>(1, hash)) << reader.output();

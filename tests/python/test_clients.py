@@ -56,14 +56,14 @@ def test_an_interrupted_program_ends_in_order(serve, domain, cohort_program):
     assert [program.wait(timeout=300) for program in programs] == [130, 130]
 
 
-def test_robots_that_there_are_not_are_refused(serve, domain):
+def test_unknown_robots_are_refused(serve, domain):
     serve(EXPERIMENT, "--duration", "5")
     with pytest.raises(cohort.ClientError, match="refused.*99"):
         cohort.host(ObstacleAvoidance, robots="99", domain=domain)
 
 
-def test_a_mistake_in_the_options_is_named(capfd):
+def test_an_invalid_option_is_named(capfd):
     with pytest.raises(SystemExit) as ended:
         cohort.main(ObstacleAvoidance, ["--robot", "0"])
     assert ended.value.code == 2
-    assert "ObstacleAvoidance: there is no option '--robot'" in capfd.readouterr().err
+    assert "ObstacleAvoidance: unknown option '--robot'" in capfd.readouterr().err

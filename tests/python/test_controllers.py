@@ -6,6 +6,7 @@ import pathlib
 import re
 import shutil
 import signal
+import sys
 
 import cohort
 import pytest
@@ -72,7 +73,7 @@ def hash_in(summary):
     return int(json.loads(summary.read_text())["state_hash"], 16)
 
 
-def test_a_run_has_the_hash_of_its_twin_in_cpp_whoever_runs_it(cohort_program, write):
+def test_a_run_has_the_hash_of_its_twin_in_cpp_in_every_program(cohort_program, write):
     experiment = write((HERE / "obstacle_avoidance_in_python.py").read_text())
     twin = cohort.run("obstacle_avoidance", duration=SECONDS).state_hash
     assert cohort.run(experiment).state_hash == twin
@@ -105,7 +106,24 @@ def test_a_host_runs_a_file_for_some_robots(cohort_program, write, domain):
     assert hash_in(summary) == cohort.run("obstacle_avoidance", duration=SECONDS).state_hash
 
 
-def test_sine_and_its_like_are_those_of_cohort_in_every_place(cohort_program, write):
+# Python loads DDS for itself alone: what replaces its calls cannot find them among all symbols.
+def test_a_controller_runs_in_virtual_time(cohort_program, write, domain):
+    source = FORWARD + 'cohort.main(Forward, ["--robots", "all"])\n'
+    experiment = write(source.replace("self.speed = start", "print('has started', flush=True); self.speed = start"))
+    summary = experiment.with_suffix(".json")
+    program = [sys.executable, experiment.with_name("wanderer.py")]
+    with (
+        cohort_program.running("serve", experiment, "--quiet", "--domain", domain, "--summary", summary) as server,
+        cohort_program.running("exec", "--domain", domain, "--", *program) as controllers,
+    ):
+        output, errors = controllers.communicate(timeout=PATIENCE)
+        assert (controllers.returncode, errors) == (0, "")
+        assert "has started" in output
+        assert end_of(server) == (0, "")
+    assert hash_in(summary) == cohort.run(write(FORWARD)).state_hash
+
+
+def test_sine_and_similar_functions_are_those_of_cohort_everywhere(cohort_program, write):
     values = "[math.sin(0.1 * i) * math.exp(-0.01 * i) + float(numpy.float64(i)) ** 0.3 for i in range(200)]"
     experiment = write(
         "import cohort, math, numpy\n"
@@ -129,7 +147,7 @@ def test_one_object_in_a_file_drives_all_robots(cohort_program, write, place):
     assert hash_of(cohort_program, write(together), "--controllers", place) == cohort.run(write(FORWARD)).state_hash
 
 
-def test_check_loads_it_where_it_is_told_to(cohort_program, write):
+def test_check_loads_it_on_request(cohort_program, write):
     experiment = write("print('I am here')\n" + FORWARD)
     assert "I am here" not in cohort_program("check", experiment)
     assert "I am here" in cohort_program("check", experiment, "--load-controllers")
@@ -177,9 +195,9 @@ def test_an_exception_ends_the_run_with_the_line_of_the_script(cohort_program, w
 @pytest.mark.parametrize(
     ("source", "said"),
     [
-        (None, "there is no file of a controller "),
-        ("x = 1\n", "has these classes of controllers: none; expected one that derives from cohort.Controller"),
-        (FORWARD + FORWARD.replace("Forward", "Back"), "has these classes of controllers: Back, Forward; expected one"),
+        (None, "no controller file at "),
+        ("x = 1\n", "expected one class derived from cohort.Controller, found: none"),
+        (FORWARD + FORWARD.replace("Forward", "Back"), "derived from cohort.Controller, found: Back, Forward"),
         ("import cohort\nx = (1\n", "wanderer.py:2: SyntaxError"),
         ("import cohort\n1 / 0\n", "wanderer.py:2 in <module>: ZeroDivisionError: division by zero"),
         ("import cohort\nexit()\n", "wanderer.py:2 in <module>: SystemExit"),
@@ -194,11 +212,11 @@ def test_a_file_that_cannot_be_used_is_an_error_of_the_experiment(cohort_program
     assert said in end.stderr
 
 
-def test_a_host_says_what_is_wrong_with_a_file_before_there_is_a_server(cohort_program, tmp_path):
+def test_a_host_reports_an_invalid_file_before_there_is_a_server(cohort_program, tmp_path):
     file = tmp_path / "wanderer.py"
     end = cohort_program.end_of("host", file, "--robots", "all")
     assert end.returncode == 2
-    assert f"there is no file of a controller {file}" in end.stderr
+    assert f"no controller file at {file}" in end.stderr
     file.write_text("import cohort\n1 / 0\n")
     end = cohort_program.end_of("host", file, "--robots", "all")
     assert end.returncode == 2
@@ -233,7 +251,7 @@ def test_what_python_keeps_for_a_thread_is_kept_between_steps(cohort_program, wr
         ("without_library", "the Python interpreter /an/interpreter cannot be embedded: its shared library"),
     ],
 )
-def test_a_python_that_does_not_do_is_named(cohort_program, write, tmp_path, python, said):
+def test_an_unsuitable_python_is_named(cohort_program, write, tmp_path, python, said):
     without_library = tmp_path / "without_library"
     without_library.write_text("#!/bin/sh\necho a warning\necho /an/interpreter\necho\n")
     without_library.chmod(0o755)
@@ -257,12 +275,12 @@ def test_without_the_plugin_the_message_says_what_is_missing(cohort_program, wri
     shutil.copy(cohort_program.path, program)  # whose folder tells where plugins are
     end = type(cohort_program)(program).end_of("check", write(FORWARD), COHORT_ALLOW_FILES="/")
     assert end.returncode == 2
-    assert "controllers in Python need the Python package of Cohort" in end.stderr
+    assert "controllers in Python require the Python package of Cohort" in end.stderr
 
 
 @pytest.mark.parametrize("place", ["process", "inprocess"])
 @pytest.mark.parametrize("source", [COUNTING, COUNTING_TOGETHER], ids=["each", "together"])
-def test_a_run_goes_on_from_a_snapshot_with_what_controllers_remember(cohort_program, write, domain, place, source):
+def test_a_run_continues_from_a_snapshot_with_the_state_of_controllers(cohort_program, write, domain, place, source):
     experiment = write(source)
     whole = hash_of(cohort_program, experiment)
     snapshot = experiment.with_name("snapshot")
@@ -271,6 +289,23 @@ def test_a_run_goes_on_from_a_snapshot_with_what_controllers_remember(cohort_pro
             cohort_program("ctl", "--domain", domain, "--timeout", str(PATIENCE), *request)
         cohort_program("ctl", "--domain", domain, "shutdown")
     assert hash_of(cohort_program, experiment, "--from", snapshot, "--controllers", place) == whole
+
+
+@pytest.mark.parametrize("stateless", [False, True])
+@pytest.mark.parametrize("base", ["Controller", "TeamController"])
+def test_a_snapshot_names_controllers_without_save_unless_they_are_stateless(
+    cohort_program, write, domain, base, stateless
+):
+    experiment = write(
+        f"import cohort\nclass Idle(cohort.{base}):\n    stateless = {stateless}\n"
+        "    def step(self, observation, command):\n        pass\n"
+    )
+    with cohort_program.running("run", experiment, "--quiet", "--paused", "--domain", domain):
+        ctl = ["ctl", "--domain", domain, "--timeout", str(PATIENCE)]
+        cohort_program(*ctl, "step", "2")
+        saved = cohort_program(*ctl, "save", experiment.with_name("snapshot"))
+        cohort_program(*ctl, "shutdown")
+    assert ("team 'explorers'" in saved) == (not stateless), saved
 
 
 def test_ctrl_c_ends_a_host_in_order(cohort_program, write, domain):

@@ -66,7 +66,7 @@ def test_mistakes_have_the_messages_of_check(keys, message):
         made(**keys)
 
 
-def test_teams_have_controllers_of_their_own():
+def test_each_team_has_its_own_controller():
     experiment = made(
         teams=[
             {"name": "first", "robots": "explorers/sbot_0"},
@@ -79,12 +79,12 @@ def test_teams_have_controllers_of_their_own():
     )
     alone = experiment.run({"first": Forward})
     assert alone.state_hash != experiment.run().state_hash
-    with pytest.raises(ValueError, match="no team 'frist'"):
+    with pytest.raises(ValueError, match="unknown team 'frist'"):
         experiment.run({"frist": Forward})
 
 
-def test_what_is_no_controller_is_named():
-    with pytest.raises(RuntimeError, match="makes a object, expected a cohort.Controller"):
+def test_an_invalid_controller_is_named():
+    with pytest.raises(RuntimeError, match="returned a object, expected a cohort.Controller"):
         made().run(object)
 
 
@@ -99,7 +99,7 @@ def test_a_run_is_recorded(tmp_path, cohort_program):
     assert "identical" in cohort_program("replay", str(tmp_path / "run.mcap"), "--verify")
 
 
-def test_a_world_is_made_of_the_words_of_sdf():
+def test_a_world_is_made_with_the_keys_of_sdf():
     world = {
         "name": "field",
         "model": [

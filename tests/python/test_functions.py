@@ -19,7 +19,7 @@ def test_functions_of_arrays_are_those_of_the_process(name):
 
 
 @pytest.mark.parametrize("name", UNARY)
-def test_functions_are_near_those_of_numpy(name):
+def test_functions_agree_with_those_of_numpy(name):
     numpy.testing.assert_allclose(getattr(cohort.math, name)(NUMBERS), getattr(numpy, name)(NUMBERS), rtol=1e-15)
 
 

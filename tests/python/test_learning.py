@@ -116,7 +116,7 @@ def test_same_step_mode_gives_the_last_observation_and_begins_the_next_episode()
     assert envs.worlds.state.steps.tolist() == [0, 0]
 
 
-def test_disabled_mode_resets_what_the_mask_names():
+def test_disabled_mode_resets_the_environments_in_the_mask():
     envs = environments(3, horizon=None, autoreset_mode=AutoresetMode.DISABLED)
     envs.reset(seed=1)
     actions = numpy.full(envs.action_space.shape, 0.2, dtype=numpy.float32)
@@ -148,16 +148,16 @@ def test_spaces_have_the_bounds_of_channels():
     ("arguments", "message"),
     [
         ({"observe": ["proximty/*"]}, "no channel matches 'proximty/\\*'"),
-        ({"robots": "explorers/epuck"}, "there is no robot 'explorers/epuck'"),
+        ({"robots": "explorers/epuck"}, "no robot matches 'explorers/epuck'"),
         ({"horizon": 0}, "horizon is 0"),
     ],
 )
-def test_mistakes_are_named(arguments, message):
+def test_invalid_arguments_are_named(arguments, message):
     with pytest.raises((ValueError, LookupError), match=message):
         environments(1, **arguments)
 
 
-def test_actions_that_cannot_act_are_named():
+def test_invalid_actions_are_named():
     envs = environments(2)
     envs.reset(seed=1)
     actions = numpy.zeros(envs.action_space.shape, dtype=numpy.float32)
@@ -171,5 +171,5 @@ def test_actions_that_cannot_act_are_named():
 def test_rewards_of_another_shape_are_named():
     envs = environments(2, reward=lambda state: numpy.zeros(3))
     envs.reset(seed=1)
-    with pytest.raises(ValueError, match="reward\\(state\\) gave an array \\(3,\\), expected \\(2,\\)"):
+    with pytest.raises(ValueError, match="reward\\(state\\) returned shape \\(3,\\), expected \\(2,\\)"):
         envs.step(numpy.zeros(envs.action_space.shape, dtype=numpy.float32))

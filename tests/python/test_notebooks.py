@@ -42,7 +42,7 @@ def test_the_first_controller_runs(run):
     assert min(values["lengths"]) > 0.5  # m in 20 s: no robot turns on the spot all the time
 
 
-def test_the_statistics_tell_two_swarms_apart(run):
+def test_the_statistics_distinguish_two_swarms(run):
     values = run("statistics_of_a_swarm", "{'low': low, 'high': high, 'runs': len(runs)}")
     assert values["runs"] == 12
     assert 0 < values["low"] < values["high"]
@@ -50,7 +50,7 @@ def test_the_statistics_tell_two_swarms_apart(run):
 
 def test_a_policy_learns_to_avoid_obstacles(run):
     returns = run("learning_obstacle_avoidance", "returns")
-    # Of at most 200. A policy that does not learn stays at the return of the random one, which is about -40.
+    # At most 200. A policy that does not learn stays at the return of the random one, which is about -40.
     assert returns["seed 1"] > returns["random"] + 100
 
 

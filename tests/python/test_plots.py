@@ -50,7 +50,7 @@ def test_a_plot_draws_paths_on_the_axes_that_are_given():
 
 def test_paths_of_another_shape_are_named():
     simulation = cohort.Simulation("obstacle_avoidance")
-    with pytest.raises(ValueError, match=r"paths have the shape \(5, 7\), expected \[step, 16, 2 or more\]"):
+    with pytest.raises(ValueError, match=r"paths has shape \(5, 7\), expected \[step, 16, 2 or more\]"):
         simulation.plot(numpy.zeros((5, 7)))
 
 

@@ -51,10 +51,11 @@ def minute(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def every_device(tmp_path_factory):
-    """A robot with every device, for whose observations the file has messages of ROS and frames of devices."""
+    """A robot with every device, whose observations the file has as messages of ROS, and the poses of its links."""
     file = tmp_path_factory.mktemp("recording") / "devices.mcap"
     teams = [{"name": "all", "robots": "*", "controller": "keyboard"}]
-    experiment = cohort.Experiment(world=EVERY_DEVICE, duration=0.5, teams=teams, record={"observations": 50})
+    record = {"observations": 50, "joints": 50}
+    experiment = cohort.Experiment(world=EVERY_DEVICE, duration=0.5, teams=teams, record=record)
     experiment.run(record=file)
     return cohort.Recording(file)
 
@@ -95,7 +96,7 @@ def simulated_again(recording):
         simulation.step()
 
 
-def test_say_what_ran_and_how_it_ended(recording, experiment):
+def test_a_recording_has_the_facts_and_the_end_of_its_run(recording, experiment):
     assert recording.robots == experiment.robots
     assert recording.experiment.teams == experiment.teams
     assert recording.duration == SECONDS
@@ -227,13 +228,13 @@ def test_images_are_arrays_of_bytes(every_device):
         assert image.shape == (5, 24, 3) and image.dtype == numpy.uint8
         numpy.testing.assert_allclose(image / 255, recorded.reshape(5, 24, 3), rtol=0, atol=0.5 / 255 + 1e-12)
     assert len({image.tobytes() for _, image in images}) > 1
-    with pytest.raises(LookupError, match="have no camera 'lidar' that gives images"):
+    with pytest.raises(LookupError, match="have no camera 'lidar' with images"):
         every_device.images(robot, "lidar")
-    with pytest.raises(LookupError, match="there is no robot 'nobody', expected one of"):
+    with pytest.raises(LookupError, match="unknown robot 'nobody', expected one of"):
         every_device.images("nobody", "panorama")
 
 
-def test_events_stand_beside_rows_of_any_table(recording):
+def test_events_are_joined_to_the_rows_of_any_table(recording):
     events = recording.events
     assert events.time.tolist() == [1.0, 2.5]
     assert events.tick.tolist() == [100, 250]
@@ -245,7 +246,7 @@ def test_events_stand_beside_rows_of_any_table(recording):
         assert pandas.isna(row.event_time) == (last == 0)
         if last:
             assert (row.event_time, row.event_text) == (events.time[last - 1], events.text[last - 1])
-    with pytest.raises(ValueError, match="expected one called 'time'"):
+    with pytest.raises(ValueError, match="the table has no column 'time'"):
         recording.with_events(pandas.DataFrame({"t": [1.0]}))
 
 
@@ -287,7 +288,7 @@ def test_other_threads_run_during_a_replay(minute):
         thread.join()
 
 
-def test_ctrl_c_ends_a_replay_in_its_midst(minute):
+def test_ctrl_c_ends_a_replay(minute):
     replayed = []
     interrupt = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
     with pytest.raises(KeyboardInterrupt):
@@ -296,7 +297,7 @@ def test_ctrl_c_ends_a_replay_in_its_midst(minute):
     assert len(replayed) < 20
 
 
-def test_a_simulation_goes_on_from_the_middle_of_a_recording(recording):
+def test_a_simulation_continues_from_the_middle_of_a_recording(recording):
     simulation = recording.simulation_at(2.0)
     expected = hashes(recording)
     commands = recording.commands_at().values
@@ -341,7 +342,7 @@ def two_worlds(serve, domain, build, cohort_program, tmp_path):
     return cohort.Recording(tmp_path / "run.mcap")
 
 
-def test_worlds_of_one_recording_are_told_apart(two_worlds):
+def test_worlds_of_one_recording_are_distinguished(two_worlds):
     assert [(each.run, each.seed, each.reason, each.tick) for each in two_worlds.worlds] == [
         (0, 1, "first", 0),
         (1, 1, "reset", 0),
@@ -396,7 +397,7 @@ class Changed(Forward):
     change = 57
 
 
-def test_two_runs_part_at_the_one_command_that_differs(experiment, tmp_path):
+def test_two_runs_differ_from_the_first_different_command_on(experiment, tmp_path):
     files = [tmp_path / "first.mcap", tmp_path / "second.mcap"]
     for file, controller in zip(files, (Forward, Changed)):
         experiment.run(controller, record=file)
@@ -406,40 +407,41 @@ def test_two_runs_part_at_the_one_command_that_differs(experiment, tmp_path):
     assert found.differences == [(PUSHED, "command", "treel/left/velocity", "0.1", "0.11")]
     assert found.differences[0].object == PUSHED
     assert str(found) == (
-        "they part at tick 57 (0.570 s), after 57 identical ticks\n"
+        "they diverge at tick 57 (0.570 s), after 57 identical ticks\n"
         "  command      explorers/sbot_3         treel/left/velocity: 0.1 | 0.11"
     )
 
 
-def test_comparing_says_what_the_command_says(recording, experiment, tmp_path, build):
+def test_a_comparison_prints_the_output_of_the_command(recording, experiment, tmp_path, build):
     other = tmp_path / "other.mcap"
     experiment.with_seed(2).run(record=other)
     program = subprocess.run([build / "bin/cohort", "diff", recording.file, other], capture_output=True, text=True)
-    assert str(cohort.compare(recording, other)) + "\n" == program.stdout
+    settings = "the runs have different settings:\n  seed: 1 | 2\n"  # of the command only
+    assert settings + str(cohort.compare(recording, other)) + "\n" == program.stdout
     same = cohort.compare(recording, recording.file)
     assert same.are_identical and same.tick is None and same.differences == []
     assert str(same) == f"identical, {100 * SECONDS + 1} ticks"
 
 
-def test_comparing_with_a_shorter_run_says_which_one_ends(recording, tmp_path):
+def test_a_comparison_with_a_shorter_run_names_the_one_that_ends(recording, tmp_path):
     text = yaml_fields.of_example("obstacle_avoidance", events=EVENTS)
     cohort.Experiment.read_text(text, duration=1).run(record=tmp_path / "short.mcap")
     found = cohort.compare(recording, tmp_path / "short.mcap")
     assert not found.are_identical and found.tick is None
-    assert str(found).startswith(f"{tmp_path / 'short.mcap'} ends at tick 100, and the other goes on")
+    assert str(found).startswith(f"{tmp_path / 'short.mcap'} ends at tick 100, and the other recording is longer")
 
 
-def test_a_file_that_is_missing_or_no_recording_is_an_error_that_says_so(tmp_path):
-    with pytest.raises(FileNotFoundError, match="there is no recording '.*missing.mcap'"):
+def test_a_missing_or_invalid_file_is_an_error(tmp_path):
+    with pytest.raises(FileNotFoundError, match="no such recording: '.*missing.mcap'"):
         cohort.Recording(tmp_path / "missing.mcap")
     (tmp_path / "text.mcap").write_text("hello")
-    for file, message in [(tmp_path / "text.mcap", "this is no MCAP file"), (tmp_path, "it is no file")]:
+    for file, message in [(tmp_path / "text.mcap", "this is not an MCAP file"), (tmp_path, "it is not a regular file")]:
         with pytest.raises(cohort.RecordingError, match=message) as error:
             cohort.Recording(file)
         assert isinstance(error.value, ValueError)
 
 
-def test_a_recording_that_is_cut_short_is_read_up_to_there_with_a_warning(minute, tmp_path):
+def test_a_truncated_recording_is_read_up_to_its_end_with_a_warning(minute, tmp_path):
     file = cut(minute, tmp_path / "cut.mcap", 0.7)
     with pytest.warns(UserWarning, match="cut.mcap: "):
         cut_short = cohort.Recording(file)
@@ -451,12 +453,12 @@ def test_a_recording_that_is_cut_short_is_read_up_to_there_with_a_warning(minute
 
 
 @pytest.mark.parametrize("share", [0.001, 0.01])
-def test_a_recording_of_which_no_run_is_left_is_an_error_that_says_so(share, recording, tmp_path):
-    with pytest.raises(cohort.RecordingError, match="cut.mcap: .*(no run can be read in it|the file ends)"):
+def test_a_recording_without_a_complete_run_is_an_error(share, recording, tmp_path):
+    with pytest.raises(cohort.RecordingError, match="cut.mcap: .*(it has no readable run|the file ends)"):
         cohort.Recording(cut(recording, tmp_path / "cut.mcap", share))
 
 
-def test_what_was_not_recorded_is_an_error_that_says_how_to_record_it(tmp_path):
+def test_missing_data_is_an_error_with_advice_how_to_record_it(tmp_path):
     teams = [{"name": "all", "robots": "*", "controller": "keyboard"}]
     cohort.Experiment(world=EVERY_DEVICE, duration=0.1, teams=teams, record={"poses": 0}).run(
         record=tmp_path / "run.mcap"
@@ -474,7 +476,7 @@ def test_what_was_not_recorded_is_an_error_that_says_how_to_record_it(tmp_path):
 
 
 @pytest.mark.parametrize("package, use", [("pandas", lambda of: of.table("ticks")), ("xarray", lambda of: of.poses)])
-def test_a_package_that_is_missing_is_named(package, use, recording, monkeypatch):
+def test_a_missing_package_is_named(package, use, recording, monkeypatch):
     real = importlib.import_module
 
     def import_module(name, *more):
@@ -483,5 +485,5 @@ def test_a_package_that_is_missing_is_named(package, use, recording, monkeypatch
         return real(name, *more)
 
     monkeypatch.setattr(importlib, "import_module", import_module)
-    with pytest.raises(ImportError, match=f"needs the package {package}: install it, as with `pip install {package}`"):
+    with pytest.raises(ImportError, match=f"requires the package {package}; install it, for example with `pip"):
         use(recording)

@@ -25,7 +25,7 @@ def tracks_of(simulation):
     return simulation.robots[0].command_channels.indices("treel/*/velocity", 2)
 
 
-def test_arrays_show_the_present_without_copies(simulation):
+def test_arrays_show_the_current_state_without_copies(simulation):
     observations, commands = simulation.observations, simulation.commands
     assert observations.dtype == commands.dtype == numpy.float64
     commands[:, tracks_of(simulation)] = 0.1
@@ -38,7 +38,7 @@ def test_arrays_show_the_present_without_copies(simulation):
         observations[0, 0] = 1.0
 
 
-def test_robots_drive_where_poses_say(simulation):
+def test_poses_follow_the_robots(simulation):
     simulation.commands[:, tracks_of(simulation)] = 0.1
     simulation.step(50)  # until all have their speed
     before = simulation.poses
@@ -51,7 +51,7 @@ def test_robots_drive_where_poses_say(simulation):
     assert numpy.median(numpy.linalg.norm(simulation.velocities[:, :2], axis=1)) == pytest.approx(0.1, rel=0.02)
 
 
-def test_a_snapshot_goes_on_to_the_same_bits(simulation):
+def test_a_run_continues_from_a_snapshot_with_the_same_bits(simulation):
     simulation.commands[:, tracks_of(simulation)] = 0.1
     simulation.step(100)
     snapshot = simulation.save()
@@ -64,7 +64,7 @@ def test_a_snapshot_goes_on_to_the_same_bits(simulation):
     assert other.state_hash == end
 
 
-def test_a_snapshot_of_something_else_is_refused_and_changes_nothing(simulation):
+def test_a_snapshot_of_another_experiment_is_refused_and_changes_nothing(simulation):
     simulation.step(3)
     before = simulation.state_hash
     for snapshot in (b"", b"no snapshot", simulation.save()[:-1], cohort.Simulation("wheels").save()):
@@ -82,7 +82,7 @@ def test_a_reset_is_a_new_simulation_with_that_seed(simulation):
     assert simulation.state_hash == cohort.Simulation("obstacle_avoidance", seed=7).state_hash
 
 
-def test_what_is_spawned_falls_is_pushed_and_is_removed(simulation):
+def test_an_object_is_spawned_falls_is_pushed_and_is_removed(simulation):
     name = simulation.spawn(CRATE, position=(0.0, 0.0, 0.5), yaw=0.5, name="crate")
     assert simulation.pose(name)[2] == pytest.approx(0.5)
     assert simulation.pose(name)[6] == pytest.approx(math.sin(0.25))
@@ -103,7 +103,7 @@ def test_what_is_spawned_falls_is_pushed_and_is_removed(simulation):
         simulation.set_pose(name, (0.0, 0.0, 1.0))
 
 
-def test_a_robot_that_comes_has_a_row(simulation):
+def test_an_added_robot_has_a_row(simulation):
     before = simulation.observations
     name = simulation.spawn("sbot", (0.2, 0.2, 0.1), name="newcomer", team="explorers")
     assert simulation.observations.shape[0] == before.shape[0] + 1 == len(simulation.robots)
@@ -114,7 +114,7 @@ def test_a_robot_that_comes_has_a_row(simulation):
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e9])
-def test_a_command_that_cannot_act_is_named_and_nothing_moves(simulation, value):
+def test_an_invalid_command_is_named_and_nothing_moves(simulation, value):
     simulation.commands[3, tracks_of(simulation)] = value
     with pytest.raises(ValueError, match=r"sbot_3.*treel/left/velocity"):
         simulation.step()
@@ -128,14 +128,14 @@ def test_a_command_that_cannot_act_is_named_and_nothing_moves(simulation, value)
         (lambda s: s.set_pose("explorers/sbot_0", (0, 0)), "position is"),
         (lambda s: s.set_pose("explorers/sbot_0", (0, 0, math.nan)), "finite"),
         (lambda s: s.set_pose("explorers/sbot_0", (0, 0, 0), orientation=(0, 0, 0, 0)), "quaternion"),
-        (lambda s: s.apply_force("explorers/sbot_0", duration=-1), "duration of a force is -1"),
+        (lambda s: s.apply_force("explorers/sbot_0", duration=-1), "duration is -1"),
         (lambda s: s.spawn("<sdf>"), "sdf"),
-        (lambda s: s.robots[0].observation_channels.index("proximity/99/reading"), "near: proximity/"),
+        (lambda s: s.robots[0].observation_channels.index("proximity/99/reading"), "the nearest are proximity/"),
         (lambda s: cohort.Simulation("obstacle_avoidanc"), "did you mean obstacle_avoidance"),
         (lambda s: cohort.Simulation("chain", threads=0), "threads is 0"),
     ],
 )
-def test_mistakes_are_named(simulation, call, message):
+def test_invalid_arguments_are_named(simulation, call, message):
     with pytest.raises((ValueError, LookupError, FileNotFoundError), match=message):
         call(simulation)
 
@@ -160,7 +160,7 @@ def test_a_second_thread_is_refused_while_the_first_steps(simulation):
             refused.append(str(error))
     done.set()
     other.join()
-    assert set(refused) == {"another thread is using it now"}
+    assert set(refused) == {"another thread is using this object"}
     simulation.step()
 
 
@@ -172,16 +172,16 @@ def step_in_child(simulation, answers):
         answers.put(str(error))
 
 
-def test_after_a_fork_it_says_that_another_one_is_needed(simulation):
+def test_use_after_a_fork_is_an_error(simulation):
     context = multiprocessing.get_context("fork")
     answers = context.Queue()
     child = context.Process(target=step_in_child, args=(simulation, answers))
     child.start()
-    assert "before this process was forked" in answers.get(timeout=300)
+    assert "cannot be used after a fork" in answers.get(timeout=300)
     child.join()
 
 
-def test_an_interrupted_simulation_goes_on_from_its_tick(simulation):
+def test_an_interrupted_simulation_continues_from_its_tick(simulation):
     simulation.commands[:, tracks_of(simulation)] = 0.1
     killer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
     killer.start()
@@ -198,7 +198,7 @@ def test_an_interrupted_simulation_goes_on_from_its_tick(simulation):
 
 
 @pytest.mark.skipif("ASAN_OPTIONS" in os.environ, reason="AddressSanitizer keeps what is freed for a while")
-def test_memory_stays_as_it_is_over_many_steps():
+def test_memory_does_not_grow_over_many_steps():
     batch = cohort.Batch("obstacle_avoidance", worlds=4)
     simulation = cohort.Simulation("obstacle_avoidance")
 
@@ -241,14 +241,14 @@ def test_a_bound_that_a_policy_has_rounded_to_float32_acts_as_the_bound(simulati
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda batch: batch.robot_model(16), "there is no robot 16, expected one below 16"),
-        (lambda batch: batch.observation_channels(99), "there is no robot 99"),
-        (lambda batch: batch.tick(2), "there is no world 2, expected one below 2"),
-        (lambda batch: batch.state_hash(7), "there is no world 7"),
-        (lambda batch: batch.step(only=numpy.ones(3, dtype=bool)), "a choice of 3 worlds, expected one of 2"),
+        (lambda batch: batch.robot_model(16), "no robot 16, expected a number below 16"),
+        (lambda batch: batch.observation_channels(99), "no robot 99"),
+        (lambda batch: batch.tick(2), "no world 2, expected a number below 2"),
+        (lambda batch: batch.state_hash(7), "no world 7"),
+        (lambda batch: batch.step(only=numpy.ones(3, dtype=bool)), "got a selection of 3 worlds, expected 2"),
     ],
 )
-def test_what_a_batch_has_not_is_named(call, message):
+def test_a_missing_robot_or_world_of_a_batch_is_named(call, message):
     with pytest.raises(ValueError, match=message):
         call(cohort.Batch("obstacle_avoidance", worlds=2))
 

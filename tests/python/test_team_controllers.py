@@ -46,7 +46,7 @@ def test_it_gives_the_same_hash_as_a_client(serve, domain):
     assert finish().state_hash == cohort.run("obstacle_avoidance", ObstacleAvoidance, duration=5).state_hash
 
 
-def test_it_is_asked_for_the_robots_that_are_due():
+def test_it_is_called_for_the_robots_that_are_due():
     seen = []
 
     class Some(cohort.TeamController):
@@ -81,7 +81,7 @@ def test_an_exception_ends_the_run_with_its_line():
         cohort.run("obstacle_avoidance", Fails, duration=1)
 
 
-def test_what_is_no_finite_command_is_refused_by_channel():
+def test_a_command_that_is_not_finite_is_refused_by_channel():
     class Nan(cohort.TeamController):
         def step(self, observations, commands):
             commands[3] = numpy.nan

@@ -130,7 +130,7 @@ def test_the_page_of_the_view_is_served_to_this_machine(view):
     assert repr(view) == f"<cohort.View of obstacle_avoidance: {view.url}>"
 
 
-def test_viewers_get_the_scene_and_how_it_is_after_each_call(simulation, view):
+def test_viewers_get_the_scene_and_its_state_after_each_call(simulation, view):
     with Viewer(view.url, "/cohort/scene", "/cohort/frame", "/cohort/status") as viewer:
         scene = viewer.until("/cohort/scene", lambda _: True)
         assert [each.name for each in scene.entities] == simulation.objects
@@ -147,7 +147,7 @@ def test_viewers_get_the_scene_and_how_it_is_after_each_call(simulation, view):
         assert moved.tick == 50
 
 
-def test_viewers_see_how_a_long_call_goes_on(simulation, view):
+def test_viewers_see_the_progress_of_a_long_call(simulation, view):
     ticks = []
 
     def look():
@@ -181,7 +181,7 @@ def test_a_loop_of_short_calls_shows_at_most_30_frames_a_second_and_the_last(sim
         assert frames <= 2 + (time.monotonic() - begin) * FRAMES_A_SECOND
 
 
-def test_robots_that_come_and_worlds_that_begin_again_are_shown(simulation, view):
+def test_added_robots_and_restarted_worlds_are_shown(simulation, view):
     with Viewer(view.url, "/cohort/scene", "/cohort/frame") as viewer:
         scene = viewer.until("/cohort/scene", lambda _: True)
         saved = simulation.save()
@@ -212,12 +212,12 @@ def test_a_robot_that_is_watched_shows_what_it_observes(simulation, view):
         assert list(shown.observation) == pytest.approx(list(simulation.robots[3].observation), rel=1e-6)
 
 
-def test_viewers_are_told_that_the_program_steps(simulation, view):
+def test_requests_of_viewers_are_refused(simulation, view):
     with Viewer(view.url, "/cohort/frame") as viewer:
         for operation in ("play", "pause", "step", "reset"):
             answer = viewer.ask({"operation": operation})
             assert not answer["done"]
-            assert f"'{operation}'" in answer["text"] and "a Python program steps this world" in answer["text"]
+            assert f"'{operation}'" in answer["text"] and "the Python program that steps this world" in answer["text"]
     assert simulation.tick == 0
 
 
@@ -281,7 +281,7 @@ def test_without_a_port_the_usual_one_or_any_free_one_is_taken():
 def test_a_simulation_has_one_view_as_long_as_it_is_open(simulation, view):
     assert simulation.view() is view
     assert simulation.view(port=view.port) is view
-    with pytest.raises(ValueError, match=f"the simulation is shown at {view.url} already"):
+    with pytest.raises(ValueError, match=f"the simulation already has a view at {view.url}"):
         simulation.view(port=view.port % 65535 + 1)
     view.close()
     with simulation.view(port=0) as another:
@@ -291,7 +291,7 @@ def test_a_simulation_has_one_view_as_long_as_it_is_open(simulation, view):
             viewer.frame(3)
 
 
-def test_a_port_that_is_none_is_an_error(simulation):
+def test_an_invalid_port_is_an_error(simulation):
     with pytest.raises(ValueError, match="port is 70000, expected 0 to 65535"):
         simulation.view(port=70000)
 
@@ -326,7 +326,7 @@ def drop_in_child(held, answers):
     answers.put("dropped")
 
 
-def test_a_view_goes_on_when_a_forked_process_drops_its_copy():
+def test_a_view_continues_when_a_forked_process_drops_its_copy():
     held = [cohort.Simulation("obstacle_avoidance")]
     view = held[0].view(port=0)
     url = view.url
@@ -353,7 +353,7 @@ def test_a_view_goes_on_when_a_forked_process_drops_its_copy():
         "import builtins; builtins.kept = simulation.view(port=0)",
     ],
 )
-def test_a_view_that_is_not_closed_does_not_keep_the_process(ending):
+def test_an_open_view_does_not_keep_the_process_alive(ending):
     program = f"""
         import cohort
         simulation = cohort.Simulation("obstacle_avoidance")
@@ -367,7 +367,7 @@ def test_a_view_that_is_not_closed_does_not_keep_the_process(ending):
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, "done\n", "")
 
 
-def test_a_view_goes_with_the_simulation_that_nothing_uses():
+def test_a_view_ends_with_an_unused_simulation():
     simulation = cohort.Simulation("obstacle_avoidance")
     url = simulation.view(port=0).url
     del simulation
@@ -387,7 +387,7 @@ def test_a_browser_is_opened_only_outside_of_jupyter(simulation, view, monkeypat
     assert simulation.view(open=True) is view
     assert opened == [view.url]
     monkeypatch.setattr(webbrowser, "open", lambda url: False)
-    with pytest.warns(UserWarning, match=f"open {view.url} in one"):
+    with pytest.warns(UserWarning, match=f"open {view.url} yourself"):
         simulation.view(open=True)
     shell = types.SimpleNamespace(kernel=object())
     monkeypatch.setitem(sys.modules, "IPython", types.SimpleNamespace(get_ipython=lambda: shell))

@@ -7,6 +7,7 @@
 #include "server/recording/mcap/writing/recording_file.hpp"
 #include "server/recording/ros_channels.hpp"
 #include "tests/support/any_message.hpp"
+#include "tests/support/every_ros_message.hpp"
 #include "tests/support/node_folder.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/recordings.hpp"
@@ -25,7 +26,7 @@ class OfficialReader : public ::testing::Test {
     if (const auto missing = folder.prepare(script)) GTEST_SKIP() << *missing;
   }
 
-  // What the reader found in the file.
+  // The contents that the reader found in the file.
   static json read(const fs::path& file) {
     const Ended ended = folder.run(script, {file});
     EXPECT_EQ(ended.exit_code, 0) << ended.err;
@@ -41,7 +42,7 @@ class OfficialReader : public ::testing::Test {
                                         COHORT_NODE_FOLDER};
 };
 
-// Messages are text: a channel without a schema that has to be parsed.
+// Messages are text, in a channel without a schema.
 Bytes text_recording(int count, const McapWriterOptions& options) {
   Bytes bytes;
   McapWriter writer([&](ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); }, options);
@@ -92,7 +93,7 @@ void expect_text_recording(const json& found, int count) {
   EXPECT_EQ(sequences.size(), static_cast<std::size_t>(count));
 }
 
-TEST_F(OfficialReader, ReadsAllThatTheWriterWrote) {
+TEST_F(OfficialReader, ReadsAllMessagesOfTheWriter) {
   for (const bool compress : {true, false}) {
     const TemporaryFile file(text_recording(300, {.chunk_size = 1000, .compress = compress}));
     const json found = read(file.path());
@@ -113,7 +114,7 @@ TEST_F(OfficialReader, ReadsARecordingWithoutMessages) {
   EXPECT_TRUE(found["messages"].empty());
 }
 
-TEST_F(OfficialReader, ReadsWhatAThreadWroteAndWhatWasRecovered) {
+TEST_F(OfficialReader, ReadsThreadedAndRecoveredFiles) {
   const TemporaryFile file;
   constexpr int count = 5000;
   {
@@ -135,7 +136,7 @@ TEST_F(OfficialReader, ReadsWhatAThreadWroteAndWhatWasRecovered) {
   EXPECT_EQ(found["messages"].back()["message"], said(static_cast<int>(kept) - 1));
 }
 
-// As decoders of ROS's messages give it.
+// The message, as decoders of ROS return it.
 template <class Value>
 json as_json(const Value& value) {
   if constexpr (messages::RosMessage<Value>) {
@@ -163,8 +164,8 @@ void write_any(McapWriter& writer, AnyMessage& any, std::vector<json>& written) 
   }
 }
 
-// By nothing but the schemas in the file, with code that is not ours.
-TEST_F(OfficialReader, DecodesOurRosMessagesByTheirSchemas) {
+// Decodes with the schemas in the file only, and with foreign code.
+TEST_F(OfficialReader, DecodesRosMessagesByTheirSchemas) {
   Bytes bytes;
   McapWriter writer([&](ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
   AnyMessage any;
@@ -172,11 +173,7 @@ TEST_F(OfficialReader, DecodesOurRosMessagesByTheirSchemas) {
   const auto write_all = [&]<class... Message>(std::tuple<Message...>*) {
     (write_any<Message>(writer, any, written), ...);
   };
-  using Messages = std::tuple<ros::Time, ros::Header, ros::Float64MultiArray, ros::Clock, ros::Pose, ros::PoseStamped,
-                              ros::PoseArray, ros::Transform, ros::TransformStamped, ros::Twist, ros::TwistStamped,
-                              ros::WrenchStamped, ros::TFMessage, ros::LaserScan, ros::Imu, ros::MagneticField,
-                              ros::FluidPressure, ros::Temperature, ros::RelativeHumidity, ros::JointState, ros::Range,
-                              ros::BatteryState, ros::NavSatFix, ros::PointCloud2>;
+  using Messages = test::StandardMessages;
   write_all(static_cast<Messages*>(nullptr));
   writer.close();
   const TemporaryFile file(bytes);
@@ -186,7 +183,7 @@ TEST_F(OfficialReader, DecodesOurRosMessagesByTheirSchemas) {
     EXPECT_EQ(found["messages"][i]["message"], written[i]) << found["schemas"][i / 5];
 }
 
-// What Cohort records of a run, with its own messages.
+// The recording of a run, with Cohort's own messages.
 TEST_F(OfficialReader, ReadsARunOfCohort) {
   const ScratchFolder scratch;
   run_demo({"--controllers", "inprocess", "--duration", "1", "--record", scratch / "run.mcap", "--record-observations",
@@ -196,10 +193,12 @@ TEST_F(OfficialReader, ReadsARunOfCohort) {
   for (const json& message : found["messages"]) messages[message["topic"]].push_back(message["message"]);
   EXPECT_EQ(messages["/cohort/boundary"].size(), 101u);
   EXPECT_EQ(messages["/cohort/boundary"][50]["tick"], 50);
-  ASSERT_EQ(messages["/tf"].size(), 11u);
+  ASSERT_EQ(messages["/tf"].size(), 22u) << "of robots and of their sensors, in turn";
   ASSERT_EQ(messages["/tf"][0]["transforms"].size(), 16u);
   EXPECT_EQ(messages["/tf"][0]["transforms"][3]["child_frame_id"], "explorers/sbot_3");
-  EXPECT_EQ(messages["/tf"][10]["transforms"][3]["header"]["stamp"]["sec"], 1);
+  EXPECT_EQ(messages["/tf"][20]["transforms"][3]["header"]["stamp"]["sec"], 1);
+  ASSERT_EQ(messages["/explorers/sbot_7/range/proximity_3"].size(), 11u);
+  EXPECT_EQ(messages["/explorers/sbot_7/range/proximity_3"][5]["header"]["frame_id"], "explorers/sbot_7/proximity_3");
   EXPECT_EQ(messages["/cohort/roster"][0]["robots"][15]["name"], "explorers/sbot_15");
   EXPECT_EQ(messages["/cohort/world"][0]["duration_ns"], 1'000'000'000);
   EXPECT_EQ(messages["/cohort/snapshot"].size(), 2u);
@@ -208,7 +207,7 @@ TEST_F(OfficialReader, ReadsARunOfCohort) {
   ASSERT_GE(found["attachments"].size(), 3u) << "experiment, world and robot";
 }
 
-// A wall 2 m before a robot that has every sensor for which ROS has a message, and an arm.
+// A wall 2 m in front of a robot that has an arm, and every sensor for which ROS has a message.
 constexpr const char* sensors = R"(world:
   name: sensors
   gravity: [0, 0, -9.81]
@@ -235,7 +234,7 @@ constexpr const char* sensors = R"(world:
         - {name: arm, pose: [0, 0, 1, 0, 0, 0], inertial: {mass: 2}}
 )";
 
-TEST_F(OfficialReader, ReadsStandardSensorsAsRosHasThem) {
+TEST_F(OfficialReader, ReadsStandardSensorsAsRosMessages) {
   const ScratchFolder scratch;
   write_file(scratch / "world.yaml", sensors);
   write_file(scratch / "experiment.yaml",
@@ -257,29 +256,33 @@ TEST_F(OfficialReader, ReadsStandardSensorsAsRosHasThem) {
   EXPECT_TRUE(near(scan["ranges"][2], 2.0)) << scan;
   EXPECT_TRUE(near(scan["ranges"][1], 2.0 / std::cos(0.5))) << scan;
   EXPECT_TRUE(scan["ranges"][0].is_null()) << "infinite: nothing within 3 m. " << scan;
-  const json& cloud = last["/robot/cloud"];
+  const json& cloud = last["/robot/points"];
   EXPECT_EQ(cloud["width"], 2) << "straight ahead, in both rows";
   EXPECT_EQ(cloud["data"].size(), 24U);
   EXPECT_EQ(cloud["fields"][2]["name"], "z");
   EXPECT_TRUE(near(last["/robot/imu"]["linear_acceleration"]["z"], 9.81)) << last["/robot/imu"];
   EXPECT_TRUE(near(last["/robot/imu"]["orientation"]["w"], 1.0)) << last["/robot/imu"];
-  EXPECT_EQ(last["/robot/shake"]["orientation_covariance"][0], -1.0) << "not measured";
-  EXPECT_TRUE(near(last["/robot/compass"]["magnetic_field"]["z"], -4e-5, 1e-12)) << last["/robot/compass"];
-  EXPECT_TRUE(near(last["/robot/barometer"]["fluid_pressure"], 101325.0, 1.0)) << last["/robot/barometer"];
-  EXPECT_TRUE(near(last["/robot/cell"]["percentage"], 0.75)) << last["/robot/cell"];
-  EXPECT_TRUE(last["/robot/air/temperature"]["temperature"].is_number());
-  EXPECT_TRUE(last["/robot/air/humidity"]["relative_humidity"].is_number());
-  EXPECT_TRUE(near(last["/robot/strain"]["wrench"]["force"]["z"], -2 * 9.81, 1e-3)) << last["/robot/strain"];
+  EXPECT_EQ(last["/robot/accelerometer"]["orientation_covariance"][0], -1.0) << "not measured";
+  EXPECT_TRUE(near(last["/robot/magnetic_field"]["magnetic_field"]["z"], -4e-5, 1e-12))
+      << last["/robot/magnetic_field"];
+  EXPECT_TRUE(near(last["/robot/fluid_pressure"]["fluid_pressure"], 101325.0, 1.0)) << last["/robot/fluid_pressure"];
+  EXPECT_TRUE(near(last["/robot/battery_state"]["percentage"], 0.75)) << last["/robot/battery_state"];
+  EXPECT_TRUE(last["/robot/temperature"]["temperature"].is_number());
+  EXPECT_TRUE(last["/robot/relative_humidity"]["relative_humidity"].is_number());
+  EXPECT_TRUE(near(last["/robot/wrench/strain"]["wrench"]["force"]["z"], -2 * 9.81, 1e-3))
+      << last["/robot/wrench/strain"];
   EXPECT_EQ(last["/robot/joint_states"]["name"], json{"hinge"});
 
   std::map<std::string, json> places;  // by frame
   for (const json& message : found["messages"])
-    if (message["topic"] == "/tf")
+    if (message["topic"] == "/tf" || message["topic"] == "/tf_static")
       for (const json& each : message["message"]["transforms"]) places[each["child_frame_id"]] = each["transform"];
   EXPECT_EQ(places["robot/scan"]["translation"]["z"], 0.5);
   EXPECT_EQ(places["robot/arm"]["translation"]["z"], 1.0);
   EXPECT_TRUE(places.contains("robot/strain"));
   EXPECT_FALSE(places.contains("robot/cell")) << "it is nowhere";
+  for (const json& each : last["/tf_static"]["transforms"])
+    EXPECT_EQ(each["header"]["frame_id"], each["child_frame_id"] == "robot/strain" ? "robot/arm" : "robot") << each;
 }
 
 }  // namespace

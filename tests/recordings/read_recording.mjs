@@ -1,5 +1,5 @@
-// Reads a recording with @mcap/core, by its index and from beginning to end, checks every CRC, decodes messages by their
-// schemas, and prints what it found as JSON.
+// Reads a recording with @mcap/core, by its index and from beginning to end. Checks every CRC, decodes messages by
+// their schemas, and prints the contents as JSON.
 import { readFileSync } from "node:fs";
 import { open } from "node:fs/promises";
 import { crc32 } from "@foxglove/crc";
@@ -59,7 +59,7 @@ for await (const { name, mediaType, data } of reader.readAttachments({ validateC
   found.attachments.push({ name, media_type: mediaType, size: data.length });
 for await (const { name, metadata } of reader.readMetadata()) found.metadata.push({ name, entries: [...metadata] });
 
-// From beginning to end, without the index; and the CRC of all data, which the reader leaves to us.
+// Reads from beginning to end, without the index, and checks the CRC of all data, which the reader does not check.
 const bytes = readFileSync(file);
 const stream = new McapStreamReader({ decompressHandlers, includeChunks: true, validateCrcs: true });
 stream.append(bytes);

@@ -55,7 +55,7 @@ inline const std::atomic<bool> never = false;
 inline Control control_of(const ControlledRun& run) {
   return Control({.domain = run.domain().number(), .time_limit = patience});
 }
-/// What it stands on: any request, well-formed or not.
+/// Returns the client under Control, which sends any request, well-formed or not.
 inline ControlClient client_of(const ControlledRun& run) { return ControlClient({.domain = run.domain().number()}); }
 
 /// The hash of the field's run with its controllers in the server's process.

@@ -11,7 +11,7 @@
 
 namespace cohort::test {
 
-/// A server on a domain that nobody else has, so that tests may run side by side.
+/// A server on a domain that no other process has, so that tests may run side by side.
 struct FreeDomain {
   std::uint32_t domain;
   wire::Participant server;

@@ -15,16 +15,16 @@ class TcpConnection {
   bool connect(const std::string& port) const;
   /// All of it; false if it cannot.
   bool send(const std::string& text) const;
-  /// What has come, once something has; empty at the end.
+  /// Waits for data and returns them; empty at the end.
   std::string receive() const;
 
  private:
   int socket_;
 };
 
-/// What a server at this port of the loopback answers to GET of `target`, status line and headers included, to the end
-/// of the connection or, of a connection that becomes another (101), of the headers. Waits until somebody listens;
-/// empty if nobody does. `headers`: more of them, each with its "\r\n".
+/// Returns the answer of a server at this port of the loopback to GET of `target`, with status line and headers. It
+/// reads to the end of the connection or, if the protocol is switched (101), of the headers. Waits until a server
+/// listens; empty if none does. `headers`: additional ones, each with its "\r\n".
 std::string http_get(const std::string& port, const std::string& target, const std::string& headers = "");
 
 /// The same, asking for a WebSocket of the view, which needs its token.
@@ -36,7 +36,7 @@ std::string port_in(const std::string& output);
 /// A view serves the page there, all of it.
 void expect_page(const std::string& port);
 
-/// A port of the loopback that nobody listens at.
+/// Returns a port of the loopback on which no program listens.
 std::string free_port();
 
 }  // namespace cohort::test

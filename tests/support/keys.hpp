@@ -27,7 +27,7 @@ class Keys {
   wire::Identity client(const std::string& name) const { return wire::read_identity(client_folder(name)); }
   wire::Identity door(const std::string& name) const { return wire::read_identity(folder_.path() / "server" / name); }
 
-  /// What `name` holds, pretending to be for the door of `other`.
+  /// Makes a folder with the files of `name` for the door of `other`.
   std::string disguise(const std::string& name, const std::string& other) const {
     const std::filesystem::path to = folder_.path() / (name + "_at_" + other);
     std::filesystem::copy(client_folder(name), to);

@@ -20,7 +20,7 @@ class NodeFolder {
   NodeFolder(std::string node, std::string npm, std::filesystem::path source, std::filesystem::path folder)
       : node_(std::move(node)), npm_(std::move(npm)), source_(std::move(source)), folder_(std::move(folder)) {}
 
-  /// Installs the packages, once, by whoever comes first. Why it cannot, or nothing.
+  /// Installs the packages once, in the first process that needs them. Returns the reason why it cannot, or nothing.
   std::optional<std::string> prepare(const std::string& script) const {
     if (node_.empty()) return "there is no node: tools/install-packages tools/packages-node.txt";
     if (npm_.empty()) return "there is no npm: tools/install-packages tools/packages-node.txt";
@@ -30,7 +30,7 @@ class NodeFolder {
     return std::nullopt;
   }
 
-  /// What runs the script with these arguments.
+  /// Returns the command that runs the script with these arguments.
   std::vector<std::string> command(const std::string& script, std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), {node_, (folder_ / script).string()});
     return arguments;

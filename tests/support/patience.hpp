@@ -6,8 +6,8 @@
 
 namespace cohort::test {
 
-/// How long a test waits for something that should happen before it fails: long, since it is never waited for in vain,
-/// and shorter than ctest waits for the test (COHORT_TEST_TIMEOUT).
+/// Time that a test waits for an expected event before it fails. It is long, since only a failing test waits for all of
+/// it. It is shorter than ctest's time limit of the test (COHORT_TEST_TIMEOUT).
 inline constexpr std::chrono::seconds patience{COHORT_TEST_PATIENCE};
 
 /// For commands that are told how long to wait.

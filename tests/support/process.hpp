@@ -28,7 +28,7 @@ class Process {
 
   pid_t pid() const { return pid_; }
   void signal(int number) const;
-  /// What it wrote to standard output and standard error so far, in one.
+  /// Returns its standard output and standard error so far, in one.
   std::string output() const;
   /// Waits until the output contains `text`; false if the process ended without it or patience ran out.
   bool wait_for_output(const std::string& text);
@@ -50,12 +50,12 @@ struct Ended {
 };
 Ended run_to_end(const std::vector<std::string>& command, const Process::Environment& environment = {});
 
-/// Whether a shell finds the program.
+/// Returns whether a shell finds the program.
 bool is_installed(const std::string& program);
 
-/// Whether the process runs. One that has ended does not, even if nobody has waited for it yet.
+/// Returns whether the process runs. A process that has ended does not, even if no other has waited for it yet.
 bool is_alive(pid_t pid);
-/// What the process has in memory.
+/// Returns the memory of the process.
 std::size_t resident_bytes(pid_t pid);
 /// Waits until it has ended; false if patience ran out.
 bool wait_until_gone(pid_t pid);
@@ -79,7 +79,7 @@ class ReservedDomain {
 };
 
 nlohmann::json read_json(const std::filesystem::path& file);
-/// Of the run with this summary.
+/// Returns the state hash of the run with this summary.
 std::string hash_in(const std::filesystem::path& summary);
 
 std::string cohort_program();

@@ -35,7 +35,7 @@ inline Bytes read_bytes(const std::filesystem::path& file) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// What message `i` of `small_recording` says.
+/// Returns the content of message `i` of `small_recording`.
 inline std::string said(int i) { return "message " + std::to_string(i) + " of this recording"; }
 
 /// Messages 0 to `count` - 1 in turns on the channels 1 `/even` and 2 `/odd`, log times 1000 × number, a chunk for

@@ -39,7 +39,7 @@ inline std::size_t add_wheel(description::Model& model, const Eigen::Vector3d& p
   joint.type = description::JointType::revolute;
   joint.parent = 0;
   joint.child = model.links.size();
-  joint.axis.direction = Eigen::Vector3d::UnitZ();  // of the lying wheel: y of the model
+  joint.axis.direction = Eigen::Vector3d::UnitZ();  // axis of the lying wheel: y of the model
   const Eigen::Quaterniond lying(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));
   model.links.push_back({joint.name,
                          {p_MW, lying},
@@ -49,7 +49,7 @@ inline std::size_t add_wheel(description::Model& model, const Eigen::Vector3d& p
   return model.joints.size() - 1;
 }
 
-inline constexpr std::size_t first_reading = 6;  // of the ring, in the observation of `tracked_robot`
+inline constexpr std::size_t first_reading = 6;  // index of the ring's readings in the observation of `tracked_robot`
 
 inline description::World empty_world(std::chrono::nanoseconds step = std::chrono::milliseconds(10)) {
   description::World world;

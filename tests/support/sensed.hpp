@@ -89,7 +89,7 @@ class Sensed {
   std::size_t size_ = 0;
 };
 
-/// Of a quantity, or of one value of it.
+/// Returns noise on a quantity, or on one value of it.
 inline description::Noise noise_on(const std::string& quantity, double deviation, int element = -1) {
   description::Noise noise;
   noise.quantity = quantity;

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
-// Holds the sources to the table of docs/architecture.md.
+#include "tests/support/pages.hpp"
+
+// Compares the sources with the lists of folders in docs/architecture.md.
 namespace cohort {
 namespace {
 
@@ -25,37 +27,36 @@ std::vector<std::string> matches_in(const std::string& text, const std::regex& p
   return found;
 }
 
-struct Row {
+struct Folder {
   Names includes;
   std::string libraries;
 };
 
-// By folder.
-std::map<std::string, Row> read_table() {
-  std::map<std::string, Row> table;
-  std::ifstream document(COHORT_SOURCE_DIR "/docs/architecture.md");
-  const std::regex row(R"(\| `([\w/]+)/` \| ([^|]*) \| ([^|]*) \| ([^|]*)\|)");
-  for (std::string line; std::getline(document, line);) {
-    std::smatch cells;
-    if (!std::regex_match(line, cells, row)) continue;
-    Row& entry = table[cells[1]];
-    entry.libraries = cells[4];
-    for (const std::string& name : matches_in(cells[3], std::regex("`([\\w/]+)`")))
-      entry.includes.insert(std::filesystem::exists(COHORT_SOURCE_DIR "/server/" + name) ? "server/" + name : name);
+// By path. An item of the page is: - `path/`: the folder's job. Includes: `a`, `b`. Libraries: c, d.
+std::map<std::string, Folder> read_folders() {
+  std::map<std::string, Folder> folders;
+  const std::regex pattern(R"(- `([\w/]+)/`: (.*?)( Includes: ([^:]*)\.)?( Libraries: ([^:]*)\.)?)");
+  for (const std::string& item : test::list_items_of(COHORT_SOURCE_DIR "/docs/architecture.md")) {
+    std::smatch parts;
+    if (!std::regex_match(item, parts, pattern)) continue;
+    Folder& folder = folders[parts[1]];
+    folder.libraries = parts[6];
+    for (const std::string& name : matches_in(parts[4], std::regex("`([\\w/]+)`")))
+      folder.includes.insert(std::filesystem::exists(COHORT_SOURCE_DIR "/server/" + name) ? "server/" + name : name);
   }
-  return table;
+  return folders;
 }
 
 struct Source {
   std::string path;  // from the top
   std::string folder;
-  Names files;    // of ours that it includes
-  Names headers;  // of others
+  Names files;    // our files that it includes
+  Names headers;  // other headers
 };
 
 const std::string public_headers = "client_sdk/include/";
 
-// What a file of this text includes; `is_beside` says whether a file is in its folder.
+// Notes the includes of a file of this text; `is_beside` says whether a file is in its folder.
 template <class IsBeside>
 void note_includes(Source& source, const std::string& text, const IsBeside& is_beside) {
   for (const std::string& file : matches_in("\n" + text, std::regex("\n[ \t]*#[ \t]*include[ \t]*\"([^\"]+)\""))) {
@@ -113,14 +114,14 @@ std::string circle_in(const Graph& graph) {
   return found;
 }
 
-TEST(Architecture, EveryFolderHasARowAndIncludesWhatItNamesAndNothingElse) {
-  const std::map<std::string, Row> table = read_table();
-  ASSERT_GT(table.size(), 40u);
+TEST(Architecture, EveryFolderIsListedAndIncludesWhatItNamesAndNothingElse) {
+  const std::map<std::string, Folder> folders = read_folders();
+  ASSERT_GT(folders.size(), 40u);
   std::map<std::string, Names> used;
   for (const Source& source : read_sources()) {
-    const auto row = table.find(source.folder);
-    if (row == table.end()) {
-      ADD_FAILURE() << source.folder << " has no row in the table of docs/architecture.md";
+    const auto listed = folders.find(source.folder);
+    if (listed == folders.end()) {
+      ADD_FAILURE() << source.folder << " is not listed in docs/architecture.md";
       continue;
     }
     used[source.folder];
@@ -129,14 +130,15 @@ TEST(Architecture, EveryFolderHasARowAndIncludesWhatItNamesAndNothingElse) {
       const std::string folder = folder_of(file);
       if (folder == source.folder) continue;
       used[source.folder].insert(folder);
-      EXPECT_TRUE(row->second.includes.contains(folder))
-          << source.path << " includes " << file << ", which the row of " << source.folder << " does not name";
+      EXPECT_TRUE(listed->second.includes.contains(folder))
+          << source.path << " includes " << file << ", which is not listed for " << source.folder;
     }
   }
-  for (const auto& [folder, row] : table) {
-    EXPECT_TRUE(used.contains(folder)) << folder << " has a row and no sources";
-    for (const std::string& named : row.includes)
-      EXPECT_TRUE(used[folder].contains(named)) << folder << " does not include " << named << ", which its row names";
+  for (const auto& [folder, listed] : folders) {
+    EXPECT_TRUE(used.contains(folder)) << folder << " is listed and has no sources";
+    for (const std::string& named : listed.includes)
+      EXPECT_TRUE(used[folder].contains(named))
+          << folder << " does not include " << named << ", which is listed for it";
   }
 }
 
@@ -174,9 +176,10 @@ TEST(Architecture, ModulesNeedEachOtherInNoCircle) {
   EXPECT_EQ(circle_in(modules), "");
 }
 
-TEST(Architecture, EachLibraryIsIncludedWhereTheTableSaysSo) {
+TEST(Architecture, EachLibraryIsIncludedWhereItIsListed) {
   const std::vector<std::pair<std::string, std::regex>> libraries = {
       {"Cyclone DDS", std::regex("dds/.*")},
+      {"Fast DDS", std::regex("(fastdds|fastrtps)/.*")},
       {"oneTBB", std::regex("tbb/.*")},
       {"Random123", std::regex("Random123/.*")},
       {"libsdformat", std::regex("(sdf|ignition|console_bridge)/.*")},
@@ -188,6 +191,7 @@ TEST(Architecture, EachLibraryIsIncludedWhereTheTableSaysSo) {
       {"RE2", std::regex("re2/.*")},
       {"zstd", std::regex("zstd\\.h")},
       {"zlib", std::regex("zlib\\.h")},
+      {"OpenSSL", std::regex("openssl/.*")},
       {"hdf5", std::regex("hdf5\\.h")},
       {"Boost.Beast", std::regex("boost/(beast|asio).*")},
       {"Boost.CRC", std::regex("boost/crc.*")},
@@ -198,16 +202,18 @@ TEST(Architecture, EachLibraryIsIncludedWhereTheTableSaysSo) {
       {"spdlog", std::regex("spdlog/.*")},
       {"nlohmann-json", std::regex("nlohmann/.*")},
       {"nanobind", std::regex("nanobind/.*")},
+      {"simavr", std::regex("(sim_avr|avr_[a-z]+)\\.h")},
       {"Python", std::regex("Python\\.h")},
   };
-  // Of the system, of the language, and what any folder may have.
+  // Headers of the system and of the language, and those that any folder may include.
   const std::regex others(
       "[a-z_]+|(std|sys|net|netinet|arpa|linux)[a-z]*/"
       ".*|(std[a-z]+|inttypes|dlfcn|elf|link|fcntl|ifaddrs|netdb|poll|pthread|spawn|"
-      "termios|unistd|math|string|signal|fenv|time)\\.h|Eigen/.*|fmt/.*|cohort\\.h|cohort_build/"
+      "termios|unistd|math|string|signal|fenv|time|errno|sched|semaphore|threads)\\.h|Eigen/.*|fmt/"
+      ".*|cohort\\.h|cohort_build/"
       ".*|cxxabi\\.h|"
       "immintrin\\.h|x86intrin\\.h|execinfo\\.h");
-  const std::map<std::string, Row> table = read_table();
+  const std::map<std::string, Folder> folders = read_folders();
   Names seen;
   for (const Source& source : read_sources())
     for (const std::string& header : source.headers) {
@@ -215,27 +221,29 @@ TEST(Architecture, EachLibraryIsIncludedWhereTheTableSaysSo) {
           std::ranges::find_if(libraries, [&](const auto& each) { return std::regex_match(header, each.second); });
       if (library == libraries.end()) {
         EXPECT_TRUE(std::regex_match(header, others))
-            << source.path << " includes <" << header << "> of nobody knows whom";
+            << source.path << " includes <" << header << ">, a header of no library in the list of this test";
         continue;
       }
       seen.insert(library->first);
-      const auto row = table.find(source.folder);
-      const bool is_here = row != table.end() && row->second.libraries.find(library->first) != std::string::npos;
-      EXPECT_TRUE(is_here) << source.path << " includes <" << header << ">, but no row gives it " << library->first;
+      const auto listed = folders.find(source.folder);
+      const bool is_here =
+          listed != folders.end() && listed->second.libraries.find(library->first) != std::string::npos;
+      EXPECT_TRUE(is_here) << source.path << " includes <" << header << ">, which is not listed with the library "
+                           << library->first;
     }
   EXPECT_GT(seen.size(), 14u);
 }
 
-// A stage is a folder of server/. What its files may include and what it links are the same.
-TEST(Architecture, EachStageLinksOnlyStagesThatItsRowsName) {
+// A stage is a folder of server/. Its files may include the same stages that it links.
+TEST(Architecture, EachStageLinksOnlyStagesThatItsFoldersInclude) {
   const auto stage_of = [](const std::string& folder) {
     const std::regex pattern("server/([a-z_]+).*");
     std::smatch name;
     return std::regex_match(folder, name, pattern) ? name[1].str() : std::string();
   };
   Graph named;
-  for (const auto& [folder, row] : read_table())
-    for (const std::string& other : row.includes) named[stage_of(folder)].insert(stage_of(other));
+  for (const auto& [folder, listed] : read_folders())
+    for (const std::string& other : listed.includes) named[stage_of(folder)].insert(stage_of(other));
   std::stringstream text;
   text << std::ifstream(COHORT_SOURCE_DIR "/server/CMakeLists.txt").rdbuf();
   std::size_t stages = 0;
@@ -245,7 +253,8 @@ TEST(Architecture, EachStageLinksOnlyStagesThatItsRowsName) {
     for (const std::string& linked : matches_in(arguments, std::regex("cohort_([a-z_]+)")))
       if (std::filesystem::exists(COHORT_SOURCE_DIR "/server/" + linked)) {
         EXPECT_TRUE(named[stage].contains(linked))
-            << "server/" << stage << " links server/" << linked << ", which no row of server/" << stage << " names";
+            << "server/" << stage << " links server/" << linked << ", which no folder of server/" << stage
+            << " is listed to include";
       }
   }
   EXPECT_GT(stages, 14u);
@@ -286,14 +295,14 @@ Names kinds_named_in(std::string code, const Names& kinds) {
   return named;
 }
 
-// What a device does is asked by general properties (description/device_properties.hpp), so that a new kind is a struct
-// in description/, a reader in parsing/ and one file in sensing/ or actuation/.
+// Other code asks for general properties of a device (description/device_properties.hpp). So a new kind is a struct in
+// description/, a reader in parsing/ and one file in sensing/ or actuation/.
 TEST(Architecture, ConcreteKindsOfDevicesAreNamedWhereTheyAreDescribedReadSensedAndMovedAlone) {
   const Names kinds = device_kinds();
   ASSERT_GT(kinds.size(), 30u);
   const Names homes = {"description", "parsing", "sensing", "actuation"};
   std::map<std::string, Names> exceptions = {
-      // What a gripper does, on which its actuator and its sensor build.
+      // The gripper's function, on which its actuator and its sensor build.
       {"server/gripping/grippers.cpp", {"Gripper"}},
       {"server/gripping/grippers.hpp", {"Gripper"}},
       // A model of any kind of motor, whose bits tell builds apart.

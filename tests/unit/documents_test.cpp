@@ -1,12 +1,17 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "tests/support/files.hpp"
+#include "tests/support/pages.hpp"
 
 namespace cohort {
 namespace {
@@ -23,19 +28,13 @@ std::set<std::string> tests_in_the_sources() {
   return tests;
 }
 
-TEST(Documents, TheSemanticsNameTestsThatExistAndEveryLineHasOne) {
+TEST(Documents, TheSemanticsNameTestsThatExistAndEveryRuleHasOne) {
   const std::set<std::string> tests = tests_in_the_sources();
-  std::ifstream document(COHORT_SOURCE_DIR "/docs/semantics.md");
   const std::regex name(R"(`([A-Z]\w+)\.(\w+|\*)`)");
   int named = 0;
-  bool in_lines = true;
-  for (std::string line; std::getline(document, line);) {
-    if (line.starts_with("## Decided, not built yet")) in_lines = false;
-    const bool is_row =
-        line.starts_with("| ") && !line.starts_with("| what") && !line.starts_with("| `on_late` | what");
-    if (!in_lines || !is_row) continue;
-    const std::sregex_iterator first(line.begin(), line.end(), name);
-    EXPECT_NE(first, std::sregex_iterator()) << "no test holds this line: " << line;
+  for (const std::string& item : test::list_items_of(COHORT_SOURCE_DIR "/docs/semantics.md")) {
+    const std::sregex_iterator first(item.begin(), item.end(), name);
+    EXPECT_NE(first, std::sregex_iterator()) << "no test holds this rule: " << item;
     for (std::sregex_iterator match = first; match != std::sregex_iterator(); ++match) {
       const std::string suite = (*match)[1], test = (*match)[2];
       const auto found = test == "*" ? tests.lower_bound(suite + ".") : tests.find(suite + "." + test);
@@ -43,10 +42,10 @@ TEST(Documents, TheSemanticsNameTestsThatExistAndEveryLineHasOne) {
       ++named;
     }
   }
-  EXPECT_GT(named, 40);
+  EXPECT_GT(named, 200);
 }
 
-// Code blocks that begin with the name of a file: each stands in it as it is.
+// Code blocks that begin with the name of a file are verbatim excerpts of it.
 TEST(Documents, ExcerptsStandInTheFilesThatTheyName) {
   const std::regex block(R"(```cpp\n// ([\w.]+/[\w/.]+)\n([\s\S]*?)```)");
   const std::string document = test::read_file(COHORT_SOURCE_DIR "/docs/contributing.md");
@@ -59,6 +58,66 @@ TEST(Documents, ExcerptsStandInTheFilesThatTheyName) {
     ++excerpts;
   }
   EXPECT_GT(excerpts, 8);
+}
+
+// As GitHub makes anchors of headings: lower case, without punctuation, with hyphens for spaces.
+std::string anchor_of(const std::string& heading) {
+  const std::string plain = std::regex_replace(heading, std::regex(R"(\[([^\]]*)\]\([^)]*\)|…|–|—|×|“|”)"), "$1");
+  std::string anchor;
+  for (const char c : plain) {
+    if (c == ' ') anchor += '-';
+    if (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || (c & 0x80))
+      anchor += static_cast<char>(c & 0x80 ? c : std::tolower(static_cast<unsigned char>(c)));
+  }
+  return anchor;
+}
+
+struct Document {
+  std::set<std::string> anchors;
+  std::vector<std::string> links;
+};
+
+Document read_document(const std::filesystem::path& file) {
+  static const std::regex link(R"(\]\(([^)\s]+)\))");
+  Document document;
+  bool is_code = false;
+  for (const std::string& line : test::lines_of(test::read_file(file))) {
+    const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
+    if (line.compare(begin, 3, "```") == 0) is_code = !is_code;
+    if (is_code) continue;
+    if (line.starts_with('#')) {
+      const std::string anchor = anchor_of(line.substr(std::min(line.find(' '), line.size() - 1) + 1));
+      std::string unique = anchor;
+      for (int i = 1; !document.anchors.insert(unique).second; ++i) unique = anchor + "-" + std::to_string(i);
+    }
+    for (std::sregex_iterator match(line.begin(), line.end(), link), end; match != end; ++match)
+      document.links.push_back((*match)[1]);
+  }
+  return document;
+}
+
+TEST(Documents, LinkToFilesAndHeadingsThatExist) {
+  const std::filesystem::path root = COHORT_SOURCE_DIR;
+  std::map<std::filesystem::path, Document> documents;
+  documents[root / "README.md"] = read_document(root / "README.md");
+  for (const char* const folder : {"docs", "docker", "worlds"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder))
+      if (entry.path().extension() == ".md") documents[entry.path()] = read_document(entry.path());
+  int followed = 0;
+  for (const auto& [file, document] : documents)
+    for (const std::string& link : document.links) {
+      if (link.find("://") != std::string::npos || link.starts_with("mailto:")) continue;
+      const std::size_t hash = std::min(link.find('#'), link.size());
+      const std::filesystem::path target =
+          hash == 0 ? file : (file.parent_path() / link.substr(0, hash)).lexically_normal();
+      EXPECT_TRUE(std::filesystem::exists(target)) << file << " links to " << link << ", which does not exist";
+      if (hash < link.size() && documents.contains(target)) {
+        EXPECT_TRUE(documents[target].anchors.contains(link.substr(hash + 1)))
+            << file << " links to " << link << ", and there is no such heading";
+      }
+      ++followed;
+    }
+  EXPECT_GT(followed, 500);
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ async function steersRecording(page) {
   await page.keyboard.press("f");
   await until(page, () => window.cohort.viewer.cameras.mode === "follow");
   await run(page, "play; speed 2");
-  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 150);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 150);
   const distance = await page.evaluate(() => {
     const { viewer } = window.cohort;
     viewer.draw(performance.now());
@@ -128,7 +128,7 @@ async function steersRecording(page) {
   const bar = await page.locator("#track").boundingBox();
   await page.mouse.click(bar.x + 0.5 * bar.width, bar.y + 0.5 * bar.height);
   const near = await until(page, () => {
-    const found = Number(window.cohort.viewer.poses.frame.tick);
+    const found = Number(window.cohort.viewer.poses.frame?.tick);
     return found > 180 && found < 220 ? found : undefined;
   });
   assert.ok(near);
@@ -172,7 +172,7 @@ async function keepsProfile(page) {
   await atTick(page, 24);
   await run(page, "exec tour");
   await atTick(page, 14);
-  await assert.rejects(run(page, "alias loop loop; loop"), /leads back to itself/);
+  await assert.rejects(run(page, "alias loop loop; loop"), /the alias refers to itself/);
   const profile = await page.evaluate(() => window.cohort.commands.exportProfile());
   await run(page, "unbind k; unalias hop");
   assert.equal(await page.evaluate(() => window.cohort.commands.commandOfKey("k")), undefined);
@@ -180,7 +180,7 @@ async function keepsProfile(page) {
   assert.equal(await page.evaluate(() => window.cohort.commands.commandOfKey("k")), "seek 0.2");
   await assert.rejects(
     page.evaluate(() => window.cohort.commands.importProfile('{"keys": 3}')),
-    /no profile/,
+    /not a profile/,
   );
 }
 
@@ -213,7 +213,7 @@ async function seesTheEnd(page) {
 }
 
 async function steersServer(page) {
-  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 20);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 20);
   await run(page, "pause");
   const before = await pausedTick(page);
   await run(page, "step 5");
@@ -252,7 +252,7 @@ async function steersServer(page) {
     return Math.hypot(x - 0.25, y + 0.2) < 0.05;
   });
   await assert.rejects(run(page, "move nobody 0 0"), /nobody/);
-  await assert.rejects(run(page, "step -1"), /ahead/);
+  await assert.rejects(run(page, "step -1"), /one tick or more/);
   await run(page, "select sbot_3");
   await until(page, () => document.querySelectorAll("#dial line").length >= 15);
   await run(page, "reset");
@@ -286,8 +286,8 @@ async function goesBack(page) {
   await run(page, "step 25");
   await atTick(page, 125);
   assert.equal(await page.evaluate(() => document.getElementById("hash").textContent), hash);
-  await assert.rejects(run(page, `seek ${before / 100 + 1}`), /not come to that time/);
-  // By the time bar: only when the mouse lets it go, and no further than the run has come.
+  await assert.rejects(run(page, `seek ${before / 100 + 1}`), /not reached that time/);
+  // Seeks by the time bar: only when the mouse button is released, and no further than the run has come.
   await run(page, "step 75");
   await atTick(page, 200);
   const bar = await page.locator("#track").boundingBox();
@@ -311,18 +311,25 @@ async function goesBack(page) {
 }
 
 async function onlyLooks(page) {
-  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 20);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 20);
   for (const line of ["pause", "step", "reset", "move sbot_3 0 0", "speed 0.1"])
-    await assert.rejects(run(page, line), /only look/);
+    await assert.rejects(run(page, line), /read-only/);
   assert.equal(await page.locator("#play").isVisible(), false);
   const before = await tick(page);
-  await until(page, (each) => Number(window.cohort.viewer.poses.frame.tick) > each + 20, before);
+  await until(page, (each) => Number(window.cohort.viewer.poses.frame?.tick) > each + 20, before);
+}
+
+// A run whose disk is full after 100 kB.
+async function tellsOfALostRecording(page) {
+  await until(page, () => document.getElementById("events").textContent.includes("ulimit -f"));
+  await until(page, () => document.getElementById("note").textContent.startsWith("NOT RECORDED: "));
+  assert.equal(await page.locator("#note").isVisible(), true);
 }
 
 // Until it is told otherwise, by being killed.
 async function looks(page) {
   console.log("looking");
-  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 100);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 100);
   console.log("seen");
   await new Promise(() => setInterval(() => undefined, 1000));
 }
@@ -346,6 +353,7 @@ await runScenario({
   steers_server: steersServer,
   goes_back: goesBack,
   only_looks: onlyLooks,
+  tells_of_a_lost_recording: tellsOfALostRecording,
   looks,
   is_suspended: isSuspended,
 });

@@ -141,14 +141,14 @@ async function sendsNonsense() {
     await new Promise((resolve) => setTimeout(resolve, 20));
   assert.equal(complaints, complained.length);
   assert.equal(failures, failed.length);
-  // What is too large ends the connection.
+  // A message that is too large ends the connection.
   socket.send(Buffer.alloc(2 << 20));
   await within(new Promise((resolve) => socket.on("close", resolve)), "the end of the connection");
 }
 
 const memoryOf = (process) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${process}/status`, "utf8"))[1]); // [kB]
 
-// To somebody who reads them. Slowly, as the recording is short.
+// Counts frames that are sent to a client that reads them. Slowly, as the recording is short.
 async function framesAreSent(count) {
   const { client, channels, services } = connect();
   await call(client, (await services)[0], { operation: "speed", number: 0.1 });
@@ -185,7 +185,7 @@ async function readsNothing() {
   for (const socket of sockets) socket.terminate();
 }
 
-// `headers`: of whoever asks; null if it is let in, otherwise the status of the answer.
+// Returns null if a client with these `headers` is admitted, otherwise the status of the answer.
 function refusal(target, headers) {
   return within(
     new Promise((resolve) => {

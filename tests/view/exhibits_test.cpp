@@ -8,7 +8,7 @@
 namespace cohort::view {
 namespace {
 
-// What the page shows of each kind of thing, in a world that has one of each.
+// Tests how the page shows each kind of thing, in a world that has one of each.
 class WhatThePageShows : public InABrowser {
  protected:
   // Records an experiment and drives the page of its recording.

@@ -10,7 +10,7 @@ using namespace test;
 
 class ObserversNeverCount : public InABrowser {
  protected:
-  // Runs the demo while a browser looks at it in such a way; its hash is that of a run that nobody looks at.
+  // Runs the demo while a browser looks at it in such a way; its hash is that of a run without a view.
   static void expect_same_hash_while(const std::string& scenario, bool is_killed) {
     const ReservedDomain domain;
     const ScratchFolder scratch;

@@ -1,4 +1,5 @@
-// Somebody beside the page that is tested, without a browser: asks what a page asks, and sees what robots are told.
+// A second client beside the page under test, without a browser: sends a page's requests, and reads the robots'
+// commands.
 import rosmsg from "@foxglove/rosmsg";
 import serialization from "@foxglove/rosmsg2-serialization";
 import protocol from "@foxglove/ws-protocol";

@@ -28,7 +28,7 @@ const untilMoved = (page, name, from, way, turn) =>
 async function untilAtRest(page, name, ticks = 40) {
   for (;;) {
     const [before, from] = [await poseOf(page, name), await tick(page)];
-    await until(page, (wanted) => Number(window.cohort.viewer.poses.frame.tick) >= wanted, from + ticks);
+    await until(page, (wanted) => Number(window.cohort.viewer.poses.frame?.tick) >= wanted, from + ticks);
     const after = await poseOf(page, name);
     if (Math.hypot(after.x - before.x, after.y - before.y) < 1e-4 && Math.abs(after.heading - before.heading) < 1e-3)
       return after;
@@ -64,10 +64,10 @@ async function drivesByKeys(page) {
   await run(page, "select people/keys");
   await page.locator("#drive").click();
   await drives(page, robot);
-  assert.match(await page.locator("#driven").textContent(), /drives people\/keys · arrows or w a s d · Escape lets go/);
+  assert.match(await page.locator("#driven").textContent(), /drives people\/keys · arrows or w a s d · Escape releases/);
   await goesAhead(page, robot, ...key(page, "ArrowUp"));
 
-  // What the server says that it is told: half of full speed, and the other way round.
+  // The server reports the command: half of full speed, and the other way round.
   let from = await untilAtRest(page, robot);
   await page.keyboard.down("ArrowLeft");
   await until(page, () => {
@@ -126,7 +126,7 @@ async function drivesByKeys(page) {
   // Pause and reset are survived.
   await run(page, "pause; step 3; play");
   await run(page, "reset");
-  await until(page, () => Number(window.cohort.viewer.poses.frame.run) === 2);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.run) === 2);
   await goesAhead(page, robot, ...key(page, "ArrowUp"));
   assert.equal(await driven(page), robot);
 
@@ -136,7 +136,7 @@ async function drivesByKeys(page) {
   from = await untilAtRest(page, robot);
   await page.keyboard.down("ArrowUp");
   const later = (await tick(page)) + 60;
-  await until(page, (wanted) => Number(window.cohort.viewer.poses.frame.tick) > wanted, later);
+  await until(page, (wanted) => Number(window.cohort.viewer.poses.frame?.tick) > wanted, later);
   await page.keyboard.up("ArrowUp");
   const after = await poseOf(page, robot);
   assert.ok(Math.hypot(after.x - from.x, after.y - from.y) < 1e-3, "nobody drives it any more");
@@ -188,7 +188,7 @@ async function drivesByPad(page) {
   await run(page, "release");
 }
 
-// A page drives, and somebody else wants to.
+// A page drives, and another one requests the same robot.
 async function drivesAlone(page) {
   const robot = "people/keys";
   await drawCoarsely(page);
@@ -228,7 +228,7 @@ async function drivesAlone(page) {
   const slowly = neutral.map((value, i) => (i === left || i === left + 1 ? 0.05 : value));
   assert.deepEqual(await guest.ask({ operation: "drive", name: robot, numbers: slowly.slice(1) }), {
     done: false,
-    text: `its command has ${slowly.length} values, not ${slowly.length - 1}`,
+    text: `the robot's command has ${slowly.length} values, not ${slowly.length - 1}`,
   });
   const beating = setInterval(() => void guest.ask({ operation: "drive", name: robot, numbers: slowly }), 100);
   await isTold(0.05);
@@ -249,7 +249,22 @@ async function drivesOn(page) {
   console.log(`ended: ${await page.locator("#told").textContent()}`);
 }
 
-// The first robot of teleop.yaml, whose run waits for whoever drives it.
+// Moves the joints of a model that was run by itself.
+async function movesJoints(page) {
+  await drawCoarsely(page);
+  await run(page, "select bare");
+  await page.locator("#drive").click();
+  await drives(page, "bare");
+  const slider = (joint) => page.locator(`#sliders input[data-channel="${joint}/0/position"]`);
+  assert.equal(await slider("shoulder").getAttribute("type"), "range");
+  assert.equal(await slider("shoulder").getAttribute("max"), "1");
+  assert.equal(Number(await slider("spin").getAttribute("max")), Math.PI, "a joint without limits has a slider too");
+  await slider("shoulder").fill("0.5");
+  await until(page, () => window.cohort.viewer.robot?.command[0] === 0.5);
+  await run(page, "shutdown");
+}
+
+// The first robot of teleop.yaml, whose run waits for a driver.
 async function drivesFirst(page) {
   const robot = "explorers/sbot_0";
   const noted = (part) =>
@@ -265,7 +280,7 @@ async function drivesFirst(page) {
     page,
     (name) => {
       const text = document.getElementById("phase").innerText;
-      return text.includes("Waits for controllers") && text.includes(`cohort teleop --robots ${name}`);
+      return text.includes("Waiting for controllers") && text.includes(`cohort teleop --robots ${name}`);
     },
     robot,
   );
@@ -284,7 +299,7 @@ async function drivesFirst(page) {
   await page.locator("#drive").click();
   await drives(page, robot);
   const before = await tick(page);
-  await until(page, (each) => Number(window.cohort.viewer.poses.frame.tick) > each + 20, before);
+  await until(page, (each) => Number(window.cohort.viewer.poses.frame?.tick) > each + 20, before);
 }
 
 async function handlesObjects(page) {
@@ -314,7 +329,7 @@ async function handlesObjects(page) {
   );
   await until(page, () => document.getElementById("adding-name").value === "bar_2");
 
-  // What the server refuses is said.
+  // The page shows a refusal by the server.
   await page.locator("#adding-name").fill("bar_1");
   await page.mouse.click(at.x, at.y);
   await told(page, "another object has the name 'bar_1'");
@@ -382,7 +397,7 @@ async function offersNoHands(page) {
   await run(page, "select explorers/sbot_3");
   for (const id of ["remove", "drive", "adding"]) assert.equal(await page.locator(`#${id}`).isVisible(), false, id);
   assert.equal(await page.locator('[data-command="add"]').isVisible(), false);
-  await assert.rejects(run(page, "drive sbot_3"), /nothing that a recording can do/);
+  await assert.rejects(run(page, "drive sbot_3"), /a recording offers/);
 }
 
 await runScenario({
@@ -391,6 +406,7 @@ await runScenario({
   drives_alone: drivesAlone,
   drives_on: drivesOn,
   drives_first: drivesFirst,
+  moves_joints: movesJoints,
   handles_objects: handlesObjects,
   offers_no_hands: offersNoHands,
 });

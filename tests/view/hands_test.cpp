@@ -74,7 +74,7 @@ teams:
 
 TEST_F(Hands, DriveARobotByKeysAndSliders) { drives("drives_by_keys"); }
 TEST_F(Hands, DriveARobotByAGamePad) { drives("drives_by_pad"); }
-TEST_F(Hands, OfAPageThatFallsSilentLetTheRobotStandAndSomebodyElseTakesIt) { drives("drives_alone"); }
+TEST_F(Hands, ReleaseTheRobotOfASilentPageToAnotherPage) { drives("drives_alone"); }
 TEST_F(Hands, AddDragSwitchAndRemoveObjects) { drives("handles_objects"); }
 
 TEST_F(Hands, AreIdleWhereThereIsARecording) {
@@ -83,7 +83,7 @@ TEST_F(Hands, AreIdleWhereThereIsARecording) {
   run_script("hands.mjs", {"offers_no_hands", view.address()});
 }
 
-TEST_F(Hands, OfAViewThatIsKilledLeaveAFreeRobotAndTheRunGoesOn) {
+TEST_F(Hands, ReleaseTheRobotOfAKilledViewAndTheRunContinues) {
   Process run(playground());
   View view({"--domain", domain.text(), "--control"});
   Process script = start_script("hands.mjs", {"drives_on", view.address()});
@@ -96,7 +96,7 @@ TEST_F(Hands, OfAViewThatIsKilledLeaveAFreeRobotAndTheRunGoesOn) {
   run_script("hands.mjs", {"drives_by_pad", another.address()});
 }
 
-TEST_F(Hands, OfABrowserThatIsKilledLetTheRobotGo) {
+TEST_F(Hands, ReleaseTheRobotOfAKilledBrowser) {
   Process run(playground());
   const View view({"--domain", domain.text(), "--control"});
   Process script = start_script("hands.mjs", {"drives_on", view.address()});
@@ -114,15 +114,15 @@ TEST_F(Hands, AreToldWhenTheServerQuitsAndTheViewStays) {
   ASSERT_TRUE(script.wait_for_output("driving")) << script.output();
   EXPECT_EQ(run_to_end(ctl("shutdown")).exit_code, 0);
   EXPECT_EQ(script.wait_for_exit(), 0) << script.output();
-  // Whichever comes first: that the robot's run has ended, or that nobody is left to ask.
+  // Either may come first: the robot's run has ended, or no server responds.
   const auto is_told = [&](const char* text) { return script.output().find(text) != std::string::npos; };
-  EXPECT_TRUE(is_told("ended: the run is over") || is_told("ended: there is no server that can be controlled"))
+  EXPECT_TRUE(is_told("ended: the run is over") || is_told("ended: no server responds to control requests"))
       << script.output();
   EXPECT_TRUE(view.process().running());
   EXPECT_TRUE(run.wait_for_exit().has_value());
 }
 
-// What `cohort run teleop.yaml --view --control` says is enough to drive.
+// The output of `cohort run teleop.yaml --view --control` is enough to drive.
 TEST_F(Hands, DriveTheRobotThatARunWaitsFor) {
   Process run({cohort_program(), "run", COHORT_SOURCE_DIR "/worlds/experiments/teleop.yaml", "--view", "--control",
                "--domain", domain.text()});
@@ -133,6 +133,32 @@ TEST_F(Hands, DriveTheRobotThatARunWaitsFor) {
   run_script("hands.mjs", {"drives_first", output.substr(begin, output.find('\n', begin) - begin)});
   run.signal(SIGINT);
   EXPECT_EQ(run.wait_for_exit(), 130) << run.output();
+}
+
+// `cohort run robot.urdf --view` is enough to move the joints of a model that has no motors.
+TEST_F(Hands, MoveTheJointsOfAModelThatIsRunByItself) {
+  const test::ScratchFolder folder;
+  const std::string file = folder / "bare.urdf";
+  const auto link = [](const std::string& name) {
+    return "<link name=\"" + name +
+           "\"><inertial><mass value=\"1\"/><inertia ixx=\"0.05\" iyy=\"0.05\" izz=\"0.05\" ixy=\"0\" ixz=\"0\" "
+           "iyz=\"0\"/></inertial><collision><geometry><box size=\"0.4 0.3 0.1\"/></geometry></collision></link>";
+  };
+  const auto joint = [](const std::string& name, const std::string& more) {
+    return "<joint name=\"" + name + "\" " + more + "<origin xyz=\"0 0 0.3\"/><axis xyz=\"0 0 1\"/></joint>";
+  };
+  test::write_file(file, "<robot name=\"bare\">" + link("base") + link("upper") + link("tip") +
+                             joint("shoulder",
+                                   "type=\"revolute\"><parent link=\"base\"/><child link=\"upper\"/><limit "
+                                   "lower=\"-1\" upper=\"1\" effort=\"50\" velocity=\"2\"/>") +
+                             joint("spin", "type=\"continuous\"><parent link=\"upper\"/><child link=\"tip\"/>") +
+                             "</robot>");
+  Process run({cohort_program(), "run", file, "--view", "--domain", domain.text()});
+  ASSERT_TRUE(run.wait_for_output("http://127.0.0.1:")) << run.output();
+  const std::string output = run.output();
+  const std::size_t begin = output.find("http://");
+  run_script("hands.mjs", {"moves_joints", output.substr(begin, output.find('\n', begin) - begin)});
+  EXPECT_EQ(run.wait_for_exit(), 0) << run.output();
 }
 
 }  // namespace

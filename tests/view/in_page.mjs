@@ -1,4 +1,4 @@
-// What scripts that drive the page share.
+// Functions that scripts that drive the page share.
 import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
 
@@ -10,7 +10,10 @@ export async function until(page, look, argument) {
   return handle.jsonValue();
 }
 export const run = (page, line) => page.evaluate((text) => window.cohort.run(text), line);
-export const tick = (page) => page.evaluate(() => Number(window.cohort.viewer.poses.frame.tick));
+export async function tick(page) {
+  const tickOf = () => window.cohort.viewer.poses?.frame && String(window.cohort.viewer.poses.frame.tick);
+  return Number(await until(page, tickOf));
+}
 export const atTick = (page, wanted) =>
   until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
 

@@ -52,7 +52,7 @@ TEST_F(InTheBrowser, RobotsOfARecordingAreDrawnWhereItSaysTheyAre) {
   run_script("browser.mjs", {"draws", view.address(), scratch / "expected.json"});
 }
 
-// Its process goes with the run.
+// The process of the view ends with the run.
 TEST_F(InTheBrowser, ARunBringsItsView) {
   Process run({cohort_program(), "run", demo_experiment(), "--view", "--control", "--duration", "600"});
   ASSERT_TRUE(run.wait_for_output("http://127.0.0.1:")) << run.output();
@@ -81,13 +81,22 @@ TEST_F(InTheBrowser, ARunThatEndsSaysHowAndShowsItsRecording) {
   EXPECT_EQ(run.wait_for_exit(), 0) << run.output();
 }
 
+// On a disk that is full after 100 kB, as a limit of file sizes makes it.
+TEST_F(InTheBrowser, ARunThatIsNoLongerRecordedIsToldSo) {
+  const ReservedDomain domain;
+  Process run({"/bin/sh", "-c", "ulimit -f 200; exec \"$@\"", "sh", cohort_program(), "run", demo_experiment(),
+               "--domain", domain.text(), "--speed", "5", "--duration", "6000", "--record", scratch / "run.mcap"});
+  const View view({"--domain", domain.text()});
+  run_script("browser.mjs", {"tells_of_a_lost_recording", view.address()});
+}
+
 TEST_F(InTheBrowser, ARecordingIsSteeredByMouseKeysAndConsole) {
   record_demo(scratch / "run.mcap", "4");
   const View view({scratch / "run.mcap"});
   run_script("browser.mjs", {"steers_recording", view.address()});
 }
 
-TEST_F(InTheBrowser, WhatKeysDoIsChangedAndKept) {
+TEST_F(InTheBrowser, KeyBindingsCanBeChangedAndPersist) {
   record_demo(scratch / "run.mcap", "1");
   const View view({scratch / "run.mcap"});
   run_script("browser.mjs", {"keeps_profile", view.address()});
@@ -121,7 +130,7 @@ TEST_F(InTheBrowser, ARunningServerGoesBackInTimeAndTellsWhatHappens) {
   run_script("browser.mjs", {"goes_back", view.address()});
 }
 
-TEST_F(InTheBrowser, WhoMayOnlyLookSteersNothing) {
+TEST_F(InTheBrowser, AReadOnlyViewCannotControl) {
   const ReservedDomain domain;
   Process run(
       {cohort_program(), "run", demo_experiment(), "--domain", domain.text(), "--speed", "1", "--duration", "600"});
@@ -177,7 +186,7 @@ TEST_F(ByItsProtocol, MalformedFramesAreToldAndNothingElse) {
   EXPECT_TRUE(view.process().running());
 }
 
-TEST_F(ByItsProtocol, WhoReadsNothingCostsNoMemory) {
+TEST_F(ByItsProtocol, AClientThatDoesNotReadCostsNoMemory) {
   const ScratchFolder scratch;
   record_demo(scratch / "run.mcap", "4");
   View view({scratch / "run.mcap"});
@@ -185,7 +194,7 @@ TEST_F(ByItsProtocol, WhoReadsNothingCostsNoMemory) {
 }
 
 // They ask again and again, so that none of them is idle for long.
-TEST_F(ByItsProtocol, WhoOpensManyConnectionsKeepsNobodyOut) {
+TEST_F(ByItsProtocol, ManyConnectionsOfOneClientLockNobodyOut) {
   const ScratchFolder scratch;
   record_demo(scratch / "run.mcap", "1");
   const View view({scratch / "run.mcap"});
@@ -202,6 +211,14 @@ TEST_F(ByItsProtocol, WhoOpensManyConnectionsKeepsNobodyOut) {
   run_script("client.mjs", {"reads", view.address()});
   is_over = true;
   asks.join();
+}
+
+TEST_F(ByItsProtocol, ARunShowsItselfAtThePortThatIsAskedFor) {
+  const ReservedDomain domain;
+  const std::string port = View({"--domain", domain.text()}).port();  // which is free now
+  Process run({cohort_program(), "run", demo_experiment(), "--view", "--port", port, "--duration", "600"});
+  EXPECT_TRUE(run.wait_for_output("http://127.0.0.1:" + port + "/")) << run.output();
+  expect_page(port);
 }
 
 TEST_F(ByItsProtocol, StrangersAreRefused) {

@@ -100,15 +100,15 @@ std::vector<std::string> engine_names() {
 void check_engines(const Options& options) {
   for (const EngineKind& kind : engine_kinds())
     if (!options.engines.empty() && is_wanted(options.engines, kind.name) && !kind.make)
-      throw std::invalid_argument(fmt::format(
-          "{} is not in this build: install Debian's {} and configure and build again", kind.name, kind.package));
+      throw std::invalid_argument(
+          fmt::format("{} is not part of this build: install the Debian package {}, configure and build again",
+                      kind.name, kind.package));
 }
 
 std::string missing_engines() {
   std::string lines;
   for (const EngineKind& kind : engine_kinds())
-    if (!kind.make)
-      lines += fmt::format("not in this build: {}, which comes with Debian's {}\n", kind.name, kind.package);
+    if (!kind.make) lines += fmt::format("not part of this build: {} (Debian package {})\n", kind.name, kind.package);
   return lines;
 }
 
@@ -124,7 +124,7 @@ nlohmann::ordered_json measure_all(const Options& options, const Surroundings& s
   const auto numbers = [&](const std::vector<std::uint32_t>& of_scene) {
     return options.robots.empty() ? of_scene : options.robots;
   };
-  if (is_wanted(options.scenes, build_scene))  // first, as it has to be
+  if (is_wanted(options.scenes, build_scene))  // must come first
     for (const std::uint32_t robots : numbers({robots_of_others}))
       take(measure_build(build_scene, robots, engines, options, surroundings));
   for (const StepScene& scene : step_scenes())

@@ -11,13 +11,14 @@ namespace cohort::bench {
 std::vector<std::string> scene_names();
 std::vector<std::string> engine_names();
 
-/// Throws std::invalid_argument if an engine that was asked for is not in this build.
+/// Throws std::invalid_argument if a requested engine is not part of this build.
 void check_engines(const Options& options);
 
-/// Which engines the machine's build lacks and which Debian packages bring them, a line each; or nothing.
+/// Returns a line for each engine that this build lacks, with its Debian package; empty if none is missing.
 std::string missing_engines();
 
-/// Measures scene by scene; `print` gets each table as soon as it is there. Returns all results. Throws Interrupted.
+/// Measures one scene after the other, and passes each finished table to `print`. Returns all results. Throws
+/// Interrupted.
 nlohmann::ordered_json measure_all(const Options& options, const Surroundings& surroundings,
                                    const std::function<void(const std::string&)>& print);
 

@@ -26,7 +26,7 @@ std::string range_of(const Spread& spread, double unit) {
 
 std::string lines_of(const std::vector<LeftOut>& left_out) {
   std::string lines;
-  for (const LeftOut& engine : left_out) lines += fmt::format("  left out: {}: {}\n", engine.engine, engine.reason);
+  for (const LeftOut& engine : left_out) lines += fmt::format("  skipped: {}: {}\n", engine.engine, engine.reason);
   return lines;
 }
 
@@ -66,7 +66,7 @@ std::string table(const StepResult& result) {
 
 std::string table(const BuildResult& result) {
   std::string text = title(result.scene, result.robots, ", built and stepped once");
-  text += fmt::format("  {:<14}{:>9}{:>17}{:>14}\n", "engine", "CPU s", "min-max", "kB a robot");
+  text += fmt::format("  {:<14}{:>9}{:>17}{:>14}\n", "engine", "CPU s", "min-max", "kB per robot");
   for (const BuildCost& cost : result.costs)
     text += fmt::format("  {:<14}{:>9.3f}{:>17}{:>14.1f}\n", cost.engine, cost.cpu.median, range_of(cost.cpu, 1.0),
                         kibi * cost.bytes_for_a_robot);
@@ -83,7 +83,7 @@ std::string table(const RayResult& result) {
 }
 
 std::string table(const AccuracyResult& result) {
-  std::string text = result.scene + ": how far off the known solution\n";
+  std::string text = result.scene + ": deviation from the exact solution\n";
   bool has_heading = false;
   for (const AccuracyCase& of : result.cases) {
     if (!has_heading) {

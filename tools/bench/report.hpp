@@ -8,7 +8,7 @@
 #include "tools/bench/measuring/build_cost.hpp"
 #include "tools/bench/measuring/rays.hpp"
 
-/// Results as tables for people and as JSON; docs/bench.md lists the keys.
+/// Results as tables and as JSON; docs/bench.md lists the keys.
 namespace cohort::bench {
 
 std::string table(const StepResult& result);

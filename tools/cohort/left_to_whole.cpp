@@ -8,11 +8,11 @@
 
 #include "tools/cohort/commands/commands.hpp"
 
-// What `cohort` has in place of the commands of cohort-whole.
+// Stubs in `cohort` for the commands of cohort-whole.
 namespace cohort::tool {
 namespace {
 
-// As this process was started.
+// Returns the command line of this process.
 std::vector<std::string> own_words() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::vector<std::string> words;
@@ -20,7 +20,7 @@ std::vector<std::string> own_words() {
   return words;
 }
 
-// Goes on as cohort-whole: the same process, with the same command line.
+// Replaces this process with cohort-whole, with the same command line.
 int become_whole(const char* command, Log& log) {
   const std::filesystem::path whole = std::filesystem::read_symlink("/proc/self/exe").replace_filename("cohort-whole");
   std::vector<std::string> words = own_words();
@@ -30,10 +30,10 @@ int become_whole(const char* command, Log& log) {
   ::execv(whole.c_str(), arguments.data());
   const int error = errno;
   if (error == ENOENT)
-    log.error(fmt::format(
-        "'cohort {}' is in a program of its own, {}, which is not there: 'cmake --build --preset release --target "
-        "cohort-whole view_page' builds it",
-        command, whole.string()));
+    log.error(
+        fmt::format("'cohort {}' requires the program {}, which does not exist; 'cmake --build --preset release "
+                    "--target cohort-whole view_page' builds it",
+                    command, whole.string()));
   else
     log.error(fmt::format("cannot start {}: {}", whole.string(), std::system_category().message(error)));
   return exit_usage;

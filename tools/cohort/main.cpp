@@ -25,14 +25,15 @@ void log_dds_to(Log& log) {
   });
 }
 
-// In the order of help. `flags` must outlive `app`.
+// Returns the commands in the order of help. `flags` must outlive `app`.
 std::vector<Subcommand> add_commands(CommandLine app, LogFlags& flags) {
   std::vector<Subcommand> commands;
   for (const auto add : {add_run, add_serve, add_host}) commands.push_back(add(app, flags));
   for (const auto add : {
-           add_teleop,      add_ctl,     add_record,   add_view,   add_examples,   add_check,    add_export,
-           add_models,      add_samples, add_security, add_doctor, add_recordings, add_replay,   add_diff,
-           add_export_data, add_plot,    add_recover,  add_help,   add_completion, add_man_page, add_bench,
+           add_teleop,     add_exec,       add_ctl,      add_record,      add_view,     add_examples,
+           add_check,      add_export,     add_models,   add_samples,     add_security, add_doctor,
+           add_recordings, add_replay,     add_diff,     add_export_data, add_plot,     add_recover,
+           add_help,       add_completion, add_man_page, add_bench,
        }) {
     commands.push_back(add(app));
     add_log_flags(commands.back().line, flags);
@@ -40,7 +41,7 @@ std::vector<Subcommand> add_commands(CommandLine app, LogFlags& flags) {
   return commands;
 }
 
-// Runs the one that was asked for, and logs what it throws. The exit code.
+// Runs the selected command and logs its exceptions. Returns the exit code.
 int run_chosen(const std::vector<Subcommand>& commands, Log& log, const std::atomic<bool>& stop) {
   const auto chosen = std::ranges::find_if(commands, [](const Subcommand& each) { return each.line.parsed(); });
   try {
@@ -63,16 +64,16 @@ int run_chosen(const std::vector<Subcommand>& commands, Log& log, const std::ato
 
 int main(int argc, char** argv) {
   CommandLine line("Cohort: a deterministic simulator for groups of robots", "cohort");
-  line.set_version(version_text, "Print the version, and how this was built");
-  line.set_help("Print this text and exit");
+  line.set_version(version_text, "Print the version and build information");
+  line.set_help("Print this help and exit");
   line.require_subcommand();
   LogFlags flags;
   add_log_flags(line, flags);
   line.footer(
       "Example: cohort run obstacle_avoidance --duration 10\n"
-      "'cohort COMMAND --help' says more, 'cohort help' what may be written in files. Exit codes: 0 done, 1 the run "
-      "failed, 2 a mistake in the command line, the\n"
-      "files or the set-up, 130 interrupted.");
+      "'cohort COMMAND --help' describes a command, 'cohort help' the contents of files.\n"
+      "Exit codes: 0 success, 1 the run failed, 2 an error in the command line, a file or the set-up, 130 "
+      "interrupted.");
   const std::vector<Subcommand> commands = add_commands(line, flags);
 
   LogOptions options;

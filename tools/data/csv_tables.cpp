@@ -13,18 +13,7 @@ void append(std::string& line, double value) {
   line.append(std::begin(text), std::to_chars(std::begin(text), std::end(text), value).ptr);
 }
 void append(std::string& line, std::uint64_t value) { line += std::to_string(value); }
-void append(std::string& line, const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
-    line += text;
-    return;
-  }
-  line += '"';
-  for (const char letter : text) {
-    if (letter == '"') line += '"';
-    line += letter;
-  }
-  line += '"';
-}
+void append(std::string& line, const std::string& text) { line += csv_cell(text); }
 
 class CsvTable final : public TableWriter {
  public:
@@ -72,15 +61,42 @@ class CsvTables final : public TableSink {
     if (error) refuse_to_write("the folder " + folder_.string() + " cannot be made", error.value());
   }
   std::unique_ptr<TableWriter> begin(const std::string& name, const std::vector<Column>& columns) override {
+    std::string units;
+    for (const Column& column : columns)
+      if (!column.unit.empty())
+        units += (units.empty() ? "" : ", ") + in_json(column.name) + ": " + in_json(column.unit);
+    units_ += (units_.empty() ? "" : ",\n") + std::string("  ") + in_json(name) + ": {" + units + "}";
     return std::make_unique<CsvTable>(folder_ / (name + ".csv"), columns);
   }
-  void finish() override {}  // each of its files is whole by itself
+  // The tables are whole by themselves.
+  void finish() override {
+    AtomicFile file("the units of the tables", folder_ / "units.json");
+    file.write("{\n" + units_ + "\n}\n");
+    file.commit();
+  }
 
  private:
+  static std::string in_json(const std::string& text) {
+    std::string quoted = "\"";
+    for (const char letter : text) {
+      if (letter == '"' || letter == '\\') quoted += '\\';
+      quoted += letter;
+    }
+    return quoted + "\"";
+  }
+
   std::filesystem::path folder_;
+  std::string units_;  // a line for each table
 };
 
 }  // namespace
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string cell = "\"";
+  for (const char letter : text) cell += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+  return cell + "\"";
+}
 
 std::unique_ptr<TableSink> csv_tables(const std::filesystem::path& folder) {
   return std::make_unique<CsvTables>(folder);

@@ -159,7 +159,7 @@ class Hdf5Tables final : public TableSink {
       : path_(path),
         beside_("the tables", path),
         file_(std::in_place,
-              // What a full disk has kept from being closed crashes the library when it ends.
+              // A file that a full disk has kept from being closed would crash the library when it ends.
               (H5dont_atexit(), H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr),  // errors are ours to tell
                H5Fcreate(beside_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)),
               H5Fclose, path) {}

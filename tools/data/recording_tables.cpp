@@ -48,7 +48,7 @@ std::vector<Column> with_time(std::vector<Column> columns) {
 }
 
 std::vector<Column> columns_of(const std::vector<RecordedChannel>& channels) {
-  std::vector<Column> columns = with_time({{"robot", Type::text}});
+  std::vector<Column> columns = with_time({{"robot", Type::text}, {"team", Type::text}});
   for (const RecordedChannel& channel : channels) {
     const std::string name = ros_field_name(channel.name);
     for (std::uint32_t i = 0; i < channel.size; ++i)
@@ -69,13 +69,13 @@ class RecordingTables {
       : recording_(recording), selection_(selection), sink_(sink) {}
 
   std::uint64_t write() {
-    // Who the robots are stands before what is asked for.
+    // The robots are described before the selected data.
     MessageStream stream = recording_.reader().messages({.to = selection_.to, .order = Order::file});
     while (const std::optional<Message> message = stream.next()) {
       try {
         read(*message);
       } catch (const messages::CdrError& error) {
-        throw McapError(recording_.file(), 0, std::string("a message is not what Cohort records: ") + error.what());
+        throw McapError(recording_.file(), 0, std::string("a message is not in Cohort's format: ") + error.what());
       }
     }
     std::uint64_t rows = 0;
@@ -107,9 +107,11 @@ class RecordingTables {
           {{"tick", Type::whole},
            {"frame_tick", Type::whole},
            {"robot", Type::text},
+           {"team", Type::text},
            {"on_late", Type::text},
            {"waited", Type::real, "s"}},
-          time, {miss.tick, miss.frame_tick, robot(miss.robot).name, miss.on_late, miss.waited});
+          time,
+          {miss.tick, miss.frame_tick, robot(miss.robot).name, robot(miss.robot).team, miss.on_late, miss.waited});
     } else if (topic == ActionTaken::topic) {
       const auto action = messages::decode<ActionTaken>(message.data);
       add("actions", {{"tick", Type::whole}, {"text", Type::text}}, time, {action.tick, action.text});
@@ -125,8 +127,10 @@ class RecordingTables {
   void read_roster(Roster roster) {
     roster_ = std::move(roster);
     robot_of_topic_.clear();
+    team_of_robot_.clear();
     for (std::uint32_t id = 0; id < roster_.robots.size(); ++id) {
-      if (roster_.robots[id].kind >= roster_.kinds.size()) throw messages::CdrError("a robot is of no kind");
+      if (roster_.robots[id].kind >= roster_.kinds.size()) throw messages::CdrError("a robot has an unknown kind");
+      team_of_robot_[roster_.robots[id].name] = roster_.robots[id].team;
       robot_of_topic_["/" + roster_.robots[id].name + observation_topic_end] = id;
       commanded_[id] = roster_.robots[id].command;
       if (commanded_[id].size() != size_of(roster_.kinds[roster_.robots[id].kind].command))
@@ -137,6 +141,13 @@ class RecordingTables {
   const RecordedRobot& robot(std::uint32_t id) const {
     if (id >= roster_.robots.size()) throw messages::CdrError("a message is of a robot that is not in the roster");
     return roster_.robots[id];
+  }
+  // Returns the team of a robot, or of the robot that the frame is a part of; empty if it is of neither.
+  std::string team_of(const std::string& frame) const {
+    for (std::size_t end = frame.size(); end != std::string::npos && end > 0; end = frame.rfind('/', end - 1))
+      if (const auto found = team_of_robot_.find(frame.substr(0, end)); found != team_of_robot_.end())
+        return found->second;
+    return "";
   }
   bool is_selected(const RecordedRobot& robot) const {
     return selection_.robots.empty() || selection_.robots.contains(robot.name);
@@ -157,6 +168,7 @@ class RecordingTables {
   void add_values(const std::string& table_of, const RecordedRobot& robot, const std::vector<RecordedChannel>& channels,
                   std::span<const double> values, std::vector<Cell> row) {
     row.emplace_back(robot.name);
+    row.emplace_back(robot.team);
     row.insert(row.end(), values.begin(), values.end());
     table(table_of + "_" + roster_.kinds[robot.kind].model, [&] { return columns_of(channels); }).add(row);
   }
@@ -180,10 +192,12 @@ class RecordingTables {
 
   void add_poses(const ros::TFMessage& message, const std::vector<Cell>& time) {
     for (const ros::TransformStamped& each : message.transforms) {
+      if (each.header.frame_id != "world") continue;  // a part of a robot, in the robot's frame
       const auto& p = each.transform.translation;
       const auto& q = each.transform.rotation;
       add("trajectories",
           {{"object", Type::text},
+           {"team", Type::text},
            {"x", Type::real, "m"},
            {"y", Type::real, "m"},
            {"z", Type::real, "m"},
@@ -191,13 +205,13 @@ class RecordingTables {
            {"qy", Type::real, "1"},
            {"qz", Type::real, "1"},
            {"qw", Type::real, "1"}},
-          time, {each.child_frame_id, p.x, p.y, p.z, q.x, q.y, q.z, q.w});
+          time, {each.child_frame_id, team_of(each.child_frame_id), p.x, p.y, p.z, q.x, q.y, q.z, q.w});
     }
   }
 
   void add_observation(const std::string& topic, ByteView data, const std::vector<Cell>& time) {
     const auto found = robot_of_topic_.find(topic);
-    if (found == robot_of_topic_.end()) return;  // somebody else's
+    if (found == robot_of_topic_.end()) return;  // another robot's
     const RecordedRobot& each = robot(found->second);
     if (!is_selected(each)) return;
     const std::vector<RecordedChannel>& channels = roster_.kinds[each.kind].observation;
@@ -216,6 +230,7 @@ class RecordingTables {
   std::uint32_t run_ = 0;
   Roster roster_;
   std::map<std::string, std::uint32_t> robot_of_topic_;
+  std::map<std::string, std::string> team_of_robot_;
   std::map<std::uint32_t, std::vector<double>> commanded_;  // by robot
   std::map<std::string, LazyTable> tables_;
 };

@@ -10,11 +10,11 @@
 
 namespace cohort::data {
 
-/// What of a recording is written.
+/// The part of a recording that is written.
 struct Selection {
   std::chrono::nanoseconds from{0};                               ///< log time
   std::chrono::nanoseconds to = std::chrono::nanoseconds::max();  ///< the same, also in it
-  std::set<std::string> robots{};                                 ///< whose commands and observations; empty: of all
+  std::set<std::string> robots{};                                 ///< with their commands and observations; empty: all
 };
 
 /// Writes the tables of docs/recordings.md, "Tables". `run` counts the worlds of the recording, from 0; `time` is

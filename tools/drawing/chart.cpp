@@ -17,14 +17,14 @@ using Eigen::Vector2d;
 using tool::svg::escaped;
 using tool::svg::number;
 
-// The page, in its units; one is a CSS pixel when the picture is shown in its own size.
+// Lengths on the page; a unit is a CSS pixel when the picture is shown at its own size.
 constexpr std::size_t columns = 3;
 constexpr double margin = 16.0;
 constexpr double header = 50.0;
 const Vector2d cell{300.0, 272.0};
-const Vector2d plot_at{54.0, 44.0};  // in its cell
+const Vector2d plot_at{54.0, 44.0};  // origin of the plot in its cell
 const Vector2d plot_size{230.0, 166.0};
-constexpr double row_height = 15.0;  // of the legend
+constexpr double row_height = 15.0;  // height of a row of the legend
 constexpr double dot_diameter = 4.4;
 constexpr double image_height = 80.0;
 constexpr std::size_t line_parts = 400;
@@ -38,7 +38,7 @@ constexpr std::array<std::string_view, 5> colours = {"#0b62c4", "#c4480b", "#0a7
 
 bool is_log(const Panel& panel, int axis) { return axis == 0 ? panel.is_log_x : panel.is_log_y; }
 
-// Logarithms, where the axes are logarithmic.
+// Returns the logarithm of each coordinate whose axis is logarithmic.
 Vector2d on_axes(const Panel& panel, const Vector2d& point) {
   return {panel.is_log_x ? std::log10(point.x()) : point.x(), panel.is_log_y ? std::log10(point.y()) : point.y()};
 }
@@ -47,7 +47,7 @@ tool::Range range_of(const Panel& panel) {
   tool::Range range;
   for (const Series& series : panel.series)
     for (const Vector2d& point : series.measured) range.add(on_axes(panel, point));
-  constexpr double around = 0.15;  // of a power of ten
+  constexpr double around = 0.15;  // margin as a fraction of a power of ten
   if (panel.is_log_x) {
     range.lower.x() -= around;
     range.upper.x() += around;
@@ -57,7 +57,7 @@ tool::Range range_of(const Panel& panel) {
     range.upper.y() += around;
     return range;
   }
-  // Zero is shown if it is not far, and nothing lies on the upper edge.
+  // Includes zero if it is near, and leaves a margin at the upper edge.
   for (const int axis : {0, 1}) {
     if (is_log(panel, axis)) continue;
     const double size = range.upper[axis] - range.lower[axis];
@@ -106,7 +106,7 @@ class PanelDrawing {
   double step_of(int axis) const {
     return is_log(panel_, axis) ? 1.0 : tool::round_length((range_.upper[axis] - range_.lower[axis]) / 2.5);
   }
-  // What a tick stands for, and how it is labelled.
+  // Returns the value of a tick, and its label.
   double value_at(const tool::Ticks& ticks, std::int64_t i, int axis) const {
     return is_log(panel_, axis) ? std::pow(10.0, static_cast<double>(i)) : ticks.at(i);
   }
@@ -157,7 +157,7 @@ class PanelDrawing {
                    tool::svg::path_data(tool::svg::simplified(points, line_tolerance)));
   }
 
-  // Lines of no length with round ends.
+  // Draws dots as lines of zero length with round ends.
   void draw_dots(const Series& series, std::string_view colour) {
     std::string data;
     if (series.is_joined) {
@@ -176,7 +176,7 @@ class PanelDrawing {
                    colour, number(dot_diameter), data);
   }
 
-  // In the corner where it covers the least.
+  // Draws the legend in the corner where it covers the fewest marks.
   void draw_legend() {
     std::size_t longest = 0;
     std::size_t rows = 0;
@@ -209,7 +209,7 @@ class PanelDrawing {
     }
   }
 
-  // Dots, and points of lines.
+  // Returns the number of dots and points of lines in a rectangle.
   std::size_t marks_within(const Vector2d& lower, const Vector2d& upper) const {
     const auto is_within = [&](const Vector2d& point) {
       const Vector2d at = on_page(point);
@@ -225,7 +225,7 @@ class PanelDrawing {
     return count;
   }
 
-  // Neighbours of the same colour are one rectangle.
+  // Draws neighbouring cells of the same colour as one rectangle.
   void draw_image() {
     const Image& image = panel_.image;
     const Vector2d at = corner_ + plot_at;
@@ -246,7 +246,7 @@ class PanelDrawing {
     text_ += "</g>\n";
   }
 
-  // In 16 steps.
+  // Returns the colour of a cell, rounded to 16 levels per channel.
   std::string colour_of(std::size_t row, std::size_t column) const {
     std::string text = "#";
     for (std::size_t i = 0; i < 3; ++i) {

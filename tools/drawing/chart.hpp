@@ -5,18 +5,18 @@
 #include <string>
 #include <vector>
 
-/// Pages of charts as SVG: what was measured as dots, what it should be as thin lines. Pure functions; the same
-/// arguments give the same text.
+/// Pages of charts as SVG, with measured values as dots and theoretical values as thin lines. The functions are pure:
+/// equal arguments give equal text.
 namespace cohort::figures {
 
-/// One quantity over another.
+/// A quantity as a function of another.
 struct Series {
-  std::string name;                             ///< empty if it is alone on its panel
+  std::string name;                             ///< empty if it is the only series of its panel
   std::vector<Eigen::Vector2d> measured;        ///< ascending in x
-  std::function<double(double)> closed_form{};  ///< what theory says at x; empty if there is nothing to compare with
-  double tolerance = 0.0;                       ///< how far the measured may be off it, of y
-  bool is_joined = false;                       ///< a line goes from each point to the next
-  bool has_dots = true;                         ///< of what is measured
+  std::function<double(double)> closed_form{};  ///< theoretical value at x; empty if there is none
+  double tolerance = 0.0;                       ///< allowed deviation of measured values, in units of y
+  bool is_joined = false;                       ///< draw lines between consecutive points
+  bool has_dots = true;                         ///< draw dots at measured points
 };
 
 struct Image {
@@ -27,25 +27,25 @@ struct Image {
 
 struct Panel {
   std::string title;
-  std::string line;  ///< what the thin line is, or what else is to be known
+  std::string line;  ///< explanation of the thin line, or another remark
   std::string x_label;
   std::string y_label;
   std::vector<Series> series;
-  Image image{};          ///< drawn in the place of series, with x from 0 to 360 degrees
-  bool is_log_x = false;  ///< logarithmic: all that is measured is above zero, and there is no closed form
+  Image image{};          ///< drawn instead of series, with x from 0 to 360 degrees
+  bool is_log_x = false;  ///< logarithmic axis: measured values are positive, and there is no closed form
   bool is_log_y = false;  ///< the same
 };
 
 struct Page {
-  std::string name;  ///< of its file, without the extension
+  std::string name;  ///< file name without the extension
   std::string title;
   std::vector<Panel> panels;
 };
 
-/// An SVG document that depends on nothing outside of itself.
+/// Returns the page as a self-contained SVG document.
 std::string draw(const Page& page);
 
-/// `count` numbers, evenly from `first` to `last`.
+/// Returns `count` evenly spaced numbers from `first` to `last`.
 std::vector<double> evenly(double first, double last, std::size_t count);
 
 }  // namespace cohort::figures

@@ -56,7 +56,7 @@ struct Seen {
     const Eigen::Matrix3d axes = X_VC.orientation.toRotationMatrix() * ellipsoid.radii.asDiagonal();
     Outline outline;
     for (int i = 0; i < corners_of_a_circle; ++i) {
-      // The point of the ellipsoid that lies furthest in this direction.
+      // The farthest point of the ellipsoid in this direction.
       const Vector3d furthest = axes.topRows<2>().transpose() * on_circle(i);
       outline.corners_V.push_back(X_VC.position.head<2>() + axes.topRows<2>() * furthest.normalized());
     }

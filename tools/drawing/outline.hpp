@@ -7,14 +7,14 @@
 
 namespace cohort::tool {
 
-/// A solid as it is seen: the convex hull of its corners, or a circle if it has none [m].
+/// The visible outline of a solid: the convex hull of its corners, or a circle if it has none [m].
 struct Outline {
   std::vector<Eigen::Vector2d> corners_V;
   Eigen::Vector2d centre_V = Eigen::Vector2d::Zero();
   double radius = 0.0;
 };
 
-/// Of a plane and of a height map, a circle without size.
+/// Returns the outline of a solid; for a plane or a height map, a circle with radius zero.
 Outline outline_of(const TracedSolid& solid);
 
 }  // namespace cohort::tool

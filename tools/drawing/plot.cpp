@@ -21,7 +21,7 @@ using Eigen::Vector2d;
 using svg::number;
 using Output = std::back_insert_iterator<std::string>;
 
-// The page, in its units; one is a CSS pixel when the picture is shown in its own size.
+// Lengths on the page; a unit is a CSS pixel when the picture is shown at its own size.
 constexpr double header = 66.0;
 constexpr double footer = 36.0;
 constexpr double legend_width = 230.0;
@@ -31,8 +31,8 @@ constexpr double digit_width = 7.5;
 constexpr std::size_t longest_title = 64;
 
 constexpr double path_tolerance = 0.3;   // 2 mm in an arena of 4 m
-constexpr double smallest_radius = 2.2;  // of a robot, so that it is seen in any arena
-constexpr double mark_spacing = 3.0;     // marks nearer than this hide each other
+constexpr double smallest_radius = 2.2;  // minimum radius of a robot, so that it is visible in any arena
+constexpr double mark_spacing = 3.0;     // closer marks would hide each other
 constexpr double mark_radius = 3.2;
 
 constexpr std::string_view ink = "#1f2328";
@@ -111,7 +111,7 @@ class Drawing {
     std::string title = caption_.experiment;
     if (title.size() > longest_title) {
       title.resize(longest_title);
-      while (!title.empty() && (title.back() & 0xc0) == 0x80) title.pop_back();  // not within a character
+      while (!title.empty() && (title.back() & 0xc0) == 0x80) title.pop_back();  // do not cut within a character
       if (!title.empty() && (title.back() & 0x80)) title.pop_back();
       title += "…";
     }
@@ -156,7 +156,7 @@ class Drawing {
       return;
     }
     svg::Points points;
-    // Rounded as they are written: corners above each other are then one.
+    // Corners are rounded as in the output, so that corners above each other coincide.
     for (const Vector2d& corner_V : outline.corners_V)
       points.push_back((100.0 * view_(corner_V)).array().round() / 100.0);
     fmt::format_to(out_, "<polygon points=\"{}\"/>\n",
@@ -182,13 +182,23 @@ class Drawing {
     draw_all(TracedSolid::Kind::object, "objects", object_style);
   }
 
-  // Hues once round, by id; every other robot darker, so that neighbours in hue can be told apart.
+  bool has_teams() const { return trace_.teams.size() > 1; }
+
+  // Returns a hue that advances from team to team.
+  std::string colour_of_team(std::size_t team) const {
+    return svg::oklch(team % 2 == 0 ? 0.67 : 0.55, 0.15,
+                      static_cast<double>(team) / static_cast<double>(trace_.teams.size()));
+  }
+
+  // Returns the colour of the robot's team if there are several teams. Otherwise returns a hue that advances with the
+  // id; every other robot is darker, so that similar hues can be told apart.
   std::string colour(std::size_t robot) const {
+    if (has_teams()) return colour_of_team(trace_.robots[robot].team);
     const double hue = static_cast<double>(robot) / static_cast<double>(trace_.robots.size());
     return svg::oklch(robot % 2 == 0 ? 0.67 : 0.55, 0.15, hue);
   }
 
-  // The more robots, the thinner: 1 up to about 16, then falling.
+  // Returns the factor of line widths: 1 up to about 16 robots, then decreasing.
   double crowd_factor() const {
     return std::pow(std::max(1.0, static_cast<double>(trace_.robots.size()) / 16.0), -0.25);
   }
@@ -270,7 +280,7 @@ class Drawing {
     text_ += "</g>\n";
   }
 
-  // A sun, filled if it shines.
+  // Draws a lamp as a sun, filled if it is on.
   void draw_lamp(const Vector2d& at, bool is_on) {
     fmt::format_to(out_, "<path d=\"");
     for (int ray = 0; ray < lamp_rays; ++ray) {
@@ -338,6 +348,17 @@ class Drawing {
       draw_mark(kind, at);
       add(fmt::format("contact with {}{}", kind == ContactMark::Kind::obstacle ? "obstacle" : "robot",
                       has_contact(kind) ? "" : ": none"));
+    }
+    const double bottom = view_.origin.y() + view_.size.y() - 2.0 * legend_row;  // the scale bar is below
+    for (std::size_t team = 0; has_teams() && team < trace_.teams.size(); ++team) {
+      const bool is_full = at.y() + legend_row > bottom && team + 1 < trace_.teams.size();
+      if (is_full) {
+        add(fmt::format("and {} more teams", trace_.teams.size() - team));
+        break;
+      }
+      fmt::format_to(out_, "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\"/>\n", number(at.x()), number(at.y()),
+                     number(radius), colour_of_team(team));
+      add(svg::escaped("team " + trace_.teams[team]));
     }
     draw_scale_bar(left);
     text_ += "</g>\n";

@@ -14,9 +14,9 @@ struct PlotCaption {
   std::uint64_t state_hash = 0;
 };
 
-/// A run from above or from the side, as an SVG document: solids, each robot's path, start and end, contacts, a grid
-/// and a scale bar in metres, a legend and a caption. Depends on nothing outside of itself; the same arguments give the
-/// same bytes. The picture shows obstacles, objects and paths in full; a floor fills it as far as it reaches.
+/// Returns a plot of a run, seen from above or from the side, as a self-contained SVG document. It shows solids,
+/// contacts, each robot's path, start and end, a grid and a scale bar in metres, a legend and a caption. Equal
+/// arguments give equal bytes. The picture contains all obstacles, objects and paths; floors may extend beyond it.
 std::string draw_plot(const RunTrace& trace, const PlotCaption& caption);
 
 }  // namespace cohort::tool

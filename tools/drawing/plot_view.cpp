@@ -25,7 +25,7 @@ Range range_of(const RunTrace& trace) {
   if (range.empty()) add_solids(true);
   if (range.empty()) range.add(Eigen::Vector2d::Zero());
 
-  // A robot that hardly moves in an empty world is shown with some of the world around it, from above.
+  // If a robot hardly moves in an empty world, some of the surrounding world is shown from above.
   double largest_robot = 0.0;
   for (const RobotTrace& robot : trace.robots) largest_robot = std::max(largest_robot, robot.radius);
   const double least_size = largest_robot > 0.0 ? 12.0 * largest_robot : 1.0;

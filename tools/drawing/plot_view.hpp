@@ -7,8 +7,8 @@
 
 #include "tools/drawing/run_trace.hpp"
 
-/// Where on the page a plot draws what. The frame of who looks has x to the right, y upwards [m]. On the page y goes
-/// downwards; its unit is a CSS pixel when the picture is shown in its own size.
+/// The layout of a plot on the page. The viewer's frame has x to the right and y upwards [m]. On the page, y points
+/// downwards; its unit is a CSS pixel when the picture is shown at its own size.
 namespace cohort::tool {
 
 /// A rectangle of the world [m].
@@ -24,20 +24,20 @@ struct Range {
   }
 };
 
-/// What is to be seen of a run: never empty.
+/// Returns the visible range of a run, which is never empty.
 Range range_of(const RunTrace& trace);
 
-/// From the world to the page.
+/// The transform from the world to the page.
 struct View {
   static constexpr double longest_side = 600.0;
-  static constexpr double shortest_side = 236.0;  ///< the legend stands beside it
+  static constexpr double shortest_side = 236.0;  ///< the legend is beside it
 
   Range range_V;
   double scale;            ///< page units of a metre
   Eigen::Vector2d origin;  ///< upper left corner of the map on the page
-  Eigen::Vector2d size;    ///< of the map
+  Eigen::Vector2d size;    ///< size of the map
 
-  /// Fits `range` into the map; a long corridor gets some of the world on its sides.
+  /// Fits `range` into the map; a long corridor is shown with some of the world on both sides.
   explicit View(const Range& range);
 
   Eigen::Vector2d operator()(const Eigen::Vector2d& point_V) const {
@@ -46,7 +46,7 @@ struct View {
   }
 };
 
-/// The longest of 1, 2 and 5 times a power of ten that is at most `length`.
+/// Returns the largest of 1, 2 and 5 times a power of ten that is at most `length`.
 double round_length(double length);
 
 /// The multiples `first` to `last` of `step` between two coordinates [m].

@@ -18,7 +18,7 @@ using geometry::Solid;
 constexpr std::uint32_t none = 0xffffffffu;
 constexpr double floor_tolerance = 1e-3;  // [m]; robots sink in a little
 
-// How far the shape reaches from `centre_V`, as it is seen.
+// Returns how far a shape extends from `centre_V` in the view.
 struct Reach {
   const Pose& X_VC;
   Eigen::Vector2d centre_V;
@@ -75,8 +75,14 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
     trace_.robots[robot].name = simulation.robot_name(robot);
   }
 
+  for (const description::Team& team : simulation.experiment().teams) {
+    for (const std::uint32_t robot : team.robots)
+      if (robot < trace_.robots.size()) trace_.robots[robot].team = static_cast<std::uint32_t>(trace_.teams.size());
+    trace_.teams.push_back(team.name);
+  }
+
   const Scene& scene = simulation.world().scene();
-  // Without robots nothing is a floor.
+  // Without robots, no solid is a floor.
   double lowest_robot = world.robots.empty() ? -infinity : infinity;
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
@@ -96,7 +102,7 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
   if (viewpoint == Viewpoint::side) note_robots(&RobotTrace::at_start);
 }
 
-// What has come in mid-run is no robot, and no floor.
+// Objects that were added during the run are neither robots nor floors.
 std::uint32_t TraceRecorder::robot_of(BodyId body) const {
   return body.value < robot_of_body_.size() ? robot_of_body_[body.value] : none;
 }
@@ -123,7 +129,7 @@ void TraceRecorder::sample() {
 
 void TraceRecorder::note_contacts() {
   for (const physics::Contact& contact : simulation_.world().contacts()) {
-    // A contact of two robots is marked once, as the first one's.
+    // A contact of two robots is marked once, for the first robot.
     std::uint32_t robot = robot_of(contact.body_a);
     std::uint32_t other = robot_of(contact.body_b);
     if (robot == none && other == none) continue;
@@ -139,7 +145,7 @@ void TraceRecorder::note_contacts() {
   }
 }
 
-// Tracks have no collisions: what they touch the ground with is drawn as a box as high as a wheel's middle.
+// Tracks have no collisions: their ground contact is drawn as a box up to the height of a wheel's centre.
 void TraceRecorder::note_robots(std::vector<TracedSolid> RobotTrace::*solids) {
   using Kind = TracedSolid::Kind;
   const auto add = [&](std::uint32_t robot, const geometry::Shape& shape, const Pose& X_WC) {
@@ -192,7 +198,7 @@ RunTrace TraceRecorder::finish() {
   for (const emission::Lamp& lamp : simulation_.emitters().lamps()) {
     const bool of_robot = robot_of(lamp.mount.body) != none;
     if (of_robot || lamp.light.kind == description::Light::Kind::directional) continue;
-    // Also of one that was never in the world, which the emitters know no place of.
+    // A lamp that was never in the world has no position in the emitters.
     const Pose X_WE = simulation_.world().link_pose(lamp.mount.body, lamp.mount.link) * lamp.mount.X_LE;
     if (!X_WE.position.allFinite()) continue;
     trace_.lamps.push_back({seen(X_WE.position), lamp.is_on && simulation_.emitters().is_in_world(lamp.mount)});

@@ -13,39 +13,40 @@
 #include "server/simulation/simulation.hpp"
 #include "tools/drawing/viewpoint.hpp"
 
-/// What a run leaves behind for a picture of it. Everything is in the frame of who looks, V.
+/// The data of a run for a plot, in the viewer's frame V.
 namespace cohort::tool {
 
 struct TracedSolid {
   enum class Kind {
-    floor,     ///< static, and no higher than the lowest point of any robot
+    floor,     ///< static, and not higher than the lowest point of any robot
     obstacle,  ///< static
-    object,    ///< moves, and belongs to no robot; where it is at the end
-    robot,     ///< of one, or what stands for its tracks
+    object,    ///< moves, and belongs to no robot; in its final pose
+    robot,     ///< part of a robot, or a box for its tracks
   };
   Kind kind;
   geometry::Shape shape;
   Pose X_VC;
 };
 
-/// Where a robot was, in the plane of V.
+/// The path of a robot in the plane of V.
 struct RobotTrace {
   std::string name;
+  std::uint32_t team = 0;               ///< index of RunTrace::teams
   double radius = 0.0;                  ///< about the root link's origin, around all of its collisions at tick 0 [m]
   std::vector<Eigen::Vector2d> path_V;  ///< [m], first the start, last the end
-  double end_heading = 0.0;             ///< of the root link's x axis, from that of V [rad]
-  std::vector<TracedSolid> at_start;    ///< seen from the side only
+  double end_heading = 0.0;             ///< angle of the root link's x axis from the x axis of V [rad]
+  std::vector<TracedSolid> at_start;    ///< filled for the side view only
   std::vector<TracedSolid> at_end;      ///< the same
 };
 
-/// Where robots touched something. A robot has at most one mark of each kind within a square of `contact_spacing`.
+/// Contacts of robots. A robot has at most one mark of each kind within a square of `contact_spacing`.
 struct ContactMark {
   enum class Kind { obstacle, robot };
   Kind kind;
   Eigen::Vector2d position_V;
 };
 
-/// A lamp that belongs to no robot, as it is at the end.
+/// The final state of a lamp that belongs to no robot.
 struct TracedLamp {
   Eigen::Vector2d position_V;
   bool is_on = false;
@@ -53,26 +54,28 @@ struct TracedLamp {
 
 struct RunTrace {
   Viewpoint viewpoint = Viewpoint::above;
-  std::vector<TracedSolid> solids;  ///< the farthest first; planes and height maps are not among them
+  std::vector<TracedSolid> solids;  ///< the farthest first; without planes and height maps
   std::vector<RobotTrace> robots;   ///< by id
+  std::vector<std::string> teams;   ///< the experiment's
   std::vector<ContactMark> contacts;
-  std::vector<TracedLamp> lamps;  ///< directional ones, which are nowhere, are not among them
+  std::vector<TracedLamp> lamps;  ///< without directional ones, which have no position
 };
 
-/// Watches a run. Reads from the simulation and changes nothing, so the run's hash is the same without it. Keeps 160
+/// Records the trace of a run. It only reads from the simulation, so the run's state hash does not change. Uses 160
 /// bytes for each robot and simulated second.
 class TraceRecorder {
  public:
   static constexpr std::chrono::milliseconds sample_interval{100};  ///< simulated
   static constexpr double contact_spacing = 0.05;                   ///< [m]
 
-  /// `simulation` stands at tick 0. Both must outlive this.
+  /// `simulation` must be at tick 0. World and simulation must outlive this.
   TraceRecorder(const description::World& world, const Simulation& simulation, Viewpoint viewpoint = Viewpoint::above);
 
-  /// At every boundary.
+  /// Records the state; called at each tick boundary.
   void boundary();
 
-  /// Once, at the end: as of the present boundary, or of the last sample for a robot whose state is no longer finite.
+  /// Returns the trace; called once, at the end. It ends at the present boundary, or at the last sample for a robot
+  /// whose state is no longer finite.
   RunTrace finish();
 
  private:
@@ -98,7 +101,7 @@ class TraceRecorder {
   std::uint64_t sample_ticks_;
   std::uint64_t next_sample_;
   std::vector<std::uint32_t> robot_of_body_;
-  std::vector<char> is_floor_;  // by body: nothing of it is in a robot's way
+  std::vector<char> is_floor_;  // by body: whether it never obstructs a robot
   std::set<ContactCell> touched_;
   RunTrace trace_;
 };

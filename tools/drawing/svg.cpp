@@ -19,7 +19,7 @@ double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& 
   return (point - a - t * along).norm();
 }
 
-// Of OKLCH; empty outside sRGB. Gamma-encoded, 0 to 1.
+// Converts OKLCH to gamma-encoded sRGB, 0 to 1; empty for a colour outside of sRGB.
 std::optional<std::array<double, 3>> srgb(double lightness, double chroma, double hue) {
   const double a = chroma * std::cos(2.0 * std::numbers::pi * hue);
   const double b = chroma * std::sin(2.0 * std::numbers::pi * hue);
@@ -30,7 +30,7 @@ std::optional<std::array<double, 3>> srgb(double lightness, double chroma, doubl
   std::array<double, 3> channels = {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
                                     -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
                                     -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
-  constexpr double rounding = 1e-4;  // of the published matrices, more or less
+  constexpr double rounding = 1e-4;  // approximate rounding error of the published matrices
   for (double& channel : channels) {
     if (channel < -rounding || channel > 1.0 + rounding) return std::nullopt;
     channel = std::clamp(channel, 0.0, 1.0);
@@ -41,7 +41,7 @@ std::optional<std::array<double, 3>> srgb(double lightness, double chroma, doubl
 
 long tenths(double value) { return std::lround(10.0 * value); }
 
-// Without what SVG can do without: 0.3 is `.3`.
+// Returns a number without redundant digits: 0.3 is `.3`.
 std::string tenths_text(long value) {
   const long whole = std::abs(value) / 10;
   const long rest = std::abs(value) % 10;
@@ -69,7 +69,7 @@ std::string escaped(std::string_view text) {
       case '>': result += "&gt;"; break;
       case '"': result += "&quot;"; break;
       case '\'': result += "&#39;"; break;
-      default: result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;  // XML has no way to write the others
+      default: result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;  // XML cannot represent the others
     }
   }
   return result;
@@ -86,7 +86,7 @@ std::string path_data(const Points& points) {
     if (!first && dx == 0 && dy == 0) continue;
     x += dx;
     y += dy;
-    // Relative to the last point. What follows the first pair of `m` is a line.
+    // Coordinates are relative to the last point. In `m`, the pairs after the first one are lines.
     const std::string dx_text = tenths_text(dx);
     const std::string dy_text = tenths_text(dy);
     if (first)

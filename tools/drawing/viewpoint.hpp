@@ -2,7 +2,7 @@
 
 namespace cohort::tool {
 
-/// Who looks at a run: in their frame V x goes to the right, y upwards, and z towards them.
+/// The direction of view. In the viewer's frame V, x points to the right, y upwards, and z towards the viewer.
 enum class Viewpoint {
   above,  ///< V is W
   side,   ///< x of V is that of W, y of V is z of W

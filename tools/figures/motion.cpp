@@ -10,7 +10,7 @@ namespace {
 
 constexpr double g = 9.81;  // [m/s^2]
 
-// Of the tracked robot; both tracks push with torque / radius until the speed is there.
+// Response of the tracked robot: both tracks push with torque / radius until the speed is there.
 constexpr double mass = 0.7;                 // [kg]
 constexpr double push = 2.0 * 0.02 / 0.022;  // [N]
 

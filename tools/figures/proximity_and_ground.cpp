@@ -40,7 +40,7 @@ description::Model robot_with(ProximityTechnique technique) {
   return model;
 }
 
-// Of the sensor that looks ahead.
+// Reading of the sensor that faces ahead.
 double reading(ProximityTechnique technique, const description::Shape& shape, const Pose& X_WO) {
   Stand stand;
   stand.add(robot_with(technique));

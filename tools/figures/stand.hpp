@@ -23,7 +23,7 @@ Pose leaning(double pitch);
 description::Model held_robot();
 void hold(description::Model& model);
 
-/// What `measure` gives at each of `places`, beside a closed form.
+/// Returns the values of `measure` at each of `places`, beside a closed form.
 Series measured_at(const std::vector<double>& places, const std::function<double(double)>& measure,
                    std::function<double(double)> closed_form, double tolerance = exact, std::string name = {});
 
@@ -37,7 +37,7 @@ class Stand {
   void add_emitter(const decltype(description::Emitter::what)& what, const Pose& X_WM);
 
   void step(int ticks = 1);
-  /// Of the robot that was added as number `robot` of them.
+  /// Returns a value of the robot that was added as number `robot`.
   double read(const std::string& channel, std::size_t index = 0, std::uint32_t robot = 0);
   /// The other channels keep their values.
   void command(const std::string& channel, const std::vector<double>& values, std::uint32_t robot = 0);

@@ -1,4 +1,4 @@
-"""Models as Cohort, PyBullet and MuJoCo read them, and where they lie after some seconds on a plane."""
+"""Compares models as Cohort, PyBullet and MuJoCo read them, and their rest poses on a plane after some seconds."""
 
 import argparse
 import json
@@ -15,9 +15,9 @@ from engines import Cohort, MuJoCo, PyBullet, Unreadable
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = HERE.parent.parent
-SAME_MASS = 1e-5  # of it
+SAME_MASS = 1e-5  # relative
 SAME_PLACE = 1e-5  # [m]
-SAME_INERTIA = 1e-3  # of the largest moment: Bullet keeps floats
+SAME_INERTIA = 1e-3  # relative to the largest moment: Bullet stores floats
 SAME_DIRECTION = 1e-4  # [rad]
 SAME_LIMIT = 1e-4  # [rad] or [m]
 SAME_HEIGHT = 0.01  # at rest [m]
@@ -25,13 +25,13 @@ SLOW = 0.001  # at rest [m/s]
 
 
 def only_in_one(ours, theirs):
-    """Each name that only one of both has, with where it is and where it is not."""
+    """Yields each name that only one side has, with the side that has it and the side that does not."""
     for name in sorted(set(ours) ^ set(theirs)):
-        yield (name, "here", "there") if name in ours else (name, "there", "here")
+        yield (name, "in Cohort", "here") if name in ours else (name, "here", "in Cohort")
 
 
 def differences(ours, theirs):
-    """Sentences; none if both have the same model."""
+    """Yields a sentence for each difference of two models; none if they are equal."""
     for name, owner, other in only_in_one(ours.groups, theirs.groups):
         yield f"'{name or 'root'}' is a group of links {owner} and not {other}"
     for name, group in sorted(theirs.groups.items()):
@@ -40,15 +40,15 @@ def differences(ours, theirs):
             continue
         at = name or "root"
         if abs(own.mass - group.mass) > SAME_MASS * max(own.mass, group.mass):
-            yield f"'{at}' has {own.mass:g} kg, there {group.mass:g} kg"
+            yield f"'{at}' has a mass of {own.mass:g} kg in Cohort, {group.mass:g} kg here"
         elif own.mass > 0.0:
             apart = numpy.linalg.norm(own.centre - group.centre)
             if apart > SAME_PLACE:
-                yield f"the centre of mass of '{at}' is {apart:.3g} m elsewhere"
+                yield f"the centres of mass of '{at}' are {apart:.3g} m apart"
             largest = max(numpy.abs(own.inertia).max(), numpy.abs(group.inertia).max())
             error = numpy.abs(own.inertia - group.inertia).max()
             if error > SAME_INERTIA * largest:
-                yield f"the inertia of '{at}' differs by {error:.3g} kg m^2 of {largest:.3g}"
+                yield f"the inertia of '{at}' differs by {error:.3g} kg m^2, largest moment {largest:.3g} kg m^2"
     for name, owner, other in only_in_one(ours.joints, theirs.joints):
         yield f"the joint '{name}' moves {owner} and not {other}"
     for name, joint in sorted(theirs.joints.items()):
@@ -57,24 +57,24 @@ def differences(ours, theirs):
             continue
         apart = numpy.linalg.norm(own.anchor - joint.anchor)
         if apart > SAME_PLACE:
-            yield f"the joint '{name}' is {apart:.3g} m elsewhere"
+            yield f"the anchors of joint '{name}' are {apart:.3g} m apart"
         turned = numpy.linalg.norm(own.axis / numpy.linalg.norm(own.axis) - joint.axis / numpy.linalg.norm(joint.axis))
         if turned > SAME_DIRECTION:
-            yield f"the axis of '{name}' is turned by {turned:.3g}"
+            yield f"the axes of joint '{name}' differ by {turned:.3g} rad"
         for limit in ("lower", "upper"):
             mine, other = getattr(own, limit), getattr(joint, limit)
             if mine != other and not abs(mine - other) <= SAME_LIMIT:
-                yield f"the {limit} limit of '{name}' is {mine:g}, there {other:g}"
+                yield f"the {limit} limit of joint '{name}' is {mine:g} in Cohort, {other:g} here"
 
 
 def differences_at_rest(ours, theirs):
     for group, height in sorted(theirs.heights.items()):
         if group in ours.heights and abs(ours.heights[group] - height) > SAME_HEIGHT:
-            yield f"'{group or 'root'}' lies at {ours.heights[group]:.3f} m, there at {height:.3f} m"
+            yield f"'{group or 'root'}' is at height {ours.heights[group]:.3f} m in Cohort, {height:.3f} m here"
 
 
 def expanded(file, folder):
-    """The URDF that xacro makes of a file that needs it: PyBullet and MuJoCo have no xacro."""
+    """Returns the file, expanded by xacro if necessary: PyBullet and MuJoCo do not support xacro."""
     if "<xacro:" not in file.read_text(encoding="utf-8", errors="replace"):
         return file
     xacro = pathlib.Path(sys.executable).with_name("xacro")
@@ -86,11 +86,11 @@ def expanded(file, folder):
 
 
 def compare(program, file, seconds):
-    """What is to be told of one model: by engine why it is not compared, or its differences."""
+    """Returns for each engine the differences of a model, or why it is not compared."""
     found = {}
     cohort = Cohort(program, file)
     if not cohort.objects:
-        raise Unreadable("nothing in it moves")
+        raise Unreadable("the model has no moving link")
     ours = cohort.read(seconds)
     found["Cohort"] = {"speed": ours.rest.speed if ours.rest else None}
     with tempfile.TemporaryDirectory() as folder:
@@ -114,7 +114,7 @@ def compare(program, file, seconds):
 
 
 def tell(name, found, tolerated):
-    """The number of differences that nothing explains."""
+    """Prints the differences of a model, and returns the number of unexplained ones."""
     unexplained = 0
     print(name)
     for engine, facts in found.items():
@@ -134,7 +134,7 @@ def tell(name, found, tolerated):
 
 
 def listed(names, repositories):
-    """Of robots.json: name, file, the differences that are known."""
+    """Yields name, file and known differences of the robots in robots.json."""
     robots = json.loads((HERE / "robots.json").read_text(encoding="utf-8"))
     known = [robot["name"] for robot in robots]
     for name in names:
@@ -148,19 +148,19 @@ def listed(names, repositories):
         elif repositories:
             folder = repositories / robot["repository"].split("/")[1]
         else:
-            print(f"{robot['name']}\n  left out: of https://github.com/{robot['repository']}; --repositories names a "
-                  "folder with a clone")
+            print(f"{robot['name']}\n  skipped: requires a clone of https://github.com/{robot['repository']} in the "
+                  "folder of --repositories")
             continue
         yield robot["name"], folder / robot["file"], robot.get("known", [])
 
 
 def main():
     parser = argparse.ArgumentParser(prog="tools/compare-models", description=__doc__)
-    parser.add_argument("robots", nargs="*", metavar="ROBOT", help="of tools/models/robots.json (default: all)")
-    parser.add_argument("--file", type=pathlib.Path, help="a model instead of the robots of the list")
-    parser.add_argument("--repositories", type=pathlib.Path, metavar="DIR", help="folder with clones of repositories")
-    parser.add_argument("--seconds", type=float, default=5.0, help="on a plane (default: 5; 0: none)")
-    parser.add_argument("--cohort", default=str(SOURCE / "build/release/bin/cohort"), help="program to ask")
+    parser.add_argument("robots", nargs="*", metavar="ROBOT", help="robot of tools/models/robots.json (default: all)")
+    parser.add_argument("--file", type=pathlib.Path, help="compare this model instead")
+    parser.add_argument("--repositories", type=pathlib.Path, metavar="DIR", help="folder of the cloned repositories")
+    parser.add_argument("--seconds", type=float, default=5.0, help="simulated time (default: 5; 0: none)")
+    parser.add_argument("--cohort", default=str(SOURCE / "build/release/bin/cohort"), help="path of the program cohort")
     arguments = parser.parse_args()
     os.environ["VIRTUAL_ENV"] = sys.prefix  # where Cohort looks for xacro
     robots = [(str(arguments.file), arguments.file.resolve(), [])] if arguments.file else \
@@ -175,7 +175,7 @@ def main():
             continue
         unexplained += tell(name, found, tolerated)
         compared += 1
-    print(f"{compared} compared, {unexplained} differences that nothing explains")
+    print(f"{compared} compared, {unexplained} unexplained differences")
     return 1 if unexplained else 0
 
 

@@ -1,7 +1,7 @@
-"""One description of a model, as each engine reads it: groups of links that fixed joints weld together, and joints.
+"""Models as each engine reads them: joints, and groups of links that are connected by fixed joints.
 
-A group is known by the joint above it, the one of the root by ''. All is in world axes, with every joint at zero, in SI
-units. What an engine has no number for is None.
+A group has the name of its parent joint; the name of the root group is ''. Values are in world axes, with every joint
+at zero, in SI units. A value that an engine does not provide is None.
 """
 
 import dataclasses
@@ -31,7 +31,7 @@ class Joint:
 
 @dataclasses.dataclass
 class Rest:
-    """After some seconds on a plane."""
+    """The state of a model after some seconds on a plane."""
 
     heights: dict  # of the groups' centres
     speed: float  # of the fastest centre
@@ -44,13 +44,13 @@ class Reading:
     rest: Rest | None = None
 
     def __post_init__(self):
-        # Cohort calls a joint that has the name of a link after it, with this at the end.
+        # Cohort adds this suffix to a joint that has the same name as a link.
         self.groups = {name.removesuffix("_joint"): group for name, group in self.groups.items()}
         self.joints = {name.removesuffix("_joint"): joint for name, joint in self.joints.items()}
 
 
 class Unreadable(Exception):
-    """The engine does not take the file; says why."""
+    """The engine cannot read the file, for this reason."""
 
 
 STEP = 1e-3  # of the others [s]
@@ -58,7 +58,7 @@ LIMITLESS = 1e15
 
 
 def rotation(quaternion):
-    """Of x y z w."""
+    """Returns the rotation matrix of a quaternion x y z w."""
     x, y, z, w = quaternion
     return numpy.array([
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -68,7 +68,7 @@ def rotation(quaternion):
 
 
 def welded(parts):
-    """One group of several (mass, centre, inertia about it)."""
+    """Merges several parts (mass, centre, inertia about the centre) into one group."""
     mass = sum(part[0] for part in parts)
     if mass == 0.0:
         return Group(0.0, numpy.zeros(3), numpy.zeros((3, 3)))
@@ -89,12 +89,12 @@ def limits(lower, upper):
 
 
 def groups_of(tops, parts):
-    """tops: of each link the joint that its group hangs on; parts: of each link (mass, centre, inertia)."""
+    """tops: for each link, the parent joint of its group; parts: for each link, (mass, centre, inertia)."""
     return {top: welded([parts[link] for link in parts if tops[link] == top]) for top in set(tops.values())}
 
 
 def top_of(link, above):
-    """above: of each link (joint, whether it moves, parent)."""
+    """above: for each link, (joint, whether the joint moves, parent)."""
     while link in above:
         joint, moves, parent = above[link]
         if moves:
@@ -104,20 +104,20 @@ def top_of(link, above):
 
 
 def rest_of(before, now):
-    """now: of each group the centre's position and velocity."""
+    """now: for each group, position and velocity of its centre of mass."""
     speeds = [float(numpy.linalg.norm(velocity)) for group, (_, velocity) in now.items() if before[group].mass > 0.0]
     heights = {group.removesuffix("_joint"): float(at[2]) for group, (at, _) in now.items() if before[group].mass > 0.0}
     return Rest(heights, max(speeds, default=0.0))
 
 
 def motion_of(parts):
-    """Position and velocity of the centre of several (mass, position, velocity)."""
+    """Returns position and velocity of the centre of mass of several (mass, position, velocity)."""
     mass = sum(part[0] for part in parts) or 1.0
     return sum(part[0] * part[1] for part in parts) / mass, sum(part[0] * part[2] for part in parts) / mass
 
 
 class Cohort:
-    """What `cohort models show FILE --json` tells."""
+    """Cohort, through `cohort models show FILE --json`."""
 
     def __init__(self, program, file):
         self.program, self.file = program, file
@@ -132,13 +132,13 @@ class Cohort:
         return json.loads(done.stdout)
 
     def pose(self):
-        """Of the first model that moves: position and quaternion x y z w."""
+        """Returns position and quaternion x y z w of the first model that moves."""
         link = self.objects[0]["links"][0]
         turn = rotation(link["pose_in_world"][3:]) @ rotation(link["pose"][3:]).T
         return numpy.array(link["pose_in_world"][:3]) - turn @ numpy.array(link["pose"][:3]), turn
 
     def is_held(self):
-        """Whether its root is tied to the world."""
+        """Returns whether the root link is fixed to the world."""
         return any(joint["parent"] == "world" for joint in self.objects[0]["joints"])
 
     def frictions(self):
@@ -218,13 +218,13 @@ class PyBullet:
             self.bodies = [pybullet.loadURDF(str(file), position, [*quaternion[1:], quaternion[0]],
                                              useFixedBase=is_held, flags=flags, **own)]
         if not self.bodies:
-            raise pybullet.error("nothing that moves was read")
+            raise pybullet.error("the engine has read no moving link")
         for body in self.bodies:
             for link in range(-1, pybullet.getNumJoints(body, **own)):
                 name = self.name(body, link)
                 if name in frictions:
                     pybullet.changeDynamics(body, link, lateralFriction=frictions[name], **own)
-                # The defaults damp what moves; Cohort and MuJoCo do not.
+                # By default, PyBullet damps motion; Cohort and MuJoCo do not.
                 pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, **own)
 
     def close(self):
@@ -240,7 +240,7 @@ class PyBullet:
         return [pybullet.getJointInfo(body, joint, physicsClientId=self.client) for joint in range(count)]
 
     def centre(self, body, link):
-        """Of mass: position, orientation and velocity."""
+        """Returns position, orientation and velocity of a link's centre of mass."""
         own = {"physicsClientId": self.client}
         if link < 0:
             at, turn = pybullet.getBasePositionAndOrientation(body, **own)
@@ -296,11 +296,11 @@ class PyBullet:
 
 
 class MuJoCo:
-    """MuJoCo's reader of URDF; it has none of SDF, and takes no meshes in COLLADA."""
+    """MuJoCo, which reads URDF but not SDF, and no COLLADA meshes."""
 
     def __init__(self, file, folder, pose, frictions, is_held):
         if file.suffix != ".urdf":
-            raise Unreadable("it reads URDF only")
+            raise Unreadable("MuJoCo reads URDF only")
         try:
             self.load(file, folder, pose, frictions, is_held)
         except (ValueError, mujoco.FatalError) as error:
@@ -317,7 +317,7 @@ class MuJoCo:
         def asset(found):
             path = folder / found.group(1).removeprefix("package://").removeprefix("file://")
             if path.suffix.lower() == ".dae":
-                raise ValueError("a mesh in COLLADA, which it does not read")
+                raise ValueError("MuJoCo does not read COLLADA meshes")
             if path.is_file():
                 assets[found.group(1)] = path.read_bytes()
             return found.group(0)

@@ -23,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds patience{2};
-constexpr std::chrono::milliseconds poll_interval{100};  // where the kernel does not say when a child ends
+constexpr std::chrono::milliseconds poll_interval{100};  // used if the kernel does not announce a child's end
 constexpr std::size_t longest_line = std::size_t{64} * 1024;
 
 int open_pidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
@@ -33,7 +33,7 @@ void close_if_open(int& descriptor) {
   descriptor = -1;
 }
 
-// What strsignal says, which need not be thread-safe.
+// Returns the text of strsignal, which need not be thread-safe.
 std::string description_of(int signal_number) {
   if (const char* description = sigdescr_np(signal_number); description != nullptr) return description;
   if (signal_number < SIGRTMIN) return "Unknown signal " + std::to_string(signal_number);
@@ -47,22 +47,23 @@ std::string end_of(pid_t pid, int status) {
   return process + " was ended by signal " + std::to_string(number) + " (" + description_of(number) + ")";
 }
 
-// Between fork and exec, where only what is safe in a signal handler may be called.
+// Runs between fork and exec, where only functions that are safe in a signal handler may be called.
 [[noreturn]] void become(char* const* arguments, pid_t parent, int standard_error) {
-  // Of the thread that forked: the watcher, which lives as long as any child.
+  // The parent here is the thread that forked: the watcher, which outlives all children.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);  // it died meanwhile
-  setpgid(0, 0);                        // Ctrl-C is for the parent, which then ends the run in order
-  // In the background a read from the terminal would stop it.
+  if (getppid() != parent) _exit(127);  // the parent died meanwhile
+  setpgid(0, 0);                        // Ctrl-C goes to the parent, which ends the run in order
+  // A read from the terminal would stop a background process.
   const int nothing = open("/dev/null", O_RDONLY);
   if (nothing >= 0) dup2(nothing, STDIN_FILENO);
   if (standard_error >= 0) dup2(standard_error, STDERR_FILENO);
+  dup2(STDERR_FILENO, STDOUT_FILENO);  // standard output has the parent's results only
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   execv(arguments[0], arguments);
   _exit(127);
 }
 
-// As poll takes it: -1 is without end, 0 only when the deadline is over.
+// Returns a timeout for poll: -1 means no limit, and 0 only that the deadline has passed.
 int poll_timeout(Clock::time_point deadline, bool all_announced) {
   if (deadline == Clock::time_point::max()) return all_announced ? -1 : static_cast<int>(poll_interval.count());
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
@@ -74,7 +75,7 @@ int poll_timeout(Clock::time_point deadline, bool all_announced) {
 
 Children::Children(std::vector<Command> commands, Listener listener) : listener_(std::move(listener)) {
   if (pipe2(wake_pipe_, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
-  signal(SIGCHLD, SIG_DFL);  // whoever started us may have ignored it, and then nobody could be waited for
+  signal(SIGCHLD, SIG_DFL);  // the starting process may have ignored it, and then waiting for children fails
   for (Command& command : commands) children_.push_back({std::move(command)});
   watcher_ = std::thread([this] { watch(); });
 }
@@ -102,7 +103,7 @@ void Children::start(Child& child) {
   const std::vector<char*> arguments = arguments_of(child.command.arguments);
   int output[2] = {-1, -1};
   const bool piped = listener_.wrote && pipe2(output, O_CLOEXEC | O_NONBLOCK) == 0;
-  if (piped) fcntl(output[1], F_SETFL, 0);  // that is for the reading end only
+  if (piped) fcntl(output[1], F_SETFL, 0);  // non-blocking mode is for the reading end only
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid == 0) become(arguments.data(), parent, output[1]);
@@ -112,10 +113,10 @@ void Children::start(Child& child) {
   if (pid < 0) {
     close_if_open(child.output);
     if (listener_.gave_up)
-      listener_.gave_up(child.command.name + ": no process can be started: " + std::generic_category().message(error));
+      listener_.gave_up(child.command.name + ": cannot start a process: " + std::generic_category().message(error));
     return;
   }
-  setpgid(pid, pid);  // whoever of both comes first
+  setpgid(pid, pid);  // parent and child both set it, so the order does not matter
   child.pid = pid;
   child.pidfd = open_pidfd(pid);
   if (listener_.started) listener_.started(child.command, pid);
@@ -124,14 +125,14 @@ void Children::start(Child& child) {
 void Children::watch() {
   for (Child& child : children_) start(child);
   while (!finishing_) reap_until(Clock::time_point::max());
-  // The run is over: they leave by themselves, or are told to, or are made to.
+  // The run is over: children end by themselves, on SIGTERM, or on SIGKILL.
   if (patient_ && reap_until(Clock::now() + patience)) return;
   signal_all(SIGTERM);
   if (reap_until(Clock::now() + patience)) return;
   for (const Child& child : children_)
     if (child.pid > 0 && listener_.killed)
       listener_.killed(child.command, child.command.name + ": controller process " + std::to_string(child.pid) +
-                                          " does not end when it is told to, and is killed");
+                                          " did not end on request and was killed");
   signal_all(SIGKILL);
   reap_until(Clock::now() + patience);
 }
@@ -141,7 +142,8 @@ void Children::signal_all(int number) {
     if (child.pid > 0) kill(-child.pid, number);
 }
 
-// Handles ends and output of children until all are gone (true), the deadline is over, or finishing begins.
+// Handles ends and output of children. Returns true when all have ended, false if the deadline passes or finishing
+// begins.
 bool Children::reap_until(Clock::time_point deadline) {
   const bool was_finishing = finishing_;
   for (;;) {
@@ -173,7 +175,7 @@ void Children::reap(Child& child) {
   siginfo_t end{};
   if (waitid(P_PID, static_cast<id_t>(child.pid), &end, WEXITED | WNOHANG | WNOWAIT) != 0 || end.si_pid != child.pid)
     return;
-  // Before its id can be given to others: what it started itself goes with it.
+  // Ends the processes that the child started, before its id can be reused.
   kill(-child.pid, SIGKILL);
   int status = 0;
   waitpid(child.pid, &status, 0);
@@ -187,18 +189,18 @@ void Children::handle_end(Child& child, int status) {
   close_if_open(child.pidfd);
   if (listener_.ended) listener_.ended(child.pid);
   const std::string text = child.command.name + ": " + end_of(std::exchange(child.pid, -1), status);
-  // Even without an error: as long as there is something to do, a controller has no reason to end.
+  // A controller must not end during a run, even without an error.
   if (!restarting_ || finishing_) return;
   if (WIFEXITED(status) && listener_.may_end_with && listener_.may_end_with(WEXITSTATUS(status))) return;
   const auto give_up = [&](const std::string& why) {
     if (listener_.gave_up) listener_.gave_up(text + why);
   };
-  if (!child.command.restarts) return give_up(", and the experiment says restart: never");
+  if (!child.command.restarts) return give_up("; the experiment specifies 'restart: never'");
   if (child.restarts == most_restarts)
-    return give_up(", and was started again " + std::to_string(most_restarts) + " times before");
+    return give_up("; it had been restarted " + std::to_string(most_restarts) + " times before");
   ++child.restarts;
   if (listener_.restarted)
-    listener_.restarted(child.command, text + "; starting it again (" + std::to_string(child.restarts) + " of " +
+    listener_.restarted(child.command, text + "; restarting it (" + std::to_string(child.restarts) + " of " +
                                            std::to_string(most_restarts) + ")");
   start(child);
 }
@@ -207,7 +209,7 @@ void Children::handle_end(Child& child, int status) {
 void Children::read_output(Child& child) {
   if (child.output < 0) return;
   char buffer[4096];
-  constexpr int at_once = 16;  // as much as a pipe holds: a child that never stops must not keep us from the others
+  constexpr int at_once = 16;  // a pipe's capacity: a child that writes without end must not block the others
   for (int i = 0; i < at_once; ++i) {
     const ssize_t size = ::read(child.output, buffer, sizeof buffer);
     if (size == 0) return close_if_open(child.output);

@@ -11,50 +11,52 @@
 
 namespace cohort::tool {
 
-/// Processes that this one started and answers for. One that dies is started again, a few times; all are gone when this
-/// is, with whatever is left of their process groups, and they die if this process is killed. Their standard input is
-/// empty.
+/// Child processes of this process. A child that dies is restarted, up to a limit. The destructor ends all children and
+/// the rest of their process groups; they also die if this process is killed. Their standard input is empty,
+/// and what they write to standard output goes to standard error.
 class Children {
  public:
-  static constexpr int most_restarts = 3;  ///< of each child
+  static constexpr int most_restarts = 3;  ///< limit of restarts of each child
 
   struct Command {
     std::vector<std::string> arguments;  ///< the program's path first
-    std::string name;                    ///< for messages: what it is for
-    bool restarts = true;                ///< if it dies
+    std::string name;                    ///< name in messages
+    bool restarts = true;                ///< restart it if it dies
   };
 
-  /// Called on a thread of this, one at a time. `gave_up`, `restarted` and `killed` have a text for people.
+  /// Callbacks, called on a thread of this class, one at a time. `gave_up`, `restarted` and `killed` get a message for
+  /// users.
   struct Listener {
     std::function<void(const Command& command, pid_t pid)> started{};
-    std::function<void(pid_t pid)> ended{};  ///< before anything else is said of it
+    std::function<void(pid_t pid)> ended{};  ///< called before other callbacks for its end
     std::function<void(const Command& command, const std::string& text)> restarted{};
-    std::function<void(const std::string& text)> gave_up{};  ///< a child died that is not started again
-    std::function<void(const Command& command, const std::string& text)>
-        killed{};  ///< one that did not end when told to
-    /// If set, receives each line that a child writes to standard error, which otherwise is ours.
+    std::function<void(const std::string& text)> gave_up{};  ///< a child died and is not restarted
+    std::function<void(const Command& command, const std::string& text)> killed{};  ///< a child did not end on request
+    /// If set, receives each line that a child writes to standard output or standard error. Otherwise the lines go to
+    /// our standard error.
     std::function<void(const Command& command, const std::string& line)> wrote{};
-    /// Whether a child may end with this code before `stop_restarting` was called. Otherwise that is a death.
+    /// Returns whether a child may end with this code before `stop_restarting` is called. Any other end counts as a
+    /// death.
     std::function<bool(int exit_code)> may_end_with{};
   };
 
-  /// Throws std::system_error.
+  /// Starts the children. Throws std::system_error.
   Children(std::vector<Command> commands, Listener listener);
-  /// Ends those that are left: by SIGTERM, and after two seconds by SIGKILL.
+  /// Ends the remaining children by SIGTERM, and after two seconds by SIGKILL.
   ~Children();
 
-  /// From now on a child may end as it likes.
+  /// Allows children to end from now on.
   void stop_restarting() { restarting_ = false; }
-  /// Gives them two seconds to end by themselves, before they are ended.
+  /// Gives the children two seconds to end by themselves before they are ended.
   void let_finish();
 
  private:
   struct Child {
     Command command;
     pid_t pid = -1;  // -1: not running
-    int pidfd = -1;  // -1 also if the kernel has none to give
+    int pidfd = -1;  // also -1 if the kernel does not support it
     int output = -1;
-    std::string line{};  // of output, as far as it is there
+    std::string line{};  // incomplete line of output
     int restarts = 0;
   };
   void start(Child& child);
@@ -71,7 +73,7 @@ class Children {
   int wake_pipe_[2] = {-1, -1};
   std::atomic<bool> restarting_ = true;
   std::atomic<bool> finishing_ = false;
-  std::atomic<bool> patient_ = false;  // they were told that it is over
+  std::atomic<bool> patient_ = false;  // children know that the run is over
   std::thread watcher_;
 };
 

@@ -34,7 +34,7 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-// Until both are closed by the program, so that neither can fill up and stop it.
+// Reads both pipes until the program closes them, so that neither can fill up and block it.
 void read_both(const Pipe& out, const Pipe& err, ProgramResult& result) {
   std::array<pollfd, 2> watched = {{{out.read_end(), POLLIN, 0}, {err.read_end(), POLLIN, 0}}};
   const std::array<std::string*, 2> texts = {&result.output, &result.errors};
@@ -66,7 +66,7 @@ ProgramResult run_program(const std::vector<std::string>& command, const std::fi
   const int error = posix_spawnp(&pid, arguments.front(), &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error == ENOENT)
-    throw std::runtime_error("the program " + command.front() + " is not installed: install the package of that name");
+    throw std::runtime_error("the program " + command.front() + " is not installed: install the package of this name");
   if (error != 0) throw std::system_error(error, std::generic_category(), "cannot start " + command.front());
   out.close_write_end();
   err.close_write_end();

@@ -8,7 +8,7 @@
 
 namespace cohort::tool {
 
-/// As `exec` takes them; good as long as `command` is.
+/// Returns the arguments for `exec`, valid as long as `command`.
 inline std::vector<char*> arguments_of(const std::vector<std::string>& command) {
   std::vector<char*> arguments;
   for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
@@ -16,7 +16,7 @@ inline std::vector<char*> arguments_of(const std::vector<std::string>& command) 
   return arguments;
 }
 
-/// Of a process that `wait` told of: 128 and the signal's number if a signal ended it.
+/// Returns the exit code for a status of `wait`: 128 plus the signal's number if a signal ended the process.
 inline int exit_code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
 
 struct ProgramResult {
@@ -25,8 +25,8 @@ struct ProgramResult {
   std::string errors;
 };
 
-/// Runs a program of $PATH to its end, in `folder`, with an empty standard input. Throws std::runtime_error that says
-/// what is missing if it cannot be started.
+/// Runs a program of $PATH to its end, in `folder`, with an empty standard input. Throws std::runtime_error that names
+/// the missing package if it cannot be started.
 ProgramResult run_program(const std::vector<std::string>& command, const std::filesystem::path& folder);
 
 }  // namespace cohort::tool

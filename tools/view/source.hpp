@@ -7,14 +7,14 @@
 
 namespace cohort::view {
 
-/// What a viewer asks for: an operation, and what it needs. Which operations there are is in docs/view.md.
+/// A viewer's request: an operation and its arguments. Which operations there are is in docs/view.md.
 struct ViewRequest {
   std::string operation;
   double number = 0.0;
-  std::string name{};  ///< of an object
+  std::string name{};  ///< name of an object
   std::string text{};
   std::vector<double> numbers{};
-  std::uint64_t visitor = 0;  ///< who asks
+  std::uint64_t visitor = 0;  ///< id of the viewer
 };
 
 struct Answer {
@@ -32,7 +32,7 @@ class Source {
 
   /// `answer` is called once, on any thread, perhaps before this returns. Any thread.
   virtual void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) = 0;
-  /// Whose channels are to be published from now on: ids. Any thread.
+  /// Sets the robots whose channels are to be published from now on: ids. Any thread.
   virtual void watch(const std::vector<std::uint32_t>& robots) = 0;
   /// This visitor asks for nothing any more. Any thread.
   virtual void leave(std::uint64_t /*visitor*/) {}

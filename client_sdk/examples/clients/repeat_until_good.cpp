@@ -1,10 +1,10 @@
-// Repeats a run with one seed after the other until it is good: until all robots are so far from where they began.
+// Repeats a run with one seed after the other until all robots have moved at least a given distance from their start.
 //
 //   repeat_until_good METRES SECONDS RUNS    the server's domain is $COHORT_DOMAIN, its address $COHORT_SERVER
 //
-// `cohort serve EXPERIMENT --paused` serves the run, and controllers drive its robots as always: they stay attached
-// from one run to the next. This program holds the run, looks on while it plays, and ends the server when it is done.
-// The state hash that it prints belongs to seed and tick: a run with that seed has the same hash at that tick again.
+// `cohort serve EXPERIMENT --paused` serves the run, and controllers drive its robots as usual; they stay attached from
+// one run to the next. This program starts and pauses the run, observes it, and ends the server when it is done. It
+// prints the state hash for each seed and tick: a run with the same seed has the same hash at that tick.
 
 #include <algorithm>
 #include <chrono>
@@ -25,11 +25,11 @@ using cohort::Vector3;
 
 struct Wanted {
   double metres = 0.0;
-  std::chrono::nanoseconds time{0};  // simulated
+  std::chrono::nanoseconds time{0};  // simulated time
   std::uint64_t runs = 0;
 };
 
-// Where the robots are by their names.
+// Returns the positions of the robots by their names.
 std::map<std::string, Vector3> positions(cohort::Control& control) {
   std::map<std::string, Vector3> found;
   for (const std::string& entity : control.entities()) found[entity] = control.entity_state(entity).pose.position;
@@ -38,7 +38,7 @@ std::map<std::string, Vector3> positions(cohort::Control& control) {
 
 double distance(const Vector3& a, const Vector3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
 
-// The least distance that a robot has from where it began.
+// Returns the least distance of any robot from its start.
 double least_distance(cohort::Control& control, const std::map<std::string, Vector3>& begin,
                       const std::vector<cohort::ObservedRobot>& robots) {
   const std::map<std::string, Vector3> now = positions(control);
@@ -48,7 +48,7 @@ double least_distance(cohort::Control& control, const std::map<std::string, Vect
   return least;
 }
 
-// Plays until a simulated time, and tells what is seen meanwhile. False if the run ends before.
+// Plays until a simulated time, and prints events. Returns false if the run ends before.
 bool play_until(cohort::Control& control, cohort::Observer& observer, std::chrono::nanoseconds time,
                 std::uint32_t run) {
   control.play();
@@ -72,7 +72,7 @@ int repeat(const Wanted& wanted) {
   control.pause();
   const auto robots = observer.robots(std::chrono::seconds(30));
   if (!robots) {
-    std::fprintf(stderr, "the server does not describe its robots\n");
+    std::fprintf(stderr, "the server sent no description of its robots\n");
     return 1;
   }
   int result = 1;

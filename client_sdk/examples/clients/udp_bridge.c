@@ -1,10 +1,10 @@
-/* The bridge of udp_bridge.cpp in C: firmware that speaks UDP drives one robot of a simulation in lockstep.
+/* The bridge of udp_bridge.cpp in C: firmware with a UDP interface drives one robot of a simulation in lockstep.
  *
  *   udp_bridge ROBOT PORT       the server's domain is $COHORT_DOMAIN, its address $COHORT_SERVER
  *
- * Each tick, the bridge sends one datagram of text to 127.0.0.1:PORT, `TICK VALUE VALUE ...` with all that the robot
- * observes, and waits for one back, `TICK VALUE VALUE ...` with the robot's whole command. A datagram that is lost is
- * sent again after a second. */
+ * At each tick, the bridge sends one text datagram to 127.0.0.1:PORT, `TICK VALUE VALUE ...`, with the robot's whole
+ * observation. It waits for a datagram with the robot's whole command, `TICK VALUE VALUE ...`. It sends a lost
+ * datagram again after a second. */
 
 #define _POSIX_C_SOURCE 200809L
 #include <arpa/inet.h>
@@ -35,11 +35,11 @@ static int connect_to(unsigned short port) {
   return connect(firmware, (const struct sockaddr*)&address, sizeof address) == 0 ? firmware : -1;
 }
 
-/* All channels of the robot. False if it has more than there is room for. */
+/* Looks up all channels of the robot. Returns false if it has more than the bridge supports. */
 static bool look_up(const CohortStart* start) {
   observed_count = cohort_find_observations(start, "*/*/*", observed, most_channels);
   commanded_count = cohort_find_commands(start, "*/*/*", commanded, most_channels);
-  printf("%s observes %zu channels and is commanded by %zu\n", cohort_start_info(start)->name, observed_count,
+  printf("%s has %zu observation channels and %zu command channels\n", cohort_start_info(start)->name, observed_count,
          commanded_count);
   return observed_count <= most_channels && commanded_count <= most_channels;
 }
@@ -49,10 +49,10 @@ static void send_observation(int firmware, const CohortObservation* observation)
   for (size_t i = 0; i < observed_count; ++i)
     for (uint32_t k = 0; k < observed[i].size && size < largest_datagram; ++k)
       size += snprintf(text + size, sizeof text - (size_t)size, " %.17g", cohort_read_all(observation, observed[i])[k]);
-  if (send(firmware, text, (size_t)size, 0) < 0) return; /* lost: it is sent again */
+  if (send(firmware, text, (size_t)size, 0) < 0) return; /* lost: sent again later */
 }
 
-/* Sets the command from the answer in `text`. False if that is not an answer to this tick. */
+/* Sets the command from the answer in `text`. Returns false if the answer is not for this tick. */
 static bool set_command(uint64_t tick, CohortCommand* command) {
   char* rest = text;
   if (strtoull(rest, &rest, 10) != tick) return false;
@@ -67,12 +67,12 @@ static bool set_command(uint64_t tick, CohortCommand* command) {
   return true;
 }
 
-/* Whether an answer to this tick came within a second. */
+/* Returns true if an answer to this tick arrived within a second. */
 static bool receive_command(int firmware, uint64_t tick, CohortCommand* command) {
   struct pollfd readable = {firmware, POLLIN, 0};
   while (poll(&readable, 1, 1000) == 1) {
     const ssize_t size = recv(firmware, text, sizeof text - 1, 0);
-    if (size < 0) return false; /* nobody is there yet */
+    if (size < 0) return false; /* the firmware is not running yet */
     text[size] = '\0';
     if (set_command(tick, command)) return true;
   }
@@ -90,13 +90,13 @@ int main(int argc, char** argv) {
                                  NULL};
   CohortClient* const client = firmware >= 0 ? cohort_connect(&options) : NULL;
   if (client == NULL) {
-    fprintf(stderr, "udp_bridge: %s\n", firmware >= 0 ? cohort_last_error() : "cannot reach the firmware's port");
+    fprintf(stderr, "udp_bridge: %s\n", firmware >= 0 ? cohort_last_error() : "cannot open the firmware's port");
     return 2;
   }
   CohortEvent event;
   while (cohort_next(client, &event) != cohort_event_end) {
     if (event.kind == cohort_event_start && !look_up(event.start))
-      cohort_give_up(client, "the robot has more channels than this bridge has room for");
+      cohort_give_up(client, "the robot has more channels than this bridge supports");
     while (event.kind == cohort_event_observation && !cohort_is_over(client)) {
       send_observation(firmware, event.observation);
       if (receive_command(firmware, cohort_tick(event.observation), event.command)) break;

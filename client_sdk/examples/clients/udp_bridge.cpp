@@ -1,10 +1,10 @@
-// A small bridge: firmware that speaks UDP drives one robot of a simulation in lockstep.
+// A small bridge: firmware with a UDP interface drives one robot of a simulation in lockstep.
 //
 //   udp_bridge ROBOT PORT       the server's domain is $COHORT_DOMAIN, its address $COHORT_SERVER
 //
-// Each tick, the bridge sends one datagram of text to 127.0.0.1:PORT, `TICK VALUE VALUE ...` with all that the robot
-// observes, and waits for one back, `TICK VALUE VALUE ...` with the robot's whole command. The order of the values is
-// that of the robot's channels, which the bridge prints. A datagram that is lost is sent again after a second.
+// At each tick, the bridge sends one text datagram to 127.0.0.1:PORT, `TICK VALUE VALUE ...`, with the robot's whole
+// observation. It waits for a datagram with the robot's whole command, `TICK VALUE VALUE ...`. The values are in the
+// order of the robot's channels, which the bridge prints. It sends a lost datagram again after a second.
 
 #include <arpa/inet.h>
 #include <poll.h>
@@ -26,7 +26,7 @@
 
 namespace {
 
-// A UDP socket that is connected to the firmware.
+// A UDP socket connected to the firmware.
 class FirmwarePort {
  public:
   explicit FirmwarePort(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -35,13 +35,13 @@ class FirmwarePort {
     firmware.sin_port = htons(port);
     firmware.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     if (::connect(socket_, reinterpret_cast<const sockaddr*>(&firmware), sizeof firmware) != 0)
-      throw std::runtime_error("cannot reach port " + std::to_string(port));
+      throw std::runtime_error("cannot open port " + std::to_string(port));
   }
   FirmwarePort(const FirmwarePort&) = delete;
   FirmwarePort& operator=(const FirmwarePort&) = delete;
   ~FirmwarePort() { ::close(socket_); }
 
-  // What is lost is sent again.
+  // Sends a datagram; errors are ignored, because lost datagrams are sent again.
   void send(const std::string& text) const { static_cast<void>(!::send(socket_, text.data(), text.size(), 0)); }
 
   std::optional<std::string> receive(int milliseconds) const {
@@ -49,7 +49,7 @@ class FirmwarePort {
     if (::poll(&readable, 1, milliseconds) != 1) return std::nullopt;
     std::string text(65536, ' ');
     const ssize_t size = ::recv(socket_, text.data(), text.size(), 0);
-    if (size < 0) return std::nullopt;  // nobody is there yet
+    if (size < 0) return std::nullopt;  // the firmware is not running yet
     text.resize(static_cast<std::size_t>(size));
     return text;
   }
@@ -76,7 +76,7 @@ std::string text_of(std::uint64_t tick, const cohort::FrameRobot& robot) {
   return text.str();
 }
 
-// Sets the command from the firmware's answer. False if it answers another tick.
+// Sets the command from the firmware's answer. Returns false if the answer is for another tick.
 bool set_command(const std::string& answer, std::uint64_t tick, cohort::FrameRobot& robot) {
   std::istringstream text(answer);
   std::uint64_t answered = 0;
@@ -84,13 +84,13 @@ bool set_command(const std::string& answer, std::uint64_t tick, cohort::FrameRob
   for (const cohort::ChannelInfo& channel : robot.robot->start.command_channels)
     for (std::uint32_t i = 0; i < channel.size; ++i) {
       double value = 0.0;
-      if (!(text >> value)) throw std::runtime_error("the firmware's answer has no value for " + channel.name);
+      if (!(text >> value)) throw std::runtime_error("the firmware's answer lacks a value for " + channel.name);
       robot.command.set({channel.offset, channel.size, channel.lower, channel.upper}, value, i);
     }
   return true;
 }
 
-// One exchange with the firmware. False if the run is over before it has answered.
+// Exchanges an observation and a command with the firmware. Returns false if the run ends before the answer.
 bool exchange(const FirmwarePort& firmware, std::uint64_t tick, cohort::FrameRobot& robot,
               const cohort::Client& client) {
   while (!client.is_over()) {

@@ -3,8 +3,9 @@
 
 #include <cohort/cohort_control.h>
 
-/* Looks on at the runs of a Cohort server, in C99 (C++ may include it too): what <cohort/observer.hpp> says in C++. An
- * observer drives nothing, is never waited for and cannot slow the server; what it misses is gone.
+/* Observes the runs of a Cohort server, in C99 (C++ may include it too). It is the same in C as
+ * <cohort/observer.hpp> in C++. An observer drives nothing, is never waited for and cannot slow down the server; it
+ * may miss ticks.
  *
  *   CohortObserver* observer = cohort_observer_connect(NULL);
  *   while (observer != NULL && cohort_observer_ended(observer) == cohort_observer_goes_on)
@@ -12,9 +13,9 @@
  *       printf("%llu\n", (unsigned long long)cohort_observer_tick(observer));
  *   cohort_observer_close(observer);
  *
- * Poses are in the world frame, in SI units. Texts and pointers that a function gives are valid until the next call of
- * cohort_observer_next, cohort_observer_ask_robots or cohort_observer_ask_events with the same handle. A handle is for
- * one thread at a time. */
+ * Poses are in the world frame, in SI units. Returned texts and pointers are valid until the next call of
+ * cohort_observer_next, cohort_observer_ask_robots or cohort_observer_ask_events with the same handle. Use a handle
+ * on one thread at a time. */
 
 #ifdef __cplusplus
 extern "C" {
@@ -22,25 +23,25 @@ extern "C" {
 
 typedef struct CohortObserver CohortObserver;
 
-/* Returns at once; a server that is not there yet is waited for. `server`, `domain`, `secure` and `name` of the options
- * are used, as in cohort_connect, also if `options` is NULL. NULL if it fails. */
+/* Returns at once; waits for a server that is not there yet. Uses `server`, `domain`, `secure` and `name` of the
+ * options like cohort_connect, also if `options` is NULL. Returns NULL if it fails. */
 CohortObserver* cohort_observer_connect(const CohortOptions* options);
 void cohort_observer_close(CohortObserver* observer); /* NULL is allowed */
 
-/* Waits for the next world state for at most so long, which may be 0. False if none comes. A tick comes again when a
- * paused run goes on, and when its world was changed. */
+/* Waits for the next world state, at most `milliseconds`, which may be 0. Returns false if none arrives. A tick is
+ * repeated when a paused run resumes, and when its world was changed. */
 bool cohort_observer_next(CohortObserver* observer, int milliseconds);
-/* A file descriptor that poll() reports as readable while cohort_observer_next would return at once. Not to be read or
- * closed. */
+/* Returns a file descriptor that poll() reports as readable while cohort_observer_next would return at once. Do not
+ * read or close it. */
 int cohort_observer_descriptor(const CohortObserver* observer);
 
-/* ---- The world state that cohort_observer_next brought last ---- */
+/* ---- The world state from the last cohort_observer_next ---- */
 
-uint32_t cohort_observer_run(const CohortObserver* observer); /* higher after each reset or restore */
+uint32_t cohort_observer_run(const CohortObserver* observer); /* increases after each reset or restore */
 uint64_t cohort_observer_tick(const CohortObserver* observer);
-int64_t cohort_observer_time_ns(const CohortObserver* observer); /* simulated, since tick 0 [ns] */
+int64_t cohort_observer_time_ns(const CohortObserver* observer); /* simulated time since tick 0 [ns] */
 uint64_t cohort_observer_state_hash(const CohortObserver* observer);
-size_t cohort_observer_poses(const CohortObserver* observer); /* of how many robots it has poses */
+size_t cohort_observer_poses(const CohortObserver* observer); /* number of robots with poses */
 /* Returns the pose of one of these robots, in the order of their ids, and NULL beyond the last. Writes its id to
  * `*robot` unless that is NULL. */
 const CohortPose* cohort_observer_pose(const CohortObserver* observer, size_t index, uint32_t* robot);
@@ -48,17 +49,18 @@ const CohortPose* cohort_observer_pose(const CohortObserver* observer, size_t in
 /* ---- The end ---- */
 
 typedef enum CohortObserverEnd {
-  cohort_observer_goes_on = 0,    /* or no server has been there yet */
-  cohort_observer_run_ended = 1,  /* the server has said that there will be no further run */
-  cohort_observer_server_gone = 2 /* the server died, or left without a word */
+  cohort_observer_goes_on = 0,    /* running, or no server has been there yet */
+  cohort_observer_run_ended = 1,  /* the server has announced that no further run follows */
+  cohort_observer_server_gone = 2 /* the server died or left without notice */
 } CohortObserverEnd;
 
-/* Then cohort_last_error says how and why. */
+/* Returns whether and how the runs have ended; cohort_last_error then gives details. */
 CohortObserverEnd cohort_observer_ended(const CohortObserver* observer);
 
 /* ---- Queries ---- */
 
-/* Asks for all robots of the run, for at most so long. Not for each tick. Returns how many there are, or -1. */
+/* Queries all robots of the run, at most for `milliseconds`. Do not call it at each tick. Returns the number of
+ * robots, or -1. */
 int64_t cohort_observer_ask_robots(CohortObserver* observer, int milliseconds);
 /* Returns the scoped name of one of these robots, in the order of their ids, and NULL beyond the last. Writes its id to
  * `*robot` unless that is NULL. The two functions below return its model and its team. */

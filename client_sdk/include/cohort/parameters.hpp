@@ -12,10 +12,10 @@ namespace cohort {
 /// is `wheel.radius`.
 struct Parameter {
   std::string name;
-  std::vector<std::string> values;  ///< one, or those of a list, as they are written
+  std::vector<std::string> values;  ///< one value, or those of a list, as written
 };
 
-/// A parameter that is missing, not what it should be, or unknown to the controller. `what()` names it.
+/// An error: a parameter is missing, has the wrong type or is unknown to the controller. `what()` names it.
 class ParameterError : public std::runtime_error {
  public:
   ParameterError(std::string name, const std::string& message);
@@ -25,32 +25,33 @@ class ParameterError : public std::runtime_error {
   std::string name_;
 };
 
-/// What the experiment file gives a controller. Every parameter has to be asked for in `Controller::start`: one that
-/// is left over is a mistake of the file, and the controller does not start. One thread at a time.
+/// The parameters of a controller in the experiment file. `Controller::start` must read every parameter: an unread one
+/// is an error of the file, and the controller does not start. For one thread at a time.
 class Parameters {
  public:
   Parameters() = default;
   explicit Parameters(std::vector<Parameter> parameters);
 
-  /// In the order of the file. Does not count as asking.
+  /// Returns all parameters, in the order of the file. Does not mark them as read.
   const std::vector<Parameter>& all() const { return parameters_; }
-  /// Whether the file has it. Counts as asking.
+  /// Returns true if the file has the parameter. Marks it as read.
   bool has(std::string_view name) const { return find(name) != nullptr; }
 
-  /// A finite number; `fallback` if the file has none of that name. Throws ParameterError if it is something else.
+  /// Returns a finite number; `fallback` if the parameter is missing. Throws ParameterError if it is not a finite
+  /// number.
   double real(std::string_view name, double fallback) const;
-  /// As above; throws ParameterError also if the file has none.
+  /// Returns a finite number. Throws ParameterError if it is missing or not a finite number.
   double real(std::string_view name) const;
-  /// A list of finite numbers, or one alone. Empty if the file has none.
+  /// Returns a list of finite numbers; one element for a single number, empty if the parameter is missing.
   std::vector<double> reals(std::string_view name) const;
-  /// `true` or `false`.
+  /// Returns true or false, written as `true` or `false`; `fallback` if the parameter is missing.
   bool flag(std::string_view name, bool fallback) const;
-  /// A single text.
+  /// Returns a single text.
   std::string text(std::string_view name, std::string_view fallback) const;
   std::string text(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;
 
-  /// Throws ParameterError for the first one that was never asked for.
+  /// Throws ParameterError for the first parameter that was not read.
   void check_all_were_asked_for() const;
 
  private:
@@ -58,7 +59,7 @@ class Parameters {
   const Parameter& get(std::string_view name) const;
 
   std::vector<Parameter> parameters_;
-  mutable std::vector<std::string> asked_;  // for `check_all_were_asked_for`; changes nothing else
+  mutable std::vector<std::string> asked_;  // for `check_all_were_asked_for` only
 };
 
 }  // namespace cohort

@@ -9,8 +9,8 @@
 
 namespace cohort {
 
-/// The devices of an s-bot (docs/sbot.md). Its controllers make this in `start` and use it in `step`. Bearings are from
-/// where the turret looks, counter-clockwise [rad].
+/// The devices of an s-bot (docs/sbot.md). A controller creates this in `start` and uses it in `step`. Bearings are
+/// relative to the turret's heading, counter-clockwise [rad].
 struct Sbot {
   enum class Color : std::size_t { red, green, blue };
   struct Sides {
@@ -19,18 +19,18 @@ struct Sbot {
   };
   struct Light {
     double bearing = 0.0;
-    double brightest = 0.0;  ///< of the sensors
+    double brightest = 0.0;  ///< greatest reading of the sensors
   };
   struct Sound {
-    double ahead = 0.0;  ///< by how much more arrives ahead than behind
-    double left = 0.0;   ///< and on the left than on the right
-    double level = 0.0;  ///< what arrives, the mean of the microphones
+    double ahead = 0.0;  ///< intensity ahead minus intensity behind
+    double left = 0.0;   ///< intensity on the left minus intensity on the right
+    double level = 0.0;  ///< mean intensity at the microphones
 
     double bearing() const { return std::atan2(left, ahead); }
   };
 
   Sbot() = default;
-  /// Throws ChannelError if the robot is no s-bot.
+  /// Looks up the channels. Throws ChannelError if the robot is not an s-bot.
   explicit Sbot(const Start& start)
       : proximity(start.observations("proximity/*/reading", 15)),
         ground(start.observations("ground/*/reading", 4)),
@@ -47,29 +47,29 @@ struct Sbot {
         loudness(start.command("left_speaker/0/intensity")),
         leds(start.commands("leds/*/color")) {}
 
-  /// Speeds of the tracks over ground [m/s].
+  /// Sets the speeds of the tracks over ground [m/s].
   void drive(Command& command, double left, double right) const {
     command.set(left_track, left);
     command.set(right_track, right);
   }
-  /// To the left: the right track is `by` faster than `ahead`, the left one slower [m/s].
+  /// Turns to the left: the right track runs at `ahead + by`, the left one at `ahead - by` [m/s].
   void turn(Command& command, double ahead, double by) const { drive(command, ahead - by, ahead + by); }
-  /// Turns the turret against the chassis until `angle` is gone, the faster the more there is of it. If the turret is
-  /// held, the chassis turns.
+  /// Turns the turret back by `angle` relative to the chassis, with a speed proportional to it. If the turret is held,
+  /// the chassis turns.
   void turn_turret_back(Command& command, double angle) const { command.set(turret_motor, -turret_gain * angle); }
-  /// Keeps the turret looking where the tracks go.
+  /// Aligns the turret with the direction of the tracks.
   void align_turret(const Observation& observation, Command& command) const {
     turn_turret_back(command, observation[turret]);
   }
-  /// A bearing from where the tracks go, within half a turn.
+  /// Converts a bearing to the frame of the chassis, within half a turn.
   double from_chassis(const Observation& observation, double bearing) const {
     return std::remainder(bearing + observation[turret], 2.0 * std::numbers::pi);
   }
   bool can_grip(const Observation& observation) const { return observation[grippable] > 0.5; }
   bool grips(const Observation& observation) const { return observation[gripping] > 0.5; }
-  /// The gripper is open in every step that does not close it.
+  /// Closes the gripper. It opens in every step that does not close it.
   void close_gripper(Command& command) const { command.set(gripper, 0.0); }
-  /// A tone [Hz], and what arrives of it at 1 m [1].
+  /// Emits a tone [Hz] with the given intensity at 1 m [1].
   void call(Command& command, double tone, double intensity) const {
     command.set(frequency, tone);
     command.set(loudness, intensity);
@@ -78,8 +78,8 @@ struct Sbot {
     for (const CommandChannel led : leds) command.set(led, 1.0, static_cast<std::size_t>(color));
   }
 
-  /// How near obstacles are that are ahead: on each side the most of the four sensors at 12, 36, 60 and 84 degrees from
-  /// straight ahead. What is beside the robot matters less than what is in its way.
+  /// Returns how near obstacles ahead are: on each side the greatest weighted reading of the four sensors at 12, 36, 60
+  /// and 84 degrees from straight ahead. Obstacles beside the robot have lower weights.
   Sides obstacles(const Observation& observation) const {
     constexpr std::array weights{1.0, 0.8, 0.6, 0.3};
     Sides near;
@@ -89,7 +89,7 @@ struct Sbot {
     }
     return near;
   }
-  /// The direction of the sum of the light sensors.
+  /// Returns the direction of the sum of the light sensors.
   Light look(const Observation& observation) const {
     double ahead = 0.0, left = 0.0, brightest = 0.0;
     for (std::size_t i = 0; i < light.size(); ++i) {
@@ -101,7 +101,7 @@ struct Sbot {
     }
     return {std::atan2(left, ahead), brightest};
   }
-  /// Undoes the saturation of the microphones, 2 / (1 + exp(-x)) - 1.
+  /// Returns the sound at the microphones, without their saturation, 2 / (1 + exp(-x)) - 1.
   Sound listen(const Observation& observation) const {
     std::array<double, 4> heard{};
     for (std::size_t i = 0; i < heard.size(); ++i)
@@ -109,27 +109,27 @@ struct Sbot {
     return {heard[0] + heard[3] - heard[1] - heard[2], heard[0] + heard[1] - heard[2] - heard[3],
             (heard[0] + heard[1] + heard[2] + heard[3]) / 4.0};
   }
-  /// Whether any of the microphones reads more than `threshold`.
+  /// Returns true if any of the microphones reads more than `threshold`.
   bool hears(const Observation& observation, double threshold) const {
     return std::any_of(microphones.begin(), microphones.end(),
                        [&](ObservationChannel microphone) { return observation[microphone] > threshold; });
   }
 
   static constexpr double turret_gain = 5.0;  ///< [1/s]
-  // All are numbered counter-clockwise.
+  // Numbered counter-clockwise.
   std::vector<ObservationChannel> proximity;    ///< the first is 12 degrees to the left of the gripper
-  std::vector<ObservationChannel> ground;       ///< the first is ahead
+  std::vector<ObservationChannel> ground;       ///< the first is in front
   std::vector<ObservationChannel> light;        ///< the first looks ahead
-  std::vector<ObservationChannel> microphones;  ///< the corners of a square; the first is ahead and to the left
-  ObservationChannel turret;                    ///< its angle to the chassis
+  std::vector<ObservationChannel> microphones;  ///< at the corners of a square; the first is in front on the left
+  ObservationChannel turret;                    ///< angle between turret and chassis
   ObservationChannel grippable;
   ObservationChannel gripping;
   CommandChannel left_track;
   CommandChannel right_track;
   CommandChannel turret_motor;
   CommandChannel gripper;
-  CommandChannel frequency;  ///< of the left speaker
-  CommandChannel loudness;   ///< of the left speaker
+  CommandChannel frequency;  ///< frequency of the left speaker
+  CommandChannel loudness;   ///< intensity of the left speaker
   std::vector<CommandChannel> leds;
 };
 

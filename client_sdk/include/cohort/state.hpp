@@ -16,26 +16,26 @@
 #include <type_traits>
 #include <vector>
 
-/// What a controller remembers, as bytes: `Controller::save` writes them, `Controller::load` reads them in the same
-/// order. Little-endian, the same on every machine.
+/// The state of a controller as bytes: `Controller::save` writes them, `Controller::load` reads them in the same order.
+/// They are little-endian, the same on every machine.
 namespace cohort {
 
-static_assert(std::endian::native == std::endian::little, "state is written as it stands in memory");
+static_assert(std::endian::native == std::endian::little, "state is written in the byte order of the machine");
 
-/// Of one robot's controller [bytes].
+/// Maximum size of the state of one robot's controller [bytes].
 inline constexpr std::size_t largest_state = std::size_t{1} << 20;
 
-/// State that ends too early, or has what cannot be.
+/// An error: the state ends too early, or has an invalid value.
 class StateError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A number, a flag or an enumerator; of `long double`, compilers have several.
+/// A number, a flag or an enumerator. `long double` is excluded because its format depends on the compiler.
 template <class Value>
 concept StateValue = (std::is_arithmetic_v<Value> && !std::is_same_v<Value, long double>) || std::is_enum_v<Value>;
 
-/// A generator of random numbers as the standard library has them, such as std::mt19937_64.
+/// A random number generator with the interface of the standard library, such as std::mt19937_64.
 template <class Engine>
 concept StateEngine = requires(Engine& engine, const Engine& same, std::istream& in, std::ostream& out) {
   typename Engine::result_type;
@@ -44,7 +44,7 @@ concept StateEngine = requires(Engine& engine, const Engine& same, std::istream&
   in >> engine;
 };
 
-/// Valid during `save` only.
+/// Writes the state of a controller. Valid during `save` only.
 class StateWriter {
  public:
   template <StateValue Value>
@@ -64,7 +64,7 @@ class StateWriter {
     write(static_cast<std::uint64_t>(values.size()));
     add(values.data(), values.size() * sizeof(Value));
   }
-  /// How a generator stands, in the words of the standard.
+  /// Writes the state of a generator in the standard's text format.
   template <StateEngine Engine>
   void write(const Engine& engine) {
     std::ostringstream text;
@@ -72,7 +72,7 @@ class StateWriter {
     text << engine;
     write(std::string_view(text.view()));
   }
-  /// One after the other.
+  /// Writes several values, one after the other.
   template <class First, class Second, class... More>
   void write(const First& first, const Second& second, const More&... more) {
     write(first);
@@ -80,7 +80,7 @@ class StateWriter {
     (write(more), ...);
   }
 
-  /// What this controller remembers cannot be saved: whoever goes on from here starts it anew, and is told so.
+  /// Marks the state as not saved: a run that continues from this snapshot restarts the controller, with a warning.
   void leave_out() { is_left_out_ = true; }
   bool is_left_out() const { return is_left_out_; }
   std::span<const std::byte> bytes() const { return bytes_; }
@@ -95,8 +95,8 @@ class StateWriter {
   bool is_left_out_ = false;
 };
 
-/// What a StateWriter wrote, read in the same order. Valid during `load` only. Functions throw StateError where the
-/// state ends too early; it may come from anywhere, so what cannot be is worth a check.
+/// Reads what a StateWriter wrote, in the same order. Valid during `load` only. Functions throw StateError if the state
+/// ends too early. State may come from anywhere, so check values that can be invalid.
 class StateReader {
  public:
   explicit StateReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -106,16 +106,16 @@ class StateReader {
   void read(bool& flag) {
     std::uint8_t number = 0;
     read(number);
-    if (number > 1) throw StateError("the state has a flag that is neither 0 nor 1");
+    if (number > 1) throw StateError("invalid state: a flag is neither 0 nor 1");
     flag = number == 1;
   }
-  /// An enumerator from the first one, 0, up to `last`.
+  /// Reads an enumerator from the first one, 0, up to `last`.
   template <class Enum>
   requires std::is_enum_v<Enum>
   void read_up_to(Enum& value, Enum last) {
     read(value);
     if (static_cast<std::int64_t>(value) < 0 || value > last)
-      throw StateError("the state has an enumerator that there is not");
+      throw StateError("invalid state: an enumerator is out of range");
   }
   template <class Ticks, class Period>
   void read(std::chrono::duration<Ticks, Period>& duration) {
@@ -138,7 +138,7 @@ class StateReader {
     read(text);
     std::istringstream words(text);
     words.imbue(std::locale::classic());
-    if (!(words >> engine)) throw StateError("the state has no random number generator where one is expected");
+    if (!(words >> engine)) throw StateError("invalid state: expected a random number generator");
   }
   template <class First, class Second, class... More>
   void read(First& first, Second& second, More&... more) {
@@ -147,18 +147,18 @@ class StateReader {
     (read(more), ...);
   }
 
-  /// Bytes that are not read yet.
+  /// Returns the unread bytes.
   std::span<const std::byte> rest() const { return bytes_; }
 
  private:
   std::size_t read_count(std::size_t bytes_each) {
     std::uint64_t count = 0;
     read(count);
-    if (count > bytes_.size() / bytes_each) throw StateError("the state ends too early");
+    if (count > bytes_.size() / bytes_each) throw StateError("invalid state: unexpected end");
     return static_cast<std::size_t>(count);
   }
   void take(void* to, std::size_t size) {
-    if (bytes_.size() < size) throw StateError("the state ends too early");
+    if (bytes_.size() < size) throw StateError("invalid state: unexpected end");
     if (size != 0) std::memcpy(to, bytes_.data(), size);
     bytes_ = bytes_.subspan(size);
   }

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-/// What <cohort/control.hpp> and <cohort/observer.hpp> have in common: poses and velocities, states of a simulation,
-/// and what has happened in a run. Names follow ROS 2's simulation_interfaces and geometry_msgs where they have one.
-/// Plain values in SI units; the world frame is right-handed with z up.
+/// Types of <cohort/control.hpp> and <cohort/observer.hpp>: poses and velocities, states of a simulation, and events of
+/// a run. Names follow ROS 2's simulation_interfaces and geometry_msgs where they have one. Plain values in SI units;
+/// the world frame is right-handed with z up.
 namespace cohort {
 
 struct Vector3 {
@@ -15,7 +15,7 @@ struct Vector3 {
   bool operator==(const Vector3&) const = default;
 };
 
-/// A rotation of length 1, from the body's frame to the world's.
+/// A unit quaternion: the rotation from the body frame to the world frame.
 struct Quaternion {
   double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
   bool operator==(const Quaternion&) const = default;
@@ -28,7 +28,7 @@ struct WorldPose {
   bool operator==(const WorldPose&) const = default;
 };
 
-/// The velocity of the origin of an object's root link, along the axes of the world frame.
+/// The velocity of the origin of an object's root link, expressed in the world frame.
 struct Twist {
   Vector3 linear{};   ///< [m/s]
   Vector3 angular{};  ///< [rad/s]
@@ -36,32 +36,32 @@ struct Twist {
 };
 
 enum class SimulationState : std::uint32_t {
-  stopped = 0,  ///< at the beginning, until it plays
+  stopped = 0,  ///< at the beginning, before the first tick
   playing = 1,
   paused = 2,
-  quitting = 3,  ///< run and server end
+  quitting = 3,  ///< run and server are ending
 };
 
-/// Something that happened in a run, perhaps more than once: a controller that joined or was late, an event of the
+/// Something that happened in a run, once or several times: a controller that joined or was late, an event of the
 /// experiment, a request.
 struct RunEvent {
-  std::uint64_t tick = 0;       ///< of the first time
-  std::uint64_t last_tick = 0;  ///< of the last time
+  std::uint64_t tick = 0;       ///< tick of the first occurrence
+  std::uint64_t last_tick = 0;  ///< tick of the last occurrence
   std::uint64_t count = 1;
-  std::string kind;  ///< a word, for programs
-  std::string text;  ///< for people
+  std::string kind;  ///< keyword, for programs
+  std::string text;  ///< description, for people
   bool operator==(const RunEvent&) const = default;
 };
 
-/// What has happened in a run, and how far back it can go.
+/// The events of a run, and how far back it can go.
 struct RunHistory {
-  std::uint32_t run = 0;              ///< its number; revisions begin at 0 with each run
-  std::uint64_t revision = 0;         ///< to ask with next, for what happens after this
-  std::uint64_t begin_tick = 0;       ///< that the run began or went on from
+  std::uint32_t run = 0;              ///< number of the run; revisions start at 0 with each run
+  std::uint64_t revision = 0;         ///< revision to use in the next query, for later events
+  std::uint64_t begin_tick = 0;       ///< tick at which the run started or continued
   std::uint64_t keep_interval = 0;    ///< ticks between kept snapshots; 0: the run cannot go back
-  std::uint64_t first_kept_tick = 0;  ///< of the kept snapshots, if there are any
+  std::uint64_t first_kept_tick = 0;  ///< first tick of the kept snapshots, if there are any
   std::uint64_t last_kept_tick = 0;
-  std::vector<RunEvent> events;  ///< that happened or happened again, in the order of their last times
+  std::vector<RunEvent> events;  ///< new and repeated events, in the order of their last occurrences
 };
 
 }  // namespace cohort

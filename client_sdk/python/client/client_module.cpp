@@ -13,13 +13,13 @@
 #include "client_sdk/python/hosting/python_team.hpp"
 #include "client_sdk/src/attachment.hpp"
 
-/// The extension module `cohort._client`: controllers that are clients of a server, over DDS.
+/// The extension module `cohort._client`: controllers as clients of a server, over DDS.
 namespace cohort::python {
 namespace {
 
 namespace nb = nanobind;
 
-/// Gives signals back to Python at its end.
+/// Restores Python's signal handlers when it is destroyed.
 class SignalsOfPython {
  public:
   SignalsOfPython() {
@@ -48,7 +48,7 @@ const char* word_of(ClientEnd end) {
   return "failed";
 }
 
-// Returns how it ended, and the last error that it told.
+// Returns how the client ended, and its last error message.
 std::pair<std::string, std::string> host(nb::handle maker, const std::vector<std::string>& robots,
                                          const std::string& server, std::int64_t domain, const std::string& secure) {
   ClientOptions options;
@@ -86,7 +86,7 @@ int run_program(nb::handle maker, std::vector<std::string> arguments) {
 
 NB_MODULE(_client, module) {
   using namespace nanobind::literals;
-  nanobind::set_leak_warnings(false);  // of objects that live when Python ends
+  nanobind::set_leak_warnings(false);  // about objects that are alive when Python exits
   module.def("host", &cohort::python::host, "maker"_a, "robots"_a, "server"_a, "domain"_a, "secure"_a);
   module.def("run_program", &cohort::python::run_program, "maker"_a, "arguments"_a);
 }

@@ -2,8 +2,8 @@
 
     import cohort
 
-    cohort.examples()                                  # experiments that come with it
-    cohort.run("obstacle_avoidance").state_hash        # one of them, to its end
+    cohort.examples()                                  # names of the bundled experiments
+    cohort.run("obstacle_avoidance").state_hash        # runs one of them to its end
 
     simulation = cohort.Simulation("obstacle_avoidance", seed=1)
     simulation.commands[:] = ...                       # [robot, value], SI units
@@ -13,20 +13,20 @@
     class Wanderer(cohort.Controller): ...             # drives one robot: help(cohort.Controller)
     cohort.run("obstacle_avoidance", Wanderer)
 
-    recording = cohort.Recording("run.mcap")           # of cohort.run(..., record="run.mcap")
-    recording.poses, recording.observations            # arrays of xarray
-    recording.table("events")                          # of pandas
-    print(cohort.compare("run.mcap", "other.mcap"))    # where two runs part
+    recording = cohort.Recording("run.mcap")           # from cohort.run(..., record="run.mcap")
+    recording.poses, recording.observations            # xarray arrays
+    recording.table("events")                          # pandas table
+    print(cohort.compare("run.mcap", "other.mcap"))    # where two runs differ
 
     cohort.gym.VectorEnv(...)                          # many worlds at once, for learning: help(cohort.gym)
 
-The order of values is that of channels, which have names, units and bounds (`Robot.observation_channels`). Poses are
-x y z [m] and a quaternion w x y z in the world frame, which has z up. Runs have the same bits as those of `cohort run`.
-To that end `math.sin`, `math.exp` and their like are functions of Cohort once this package is imported; they are within
-2 units of the last place of the C library's.
+Values are in the order of channels, which have names, units and bounds (`Robot.observation_channels`). Poses are x y z
+[m] and a quaternion w x y z in the world frame, which has z up. Runs have the same bits as those of `cohort run`. For
+this purpose, importing this package replaces `math.sin`, `math.exp` and similar functions by those of Cohort. They
+agree with the C library's within 2 units in the last place.
 """
 
-import numpy  # its functions are bound to portable ones too, so it has to be there first
+import numpy  # before _native, which also binds NumPy's calls to portable functions
 
 from cohort import _native, math
 from cohort._files import examples

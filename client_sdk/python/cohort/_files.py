@@ -1,4 +1,4 @@
-"""Where the files are that come with Cohort."""
+"""Folders and files that come with Cohort."""
 
 import difflib
 import os
@@ -15,23 +15,24 @@ def _first_folder(*candidates):
 def worlds_folder():
     """Returns the folder of the worlds that come with Cohort."""
     folder = _first_folder(
-        _package / "share/cohort/worlds",  # of a wheel
-        _package.parent.parent / "share/cohort/worlds",  # of a build tree
+        _package / "share/cohort/worlds",  # in a wheel
+        _package.parent.parent / "share/cohort/worlds",  # in a build tree
         pathlib.Path(sys.prefix) / "share/cohort/worlds",
         pathlib.Path("/usr/share/cohort/worlds"),
     )
     if folder is None:
-        raise FileNotFoundError("the worlds of Cohort are not installed")
+        raise FileNotFoundError("the worlds of Cohort are not installed (share/cohort/worlds)")
     return folder
 
 
 def page_folder():
-    """Returns the folder of the built page of the view."""
+    """Returns the folder of the built web page of the view."""
     folder = worlds_folder().parent / "view"
     if not (folder / "index.html").is_file():
         raise FileNotFoundError(
-            f"the page of the view is not in '{folder}': it is built with Cohort where there are node 18 and npm "
-            "(tools/install-packages tools/packages-node.txt), as by cmake --build build/release --target view_page"
+            f"the web page of the view is missing in '{folder}'. It is built with Cohort if node 18 and npm are "
+            "installed (tools/install-packages tools/packages-node.txt); build it with "
+            "cmake --build build/release --target view_page"
         )
     return folder
 
@@ -42,7 +43,7 @@ def model_folders():
 
 
 def plugin_folders():
-    """Returns the folders where controllers are looked for that are named without a path."""
+    """Returns the folders that are searched for controllers named without a path."""
     folders = [pathlib.Path(each) for each in os.environ.get("COHORT_PLUGIN_PATH", "").split(":") if each]
     prefixes = [
         pathlib.Path("/usr/local/lib"),
@@ -51,8 +52,8 @@ def plugin_folders():
     ]
     return [
         *folders,
-        _package / "lib/cohort/controllers",  # of a wheel
-        _package.parent.parent / "lib/controllers",  # of a build tree
+        _package / "lib/cohort/controllers",  # in a wheel
+        _package.parent.parent / "lib/controllers",  # in a build tree
         *(prefix / "cohort/controllers" for prefix in prefixes),
     ]
 
@@ -63,9 +64,9 @@ def examples():
 
 
 def experiment_called(name):
-    """Returns the file of an experiment: of one that comes with Cohort if it is named so and no such file is there.
+    """Returns the file of an experiment: a path, or the name of a bundled experiment if no such file exists.
 
-    Raises FileNotFoundError for a name that is neither.
+    Raises FileNotFoundError if the name is neither.
     """
     path = pathlib.Path(name)
     if path.exists() or len(path.parts) != 1 or path.suffix:
@@ -75,4 +76,4 @@ def experiment_called(name):
         return worlds_folder() / "experiments" / f"{name}.yaml"
     near = difflib.get_close_matches(str(name), known, n=3)
     suggestion = f"; did you mean {' or '.join(near)}?" if near else ""
-    raise FileNotFoundError(f"there is neither a file '{name}' nor an example of this name{suggestion}")
+    raise FileNotFoundError(f"no file or example is named '{name}'{suggestion}")

@@ -1,4 +1,4 @@
-"""What C++ calls to run controllers that are written in Python."""
+"""Functions that C++ calls to run controllers written in Python."""
 
 import importlib.util
 import pathlib
@@ -18,7 +18,7 @@ class Adapter:
     def __init__(self, make):
         self._controller = make()
         if not isinstance(self._controller, Controller):
-            raise TypeError(f"{make!r} makes a {type(self._controller).__name__}, expected a cohort.Controller")
+            raise TypeError(f"{make!r} returned a {type(self._controller).__name__}, expected a cohort.Controller")
 
     def start(self, facts, observation, command):
         self._observation = numpy.frombuffer(observation, dtype=numpy.float64)
@@ -82,7 +82,9 @@ class TeamAdapter:
 
 def _checked_state(state):
     if state is not None and not isinstance(state, bytes):
-        raise TypeError(f"save() gave a {type(state).__name__}, expected bytes, or None if it cannot be saved")
+        raise TypeError(
+            f"save() returned a {type(state).__name__}, expected bytes, or None if the state cannot be saved"
+        )
     return state
 
 
@@ -99,16 +101,16 @@ class Maker:
 
 
 def controller_in(file):
-    """Returns the class of controllers that a file of Python defines. Raises ValueError if there is not just one."""
+    """Returns the controller class that a Python file defines. Raises ValueError unless there is exactly one."""
     path = pathlib.Path(file).resolve()
     if not path.is_file():
-        raise ValueError(f"there is no file {path}")
+        raise ValueError(f"no such file: {path}")
     name = "cohort_controller_" + path.stem
     specification = importlib.util.spec_from_file_location(name, path)
     module = importlib.util.module_from_spec(specification)
     sys.modules[name] = module
     if str(path.parent) not in sys.path:
-        sys.path.insert(0, str(path.parent))  # for good, as where Python runs the file: it may import later too
+        sys.path.insert(0, str(path.parent))  # permanently, because it may import modules later
     specification.loader.exec_module(module)
     classes = [
         value
@@ -117,9 +119,7 @@ def controller_in(file):
     ]
     if len(classes) != 1:
         found = ", ".join(sorted(each.__name__ for each in classes)) or "none"
-        raise ValueError(
-            f"{path} has these classes of controllers: {found}; expected one that derives from cohort.Controller"
-        )
+        raise ValueError(f"{path}: expected one class derived from cohort.Controller, found: {found}")
     return classes[0]
 
 
@@ -128,19 +128,19 @@ def maker_in(file):
 
 
 def maker_in_program(file):
-    """Does as `maker_in` in a program that embeds Python, and ends without its end: what is printed is seen at once."""
+    """Acts as `maker_in` in a program that embeds Python and exits without finalizing it: prints without buffering."""
     if sys.stdout is not None:
         sys.stdout.reconfigure(line_buffering=True)
     return maker_in(file)
 
 
 def parameter_problem(error):
-    """Returns the name of the parameter that is wrong, and what is wrong with it, or None for another exception."""
+    """Returns the name of the wrong parameter and the problem, or None for another exception."""
     return (str(error.name), str(error.problem)) if isinstance(error, ParameterError) else None
 
 
 def describe(error):
-    """Returns an exception as one line: where it was raised, and what it says."""
+    """Returns an exception as one line: where it was raised, and its message."""
     here = f"{pathlib.Path(__file__).parent}/"
     frames = traceback.extract_tb(error.__traceback__)
     shown = [each for each in frames if not each.filename.startswith((here, "<frozen "))]

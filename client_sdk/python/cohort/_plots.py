@@ -1,4 +1,4 @@
-"""Figures with matplotlib, which is imported where it is used."""
+"""Figures with matplotlib, which is imported only when needed."""
 
 import numpy
 
@@ -12,12 +12,12 @@ def _headings(poses):
 def _checked_paths(paths, robots):
     paths = numpy.asarray(paths, dtype=numpy.float64)
     if paths.ndim != 3 or paths.shape[1] != robots or paths.shape[2] < 2:
-        raise ValueError(f"paths have the shape {paths.shape}, expected [step, {robots}, 2 or more]")
+        raise ValueError(f"paths has shape {paths.shape}, expected [step, {robots}, 2 or more]")
     return paths
 
 
 def plot(simulation, paths, radius, axes):
-    """Draws a simulation from above: see `Simulation.plot`."""
+    """Draws a simulation from above; see `Simulation.plot`."""
     from matplotlib import pyplot
     from matplotlib.collections import LineCollection
     from matplotlib.patches import Circle

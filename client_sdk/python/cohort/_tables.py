@@ -9,11 +9,13 @@ def package(name, what):
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        raise ImportError(f"{what} needs the package {name}: install it, as with `pip install {name}`") from error
+        raise ImportError(
+            f"{what} requires the package {name}; install it, for example with `pip install {name}`"
+        ) from error
 
 
 class Table:
-    """A table in columns: numbers in matrices [row, column], texts as places in a list of those that there are."""
+    """A table by columns: numbers in matrices [row, column], texts as indices into a list of the distinct texts."""
 
     def __init__(self, columns, reals, wholes, texts, values):
         self.columns = columns
@@ -26,7 +28,7 @@ class Table:
             places[kind] += 1
 
     def codes(self, name):
-        """Returns the places of the texts of a column in `values`, an array [row]."""
+        """Returns the indices of a text column's values in `values`, an array [row]."""
         return self.texts[:, self._place[name][1]]
 
     def column(self, name):
@@ -45,12 +47,12 @@ class Table:
 
 
 def value_names(channels):
-    """Returns (name, unit) of each value; those of a channel with several are `NAME/0`, `NAME/1`, …"""
+    """Returns (name, unit) of each value; the values of a channel with several are `NAME/0`, `NAME/1`, …"""
     return [(name if size == 1 else f"{name}/{place}", unit) for name, unit, size in channels for place in range(size)]
 
 
 def times_of(tables):
-    """Returns the different (run, time) of all tables, in order, and for each table the place of each of its rows."""
+    """Returns the distinct (run, time) of all tables in order, and for each table the index of each of its rows."""
     runs = numpy.concatenate([each.run for each in tables] or [numpy.empty(0, dtype=numpy.int64)])
     times = numpy.concatenate([each.time for each in tables] or [numpy.empty(0)])
     order = numpy.lexsort((times, runs))

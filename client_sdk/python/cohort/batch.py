@@ -12,23 +12,23 @@ from cohort.experiment import Experiment
 
 
 class Batch:
-    """Many worlds of one experiment, stepped together by threads of C++, for learning.
+    """Many worlds of one experiment, stepped together by C++ threads, for learning.
 
-    Arrays are float64 in SI units, contiguous, and stay at one address as long as the batch lives. A world has the same
-    bits as the same experiment read with the same seed and run alone, whatever the other worlds do and for any number
-    of threads. Rows of robots with fewer channels end in zeros. The program commands all robots; a command acts from
-    the next tick on. One thread of Python uses it at a time; steps run without Python's global lock. It does not
-    survive a fork of the process.
+    Arrays are float64 in SI units, contiguous, and stay at one address for the lifetime of the batch. A world has the
+    same bits as the same experiment run alone with the same seed, independent of the other worlds and of the number of
+    threads. Rows of robots with fewer channels end in zeros. The program commands all robots; a command acts from the
+    next tick on. Only one Python thread may use a batch at a time; steps run without Python's global lock. A batch
+    cannot be used after a fork.
 
     Args:
-        experiment: an `Experiment`, or what `Experiment.read` takes.
-        worlds: how many.
-        threads: that step them.
+        experiment: an `Experiment`, or an argument of `Experiment.read`.
+        worlds: number of worlds.
+        threads: number of threads that step them.
     """
 
     STOPPED = 1  #: a stop condition of the experiment holds
-    TIMED_OUT = 2  #: the duration of the experiment is over
-    QUARANTINED = 4  #: a robot's state broke, or it has left the world; the others go on
+    TIMED_OUT = 2  #: the duration of the experiment has passed
+    QUARANTINED = 4  #: a robot has an invalid state or has left the world; the others continue
     FAILED = 8  #: `step` raised an error because of this world
 
     def __init__(self, experiment: Experiment | str | os.PathLike, worlds: int, threads: int = 1) -> None:
@@ -38,18 +38,18 @@ class Batch:
             raise ValueError(f"worlds is {worlds} and threads is {threads}, expected at least 1 of each")
         self.experiment = experiment
         self._native = _native.Batch(experiment._native, worlds, threads)
-        #: How many worlds there are.
+        #: Number of worlds.
         self.worlds = worlds
         #: Scoped names of the robots of each world.
         self.robots: list[str] = [self._native.robot_name(robot) for robot in range(self._native.robots)]
-        #: [world, robot, value], read-only: what robots observe.
+        #: Observations of the robots, [world, robot, value], read-only.
         self.observations: numpy.ndarray = self._native.observations
-        #: [world, robot, value], to be written: what commands robots. A reset puts neutral values there.
+        #: Commands of the robots, [world, robot, value], writable. A reset sets them to their neutral values.
         self.commands: numpy.ndarray = self._native.commands
-        #: [world, robot, 7], read-only: poses of root links in the world frame, x y z [m] and quaternion w x y z.
+        #: Poses of root links in the world frame, x y z [m] and quaternion w x y z, [world, robot, 7], read-only.
         self.poses: numpy.ndarray = self._native.poses
-        #: [world], read-only, uint8: bits of STOPPED, TIMED_OUT, QUARANTINED, FAILED. With all but QUARANTINED a world
-        #: stands still until it is reset.
+        #: Bits of STOPPED, TIMED_OUT, QUARANTINED, FAILED, uint8 [world], read-only. A world with any bit except
+        #: QUARANTINED does not step until it is reset.
         self.done: numpy.ndarray = self._native.done
 
     def observation_channels(self, robot: int = 0) -> Channels:
@@ -65,23 +65,23 @@ class Batch:
         return self._native.robot_model(robot)
 
     def step(self, ticks: int = 1, only: numpy.ndarray | None = None) -> None:
-        """Steps all worlds, each until it stands still.
+        """Steps all worlds; a world stops when it ends.
 
         Args:
             ticks: at least 1.
-            only: an array [world] of bool; the others stay as they are.
+            only: an array [world] of bool; the other worlds stay unchanged.
 
-        Raises ValueError before any world has moved if a command cannot act, naming world, robot and channel; and
+        Raises ValueError before any world has moved if a command is invalid, naming world, robot and channel. Raises
         RuntimeError after all worlds have moved if one fails, naming the first.
         """
         self._native.step(ticks, only)
 
     def reset(self, seeds: int | numpy.ndarray, only: numpy.ndarray | None = None) -> None:
-        """Begins worlds again, each with its seed, as if the experiment had been read with it. Reads no file.
+        """Restarts worlds, each with its seed, as if the experiment had been read with it. Reads no file.
 
         Args:
             seeds: an array [world] of integers from 0 to 2^64 - 1, or one for all.
-            only: an array [world] of bool; the others stay as they are.
+            only: an array [world] of bool; the other worlds stay unchanged.
         """
         seeds = numpy.ascontiguousarray(numpy.broadcast_to(numpy.asarray(seeds, dtype=numpy.uint64), (self.worlds,)))
         if only is None:
@@ -93,5 +93,5 @@ class Batch:
         return self._native.tick(world)
 
     def state_hash(self, world: int) -> int:
-        """Returns the state hash of a world, that of one run alone."""
+        """Returns the state hash of a world, the same as of a single run."""
         return self._native.state_hash(world)

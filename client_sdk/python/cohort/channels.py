@@ -1,4 +1,4 @@
-"""Channels: the named parts of what a robot observes and of what commands it."""
+"""Channels: the named parts of a robot's observation and command."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy
 
 
 class ChannelError(LookupError):
-    """There is no channel of that name. The message lists those with the nearest names."""
+    """No channel has the given name. The message lists the nearest names."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -20,11 +20,11 @@ class Channel:
 
     Attributes:
         name: `device/index/quantity`, such as `proximity/3/reading`.
-        unit: SI; `1` if it has none.
-        offset: place of its first value among those of the robot.
-        size: how many values it has.
-        lower, upper: the least and the greatest value; infinite if there is none.
-        neutral: of a command, what each value is until it is set.
+        unit: SI unit; `1` if dimensionless.
+        offset: index of its first value among the robot's values.
+        size: number of values.
+        lower, upper: bounds; infinite if there are none.
+        neutral: value of a command until it is set.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Channel:
 
 
 class Channels:
-    """The channels of a robot's observation, or those of its command, in the order of their values."""
+    """The channels of a robot's observation or command, in the order of their values."""
 
     def __init__(self, tuples: Iterable[tuple]) -> None:
         self._all = tuple(Channel(*each) for each in tuples)
@@ -50,11 +50,11 @@ class Channels:
         return len(self._all)
 
     def __getitem__(self, name: str) -> Channel:
-        """Returns the channel of this name. Raises ChannelError if there is none."""
+        """Returns the channel with this name. Raises ChannelError if there is none."""
         channel = self._by_name.get(name)
         if channel is None:
             near = difflib.get_close_matches(name, self._by_name, n=4, cutoff=0.3)
-            raise ChannelError(f"there is no channel '{name}'" + (f"; near: {', '.join(near)}" if near else ""))
+            raise ChannelError(f"unknown channel '{name}'" + (f"; the nearest are {', '.join(near)}" if near else ""))
         return channel
 
     def __contains__(self, name: str) -> bool:
@@ -65,21 +65,21 @@ class Channels:
 
     @property
     def size(self) -> int:
-        """How many values all of them have."""
+        """Number of values of all channels."""
         return sum(each.size for each in self._all)
 
     @property
     def lower(self) -> numpy.ndarray:
-        """The least value of each, an array [value]; -inf where there is none."""
+        """Lower bound of each value, an array [value]; -inf if there is none."""
         return numpy.concatenate([numpy.full(each.size, each.lower) for each in self._all] or [numpy.empty(0)])
 
     @property
     def upper(self) -> numpy.ndarray:
-        """The greatest value of each, an array [value]; inf where there is none."""
+        """Upper bound of each value, an array [value]; inf if there is none."""
         return numpy.concatenate([numpy.full(each.size, each.upper) for each in self._all] or [numpy.empty(0)])
 
     def index(self, name: str) -> int | slice:
-        """Returns where a channel is: an int if it has one value, else a slice.
+        """Returns the index of a channel: an int if it has one value, otherwise a slice.
 
         Raises ChannelError if there is none.
         """
@@ -87,16 +87,16 @@ class Channels:
         return channel.offset if channel.size == 1 else slice(channel.offset, channel.offset + channel.size)
 
     def indices(self, pattern: str, count: int | None = None) -> slice | numpy.ndarray:
-        """Returns the places of the values of all channels that match.
+        """Returns the indices of the values of all channels that match.
 
-        `*` stands for any characters but `/`. The result is a slice if the values are in a row, which makes views; else
-        an array of int. Raises ChannelError if nothing matches, or if `count` is given and another number of channels
-        does.
+        `*` matches any characters except `/`. The result is a slice if the values are consecutive, so that indexing
+        makes a view; otherwise an array of int. Raises ChannelError if no channel matches, or if `count` is given and
+        the number of matches differs.
         """
         expression = re.compile("[^/]*".join(re.escape(each) for each in pattern.split("*")) + r"\Z")
         found = [each for each in self._all if expression.match(each.name)]
         if not found:
-            raise ChannelError(f"no channel matches '{pattern}'; there are: {', '.join(self._by_name)}")
+            raise ChannelError(f"no channel matches '{pattern}'; known: {', '.join(self._by_name)}")
         if count is not None and len(found) != count:
             raise ChannelError(f"{len(found)} channels match '{pattern}', expected {count}")
         places = [place for each in found for place in range(each.offset, each.offset + each.size)]

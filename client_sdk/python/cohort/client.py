@@ -11,11 +11,11 @@ from cohort import _client, _native
 from cohort._hosting import Maker
 from cohort.controller import Controller, TeamController
 
-_native.bind_library_calls()  # of the libraries that _client has brought: all call the same functions
+_native.bind_library_calls()  # also in the libraries that _client has loaded: all call the same functions
 
 
 class ClientError(RuntimeError):
-    """A client did not drive its robots to the end of the run. The message says why."""
+    """A client did not drive its robots to the end of the run. The message gives the reason."""
 
 
 def host(
@@ -29,20 +29,21 @@ def host(
     """Drives robots of a running server until the run ends.
 
     Args:
-        controller: a class that derives from `cohort.Controller`; each robot gets an object of its own.
+        controller: a class derived from `cohort.Controller`, with one object per robot, or from
+            `cohort.TeamController`.
         robots: selectors separated by commas, or a list of them: `all`, `3`, `0..7`, `explorers/sbot_7`, `explorers/*`.
         server: IPv4 address or host name; by default $COHORT_SERVER, or this machine.
         domain: the server's DDS domain; by default $COHORT_DOMAIN, or 0.
         secure: folder of an identity; by default $COHORT_SECURE, or none.
 
     Waits for a server that is not there yet. Raises ClientError if the run fails, if another client drives these robots
-    or takes them over, or if the server is lost; KeyboardInterrupt after Ctrl-C.
+    or takes them over, or if the server is lost. Raises KeyboardInterrupt after Ctrl-C.
     """
     selectors = (
         [each for each in robots.split(",") if each] if isinstance(robots, str) else [str(each) for each in robots]
     )
     if not selectors:
-        raise ValueError("robots names no robot")
+        raise ValueError("robots is empty, expected at least one selector")
     end, error = _client.host(
         Maker(controller), selectors, server or "", -1 if domain is None else domain, os.fspath(secure or "")
     )
@@ -53,17 +54,17 @@ def host(
 
 
 def main(controller: type[Controller] | type[TeamController], arguments: Sequence[str] | None = None) -> NoReturn:
-    """Is the `main` of a program with one controller: reads `--robots`, `--server`, `--domain`, `--secure`, `--help`.
+    """Runs a program with one controller; reads `--robots`, `--server`, `--domain`, `--secure`, `--help`.
 
         if __name__ == "__main__":
             cohort.main(Wanderer)
 
-    Ends the process: with 0 when the run finished, 1 when it or the controller failed, 2 for a mistake in the options
-    or a refused claim, 130 when interrupted.
+    Ends the process: with 0 when the run finished, 1 when it or the controller failed, 2 for wrong options or a refused
+    claim, 130 when interrupted.
 
     Args:
-        controller: a class that derives from `cohort.Controller`.
-        arguments: in place of those of the command line.
+        controller: a class derived from `cohort.Controller` or `cohort.TeamController`.
+        arguments: replace those of the command line.
     """
     arguments = sys.argv if arguments is None else [sys.argv[0], *arguments]
     sys.exit(_client.run_program(Maker(controller), arguments))

@@ -1,4 +1,4 @@
-"""What the author of a controller writes against: one class that derives from Controller."""
+"""The interface for authors of controllers: one class derived from Controller or TeamController."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from cohort.channels import Channels
 
 
 class ParameterError(ValueError):
-    """A parameter of a team is missing, or is not what it should be.
+    """A parameter of a team is missing or invalid.
 
     Attributes:
-        name: of the parameter; the message names it too.
-        problem: what is wrong with it.
+        name: name of the parameter; the message contains it too.
+        problem: description of the problem.
     """
 
     def __init__(self, name: str, problem: str) -> None:
@@ -26,10 +26,10 @@ class ParameterError(ValueError):
 
 
 class Parameters:
-    """What the experiment gives a controller under `parameters`.
+    """The `parameters` that the experiment gives a controller.
 
-    Keys of nested maps are joined by '.'. Every parameter has to be asked for in `Controller.start`: one that is left
-    over is a mistake of the experiment, and the controller does not start.
+    Keys of nested maps are joined by '.'. `Controller.start` must read every parameter: an unread one is an error of
+    the experiment, and the controller does not start.
     """
 
     def __init__(self, values: dict[str, list[str]]) -> None:
@@ -47,7 +47,7 @@ class Parameters:
         self.asked.add(name)
         if name not in self._values:
             if fallback is None:
-                raise ParameterError(name, "the experiment has none")
+                raise ParameterError(name, "required by the controller, but not given")
             return None
         values = self._values[name]
         if len(values) != 1:
@@ -55,17 +55,17 @@ class Parameters:
         return values[0]
 
     def real(self, name: str, fallback: float | None = None) -> float:
-        """Returns a finite number. Raises ParameterError if it is something else, or missing without a fallback."""
+        """Returns a finite number. Raises ParameterError if it is not a number, or missing without a fallback."""
         text = self._single(name, "a number", fallback)
         return fallback if text is None and fallback is not None else _number(name, text or "", "a number")
 
     def reals(self, name: str) -> list[float]:
-        """Returns a list of finite numbers, which is empty if the experiment has none of that name."""
+        """Returns a list of finite numbers, empty if the parameter is missing."""
         self.asked.add(name)
         return [_number(name, each, "a number or a list of numbers") for each in self._values.get(name, [])]
 
     def flag(self, name: str, fallback: bool | None = None) -> bool:
-        """Returns True or False, which the experiment writes as `true` or `false`."""
+        """Returns a bool, written as `true` or `false` in the experiment."""
         text = self._single(name, "true or false", fallback)
         if text is None:
             return bool(fallback)
@@ -79,7 +79,7 @@ class Parameters:
         return fallback or "" if text is None else text
 
     def texts(self, name: str) -> list[str]:
-        """Returns a list of texts, which is empty if the experiment has none of that name."""
+        """Returns a list of texts, empty if the parameter is missing."""
         self.asked.add(name)
         return list(self._values.get(name, []))
 
@@ -95,18 +95,18 @@ def _number(name: str, text: str, expected: str) -> float:
 
 
 class Start:
-    """What a controller is told before its first step, and again after each reset, restore and takeover.
+    """The start of a controller, before its first step and after each reset, restore and takeover.
 
     Attributes:
-        robot: its id in this run.
-        name: its scoped name, such as `explorers/sbot_7`.
-        model: its model, such as `sbot`.
-        team: its team in the experiment.
-        controller: what the experiment names as the controller of the team.
-        parameters: what the experiment gives the team, a `Parameters`.
-        reason: `first`, `takeover`, `reset`, `restored`, or `check`: mistakes are looked for, and no step will follow.
-        tick: of the first observation to come.
-        seed: for random numbers of the controller; fixed by the experiment's seed and the robot's name.
+        robot: id in this run.
+        name: scoped name, such as `explorers/sbot_7`.
+        model: model, such as `sbot`.
+        team: the robot's team in the experiment.
+        controller: the team's controller in the experiment.
+        parameters: the team's parameters in the experiment, a `Parameters`.
+        reason: `first`, `takeover`, `reset`, `restored`, or `check`: a test of the start, without a step.
+        tick: tick of the next observation.
+        seed: for random numbers of the controller; derived from the experiment's seed and the robot's name.
         step: simulated time between ticks [s].
         period: ticks from one observation to the next.
         observation_channels, command_channels: `Channels`, with units and bounds.
@@ -140,29 +140,30 @@ class Start:
         return self.observation_channels.index(name)
 
     def observations(self, pattern: str, count: int | None = None) -> slice | numpy.ndarray:
-        """Returns the index of the values of all observation channels that match, such as `proximity/*/reading`.
+        """Returns the indices of the values of all observation channels that match, such as `proximity/*/reading`.
 
-        A slice where the values are in a row. Raises ChannelError if none match, or not `count` of them.
+        The result is a slice if the values are consecutive. Raises ChannelError if none match, or if the number of
+        matches is not `count`.
         """
         return self.observation_channels.indices(pattern, count)
 
     def command(self, name: str) -> int | slice:
-        """Returns the index of a command channel. Raises ChannelError if there is none."""
+        """Returns the index of a command channel, like `observation`. Raises ChannelError if there is none."""
         return self.command_channels.index(name)
 
     def commands(self, pattern: str, count: int | None = None) -> slice | numpy.ndarray:
-        """Returns the index of the values of all command channels that match."""
+        """Returns the indices of the values of all command channels that match, like `observations`."""
         return self.command_channels.indices(pattern, count)
 
 
 class Controller:
-    """Drives one robot. Derive from it, and give the class to a run, or name its file in an experiment.
+    """Drives one robot. Derive a class from it, and pass the class to a run, or name its file in an experiment.
 
-    Every robot has an object of its own, made without arguments. One thread calls all of them. An exception ends the
-    run with its message. For runs with the same bits, `step` depends on nothing but what `start` and the steps since
-    gave: no clock, no random device, nothing that robots share. Functions such as `math.sin` are those of Cohort,
-    with the same bits on every machine; those of NumPy depend on the processor (`cohort.math` has functions for
-    arrays that do not).
+    Each robot has its own object, created without arguments. One thread calls all of them. An exception ends the run
+    with its message. For runs with the same bits, `step` must depend only on the arguments of `start` and of all steps
+    since. So it uses no clock, no random device and no state that robots share. Functions such as `math.sin` are those
+    of Cohort, with the same bits on every machine. Those of NumPy depend on the processor; use `cohort.math` for
+    arrays.
 
         class Wanderer(cohort.Controller):
             def start(self, start):
@@ -175,44 +176,49 @@ class Controller:
                 command[self.left] = 0.2 * (1.0 - observation[self.right_eye])
                 command[self.right] = 0.2 * (1.0 - observation[self.left_eye])
 
-    Attributes, as long as it drives a robot:
-        robot: what `start` was told last, a `Start`.
-        tick: the present tick.
+    Attributes, while it drives a robot:
+        robot: the last argument of `start`, a `Start`.
+        tick: the current tick.
         time: simulated time since tick 0 [s].
+
+    Attribute of the class:
+        stateless: True if the controller has no state between steps, so that it needs no `save`.
     """
 
+    stateless: bool = False
     robot: Start
     tick: int = 0
     time: float = 0.0
 
     def start(self, start: Start) -> None:
-        """Looks channels up and asks for parameters. Called before the first step, and when the world begins again."""
+        """Looks up channels and reads parameters. Called before the first step, and each time that the run restarts."""
 
     def step(self, observation: numpy.ndarray, command: numpy.ndarray) -> None:
-        """Turns an observation into a command.
+        """Computes a command from an observation.
 
         Both are arrays [value] of float64 in SI units, at the same address in every step, and valid during the step.
-        `observation` is read-only. `command` has its neutral values at first; what is written is brought into the range
-        of its channel, and NaN is refused by the run.
+        `observation` is read-only. `command` starts with its neutral values. Written values are clamped to the range of
+        their channel, and the run refuses NaN.
         """
-        raise NotImplementedError("a controller needs a step(self, observation, command)")
+        raise NotImplementedError("the controller does not define step(self, observation, command)")
 
     def save(self) -> bytes | None:
-        """Returns what it remembers of the steps since `start` as bytes, at most 1 MiB, when a snapshot is taken.
+        """Returns the state accumulated since `start` as bytes, at most 1 MiB, when a snapshot is taken.
 
-        b"" if it remembers nothing. A class without `save` returns None: it is started anew from a snapshot.
+        A class without `save` returns b"" if it is `stateless`, and None otherwise. With None, the controller restarts
+        when the run continues from the snapshot, with a warning.
         """
-        return None
+        return b"" if self.stateless else None
 
     def load(self, state: bytes) -> None:
-        """Takes the bytes that `save` of the same class returned, right after `start`, and goes on from there."""
+        """Restores the bytes that `save` of the same class returned. Called right after `start`."""
 
 
 class TeamController:
-    """Drives all robots of a process by one call for each tick: for policies that are computed for many at once.
+    """Drives all robots of a process with one call per tick: for policies that are computed for many robots at once.
 
-    Derive from it, and use the class as one that derives from `Controller`. What it computes may depend on all robots
-    that the same process drives, and so on how robots are spread over processes.
+    Derive a class from it, and use the class like one derived from `Controller`. Its results may depend on all robots
+    of the process, and so on how robots are distributed over processes.
 
         class Everybody(cohort.TeamController):
             def start(self, robots):
@@ -222,34 +228,38 @@ class TeamController:
             def step(self, observations, commands):
                 commands[:, self.tracks] = 0.2 * (1.0 - observations[:, self.near].max(axis=1, keepdims=True))
 
-    Attributes, as long as it drives robots:
-        robots: what `start` was told last, a list of `Start` by ascending ids. All are of one model.
-        asked: which rows of `robots` are asked at this tick: a slice of all, or an array of int.
-        tick: the present tick.
+    Attributes, while it drives robots:
+        robots: the last argument of `start`, a list of `Start` in ascending order of ids. All have the same model.
+        asked: rows of `robots` that are due at this tick: a slice of all, or an array of int.
+        tick: the current tick.
         time: simulated time since tick 0 [s].
+
+    Attribute of the class:
+        stateless: as in `Controller`.
     """
 
+    stateless: bool = False
     robots: list[Start] = []
     asked: slice | numpy.ndarray = slice(None)
     tick: int = 0
     time: float = 0.0
 
     def start(self, robots: list[Start]) -> None:
-        """Looks channels up and asks for parameters; `robots` is a list of `Start`. Called as `Controller.start`."""
+        """Looks up channels and reads parameters; `robots` is a list of `Start`. Called like `Controller.start`."""
 
     def step(self, observations: numpy.ndarray, commands: numpy.ndarray) -> None:
-        """Turns observations [robot, value] into commands [robot, value], of the robots that are asked at this tick.
+        """Computes commands [robot, value] from observations [robot, value], for the robots that are due at this tick.
 
-        Otherwise as `Controller.step`.
+        Otherwise like `Controller.step`.
         """
-        raise NotImplementedError("a controller needs a step(self, observations, commands)")
+        raise NotImplementedError("the controller does not define step(self, observations, commands)")
 
     def save(self) -> bytes | None:
-        """Returns what it remembers of all robots as bytes: as `Controller.save`.
+        """Returns the state of all robots as bytes, like `Controller.save`.
 
-        Goes on where the same robots are driven together.
+        It can be restored only for the same group of robots.
         """
-        return None
+        return b"" if self.stateless else None
 
     def load(self, state: bytes) -> None:
-        """Takes the bytes that `save` of the same class returned: as `Controller.load`."""
+        """Restores the bytes that `save` of the same class returned, like `Controller.load`."""

@@ -1,4 +1,4 @@
-"""Experiments: a world, robots in teams, what drives them, for how long."""
+"""Experiments: a world, robots in teams, their controllers, and a duration."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from cohort.controller import Controller, TeamController
 if TYPE_CHECKING:
     import pandas
 
-#: What drives a team: a class, or the name or the path of a controller.
+#: A team's controller: a class, or the name or path of a controller.
 Driver = Union[type[Controller], type[TeamController], str, os.PathLike]
-#: What drives all teams, or each by its name.
+#: The controller of all teams, or of each team by its name.
 Controllers = Union[Driver, dict[str, Driver]]
 
-_NOBODY = "none"  # what a team of an experiment made in Python is given as its controller that has none
-_PEOPLE = "keyboard"  # with `cohort teleop`, of a server
+_NOBODY = "none"  # controller of a team without one, in experiments made in Python
+_PEOPLE = "keyboard"  # for `cohort teleop`, on a server
 
 
 class _Idle(Controller):
-    """Drives a team without a controller: its commands stay neutral."""
+    """A controller that leaves the commands neutral, for a team without one."""
 
     def step(self, observation, command):
         pass
@@ -43,12 +43,12 @@ class _PathEncoder(json.JSONEncoder):
 
 @dataclasses.dataclass(frozen=True)
 class Team:
-    """A team as experiments describe it.
+    """A team of an experiment.
 
     Attributes:
-        name: of the team.
-        controller: what the experiment names as its controller; empty if it names none.
-        robots: ids of its robots, ascending.
+        name: name of the team.
+        controller: controller in the experiment; empty if there is none.
+        robots: ids of its robots, in ascending order.
         period: ticks from one command to the next.
     """
 
@@ -60,22 +60,22 @@ class Team:
 
 @dataclasses.dataclass(frozen=True)
 class Result:
-    """How a run ended.
+    """The result of a run.
 
     Attributes:
         end: `finished`, `interrupted` or `failed`.
-        error: why it failed; empty if it did not.
-        stop_reason: the stop condition that ended it; empty if none did.
-        ticks: how many there were.
+        error: reason of a failure; empty if there is none.
+        stop_reason: the stop condition that ended the run; empty if none did.
+        ticks: number of ticks.
         time: simulated time [s].
         wall_time: from the first frame to the last step [s].
-        state_hash: of the last state. The same for every run of the same experiment and controllers.
-        robots: how many there were at the end.
-        robot_ticks: robots times ticks, to which the next two are compared.
-        touching_obstacles: robot-ticks in which a robot touched something that is neither a robot nor a plane.
+        state_hash: hash of the last state; the same for every run of the same experiment and controllers.
+        robots: number of robots at the end.
+        robot_ticks: sum over all ticks of the number of robots, the reference for the next two.
+        touching_obstacles: robot-ticks in which a robot touched an object other than a robot or a plane.
         touching_robots: robot-ticks in which a robot touched another one.
         events: a list of tuples (tick, kind, text, count).
-        seed: of the experiment.
+        seed: seed of the experiment.
     """
 
     end: str
@@ -96,7 +96,7 @@ class Result:
 class Experiment:
     """A world with robots in teams, checked and ready to run.
 
-    Made from a file with `Experiment.read`, or in Python with the keys of experiment files as arguments:
+    Read from a file with `Experiment.read`, or made in Python with the keys of experiment files as arguments:
 
         cohort.Experiment(
             world="arena.sdf",
@@ -104,10 +104,10 @@ class Experiment:
             teams=[{"name": "explorers", "robots": "explorers/*", "controller": Wanderer}],
         )
 
-    `world` is a path, or a dictionary: a world as files in YAML write it, which have SDF's words. The controller of a
-    team may be a class that derives from `cohort.Controller`, or left out: then `run` gives one, or the robots stay as
-    they are. Paths are relative to `folder`, by default the working directory. Raises `cohort.InputError` with every
-    problem that was found, in the words of `cohort check`.
+    `world` is a path, or a dictionary with the keys of world files in YAML, which are those of SDF. The controller of a
+    team may be a class derived from `cohort.Controller`. Without one, `run` provides it, or the robots keep neutral
+    commands. Paths are relative to `folder`, by default the working directory. Raises `cohort.InputError` with all
+    problems, in the format of `cohort check`.
     """
 
     def __init__(
@@ -138,7 +138,7 @@ class Experiment:
         self._native = _native.Experiment.read_texts(texts, None, None, _files.model_folders())
 
     def _named_team(self, team):
-        """Returns a team whose controller is a name, and keeps its class if it has one."""
+        """Returns a team whose controller is a name, and stores its class if it has one."""
         if not isinstance(team, dict):
             return team
         controller = team.get("controller", _NOBODY)
@@ -152,9 +152,9 @@ class Experiment:
         """Reads an experiment in YAML, or a world or a model in SDF or URDF.
 
         Args:
-            file: a path, or the name of an experiment that comes with Cohort (`cohort.examples()`).
-            seed: in place of that of the file.
-            duration: simulated time [s] in place of that of the file; 0: without an end.
+            file: a path, or the name of a bundled experiment (`cohort.examples()`).
+            seed: replaces that of the file.
+            duration: simulated time [s], replaces that of the file; 0: no end.
         """
         return cls._of(_native.Experiment.read(_files.experiment_called(file), seed, duration, _files.model_folders()))
 
@@ -167,7 +167,7 @@ class Experiment:
         seed: int | None = None,
         duration: float | None = None,
     ) -> Experiment:
-        """Reads an experiment from a text in YAML whose paths are relative to `folder`."""
+        """Reads an experiment from a text in YAML with paths relative to `folder`."""
         file = pathlib.Path(folder).absolute() / f"{name}.yaml"
         return cls._of(_native.Experiment.read_texts([(os.fspath(file), text)], seed, duration, _files.model_folders()))
 
@@ -179,24 +179,24 @@ class Experiment:
         return experiment
 
     def with_seed(self, seed: int) -> Experiment:
-        """Returns the same experiment with another seed; robots that are placed at random stand elsewhere."""
+        """Returns the same experiment with another seed; random placements change."""
         experiment = self._of(self._native.with_seed(seed))
         experiment._classes = self._classes
         return experiment
 
     @property
     def name(self) -> str:
-        """The name of its file, without the extension."""
+        """Name of its file, without the extension."""
         return self._native.name
 
     @property
     def file(self) -> pathlib.Path:
-        """The path of its file."""
+        """Path of its file."""
         return self._native.file
 
     @property
     def seed(self) -> int:
-        """The seed of all that is random in it."""
+        """Seed of everything random in the run."""
         return self._native.seed
 
     @property
@@ -206,7 +206,7 @@ class Experiment:
 
     @property
     def duration(self) -> float:
-        """Simulated time of a run [s]; 0: without an end."""
+        """Simulated time of a run [s]; 0: no end."""
         return self._native.duration
 
     @property
@@ -216,14 +216,14 @@ class Experiment:
 
     @property
     def teams(self) -> list[Team]:
-        """The teams, a list of `Team`."""
+        """Teams, a list of `Team`."""
         return [
             Team(each["name"], each["controller"], tuple(each["robots"]), each["period"]) for each in self._native.teams
         ]
 
     @property
     def warnings(self) -> list[str]:
-        """What its files ask for that is not simulated, a list of sentences."""
+        """Features of its files that are not simulated, a list of sentences."""
         return self._native.warnings
 
     def run(
@@ -232,10 +232,10 @@ class Experiment:
         """Runs the experiment to its end in this process, and returns a `Result`.
 
         Args:
-            controllers: what drives the robots: a class that derives from `cohort.Controller`, the name or the path of
-                a controller, or a dictionary of these by the names of teams. Teams that are not named have the
-                controller of the experiment.
-            threads: that step the world; the result is the same for any number.
+            controllers: a class derived from `cohort.Controller` or `cohort.TeamController`, the name or path of a
+                controller, or a dictionary of these by the names of teams. Other teams have the controller of the
+                experiment.
+            threads: number of threads that step the world; the result does not depend on it.
             record: path of a recording (MCAP) to write.
 
         Raises RuntimeError with the error if the run fails, and KeyboardInterrupt after Ctrl-C.
@@ -248,13 +248,13 @@ class Experiment:
         return result
 
     def _driver_of(self, team, controllers):
-        """Returns what drives a team: the name or the path of a plugin, or what makes controllers of a class."""
+        """Returns the driver of a team: the name or path of a plugin, or a `Maker` of controllers of a class."""
         chosen = controllers
         if isinstance(controllers, dict):
             names = [each.name for each in self.teams]
             for name in controllers:
                 if name not in names:
-                    raise ValueError(f"there is no team '{name}', expected one of {names}")
+                    raise ValueError(f"unknown team '{name}', expected one of {names}")
             chosen = controllers.get(team.name)
         folder = pathlib.Path()
         if chosen is None:
@@ -283,7 +283,7 @@ def run(
     threads: int = 1,
     record: str | os.PathLike | None = None,
 ) -> Result:
-    """Reads an experiment, runs it to its end in this process, and returns a `Result`: see `Experiment.run`."""
+    """Reads an experiment, runs it to its end in this process, and returns a `Result`; see `Experiment.run`."""
     return Experiment.read(experiment, seed, duration).run(controllers, threads=threads, record=record)
 
 
@@ -294,14 +294,14 @@ def run_seeds(
     *,
     threads: int = 1,
 ) -> pandas.DataFrame:
-    """Runs an experiment once for each seed, and returns a table of the results.
+    """Runs an experiment once per seed, and returns a table of the results.
 
     Args:
-        experiment: an `Experiment`, or what `Experiment.read` takes.
+        experiment: an `Experiment`, or an argument of `Experiment.read`.
         seeds: an iterable of integers.
         controllers, threads: as in `Experiment.run`.
 
-    Returns a `pandas.DataFrame` with a row for each seed.
+    Returns a `pandas.DataFrame` with one row per seed.
     """
     import pandas
 

@@ -1,4 +1,4 @@
-"""What replaying and comparing recordings finds."""
+"""Results of replays and comparisons of recordings."""
 
 import dataclasses
 import typing
@@ -6,12 +6,12 @@ import typing
 
 @dataclasses.dataclass(frozen=True)
 class Verification:
-    """What a replay of a recording found. True if all of it is identical.
+    """The result of a replay of a recording. True if all ticks are identical.
 
     Attributes:
-        ticks: how many were compared and are identical.
+        ticks: number of identical ticks.
         tick, time: the first tick that differs, and its time in the recording [s]; None if none does.
-        recorded, replayed: its state hashes; None if none differs.
+        recorded, replayed: state hashes of that tick; None if none differs.
         problem: why the replay ended before the recording did; empty if it did not.
     """
 
@@ -24,7 +24,7 @@ class Verification:
 
     @property
     def is_identical(self):
-        """Whether the replay has the state of every tick of the recording."""
+        """True if the replay has the recorded state at every tick."""
         return self.ticks > 0 and self.tick is None and not self.problem
 
     def __bool__(self):
@@ -37,15 +37,15 @@ class Verification:
         if self.tick is not None:
             hashes = f"recorded {self.recorded:016x}, replayed {self.replayed:016x}"
             return f"differs at tick {self.tick} ({self.time:.3f} s), after {before}: {hashes}"
-        return f"ends after {before}: {self.problem}" if self.problem else "there is nothing to compare"
+        return f"ends after {before}: {self.problem}" if self.problem else "nothing to compare"
 
 
 class Difference(typing.NamedTuple):
-    """A quantity that is not the same in two runs.
+    """A quantity that differs between two runs.
 
-    `object` is a scoped name, empty for the world as a whole; `quantity` is `command`, `action`, `pose`, `velocity`,
-    `joint`, `contact`, `observation`, `presence` or `state`; `detail` says which of them, such as a channel; `first`
-    and `second` are the values as text.
+    `object` is a scoped name, empty for the world as a whole. `quantity` is `command`, `action`, `pose`, `velocity`,
+    `joint`, `contact`, `observation`, `presence` or `state`. `detail` is a part of it, such as a channel. `first` and
+    `second` are the values as text.
     """
 
     object: str
@@ -61,14 +61,14 @@ class Difference(typing.NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class Comparison:
-    """Where two recordings part. `print` shows it as `cohort diff` does.
+    """The first difference between two recordings. `print` shows it like `cohort diff`.
 
     Attributes:
-        ticks: how many at the beginning are the same in both.
-        tick, time: the first tick that is not, and its time in the recording [s]; None if they do not part.
-        differences: what differs there, a list of `Difference`.
-        more: how many differences there are beyond those.
-        ends: if one ends before the other, a sentence that says so.
+        ticks: number of identical ticks at the beginning.
+        tick, time: the first tick that differs, and its time in the recording [s]; None if none does.
+        differences: the differences at that tick, a list of `Difference`.
+        more: number of further differences.
+        ends: a sentence if one recording ends before the other; otherwise empty.
     """
 
     ticks: int
@@ -80,13 +80,13 @@ class Comparison:
 
     @property
     def are_identical(self):
-        """Whether both hold the same run to its end."""
+        """True if both contain the same run to its end."""
         return self.tick is None and not self.ends
 
     def __str__(self):
         if self.tick is None:
             same = f"identical, {self.ticks} ticks"
-            return f"{self.ends}; until then they are {same}" if self.ends else same
-        lines = [f"they part at tick {self.tick} ({self.time:.3f} s), after {self.ticks} identical ticks"]
+            return f"{self.ends}; until then, they are {same}" if self.ends else same
+        lines = [f"they diverge at tick {self.tick} ({self.time:.3f} s), after {self.ticks} identical ticks"]
         lines += [f"  {each}" for each in self.differences]
         return "\n".join(lines + ([f"  and {self.more} more"] if self.more else []))

@@ -1,8 +1,8 @@
-"""sin, exp, pow and their like for numbers and arrays, with the same bits on every processor.
+"""sin, exp, pow and similar functions for numbers and arrays, with the same bits on every processor.
 
-Those of NumPy choose their code by the processor and may differ in the last bit; these are what the simulation and
-controllers in C++ use, within 2 units of the last place. Angles are in radians. Arguments are numbers or arrays of any
-shape, in float64; so are results.
+NumPy's functions choose their code by the processor and may differ in the last bit. These are the functions that the
+simulation and controllers in C++ use, accurate to 2 units in the last place. Angles are in radians. Arguments and
+results are float64, numbers or arrays of any shape.
 """
 
 import numpy

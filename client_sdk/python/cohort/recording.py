@@ -1,4 +1,4 @@
-"""Recordings of runs as arrays and tables, and where two of them part."""
+"""Recordings of runs as arrays and tables, and their comparison."""
 
 import functools
 import os
@@ -22,10 +22,10 @@ _EVENT_COLUMNS = ("run", "time", "tick", "kind", "text", "count")
 
 
 class World(typing.NamedTuple):
-    """A world that begins in a recording: the first one, and one more with each reset or snapshot that is restored.
+    """A world in a recording: the first one, and another one after each reset or restored snapshot.
 
-    `run` is its number, from 0; `reason` is `first`, `reset`, `restored` or `attached`; `tick` is its first one;
-    `start` is when it begins in the time of the recording [s].
+    `run` is its number, from 0; `reason` is `first`, `reset`, `restored` or `attached`. `tick` is its first tick.
+    `start` is its start in the time of the recording [s].
     """
 
     run: int
@@ -36,25 +36,25 @@ class World(typing.NamedTuple):
 
 
 class Recording:
-    """A recording of a run (MCAP), as `cohort run --record` and `cohort.run(…, record=…)` write it.
+    """A recording of a run (MCAP), written by `cohort run --record` or `cohort.run(…, record=…)`.
 
         recording = cohort.Recording("run.mcap")
         recording.poses.sel(object="explorers/sbot_0", component="x").plot()
         recording.observations.sel(channel="proximity/3/reading").mean("robot")
         recording.table("events")
 
-    Numbers are those of the file, bit for bit, in SI units. Times are simulated time [s]. What a recording holds of
-    poses and observations, its experiment says under `record`. A table is read when it is first asked for and kept. A
-    recording that is damaged is read as far as possible, with a warning: see `damage`.
+    Numbers are those of the file, bit for bit, in SI units. Times are simulated time [s]. The experiment defines under
+    `record` which poses and observations a recording contains. A table is read at its first use and then kept. A
+    damaged recording is read as far as possible, with a warning: see `damage`.
 
-    Raises FileNotFoundError if there is no such file, and `cohort.RecordingError`, a ValueError, if it is no recording
-    or if nothing can be read of it.
+    Raises FileNotFoundError if there is no such file, and `cohort.RecordingError`, a ValueError, if it is not a
+    recording or if nothing can be read.
     """
 
     def __init__(self, file):
         self.file = pathlib.Path(os.fspath(file))
         if not self.file.exists():
-            raise FileNotFoundError(f"there is no recording '{self.file}'")
+            raise FileNotFoundError(f"no such recording: '{self.file}'")
         self._native = _native.Recording(self.file)
         self._tables = None
         self._rosters = self._native.rosters
@@ -63,54 +63,53 @@ class Recording:
 
     @property
     def facts(self):
-        """What ran and where, a dictionary of texts: version, commit, experiment, seed, step_ns, compiler, cpu, …"""
+        """Facts about the run, a dictionary of texts: version, commit, experiment, seed, step_ns, compiler, cpu, …"""
         return self._native.facts
 
     @property
     def end(self):
-        """How the run ended, a word such as `finished` or `interrupted`; empty if the file does not know."""
+        """How the run ended: a word such as `finished` or `interrupted`; empty if unknown."""
         return self._native.end
 
     @property
     def damage(self):
-        """What of the file cannot be read, a sentence; empty if all of it can."""
+        """A sentence about the part of the file that cannot be read; empty if there is none."""
         return self._native.damage
 
     @property
     def worlds(self):
-        """The worlds that it holds one after the other, a list of `World` with their seeds."""
+        """The worlds of the recording in order, a list of `World` with their seeds."""
         return [
             World(run, seed, _REASONS[reason], tick, start) for run, seed, reason, tick, start in self._native.worlds
         ]
 
     @functools.cached_property
     def experiment(self):
-        """The `Experiment` of the first world, read from the files that the recording keeps."""
+        """The `Experiment` of the first world, read from the files in the recording."""
         return Experiment._of(self._native.experiment(0))
 
     @property
     def robots(self):
-        """Scoped names of the robots, in the order of their ids; those that came later follow."""
+        """Scoped names of the robots, in the order of their ids; robots that were added later follow."""
         return list(dict.fromkeys(name for *_, robots in self._rosters for name, *_ in robots))
 
     @property
     def duration(self):
-        """Simulated time from its first message to its last [s]; of several worlds the sum."""
+        """Simulated time from the first message to the last [s]; the sum over all worlds."""
         start, end = self._native.times
         return end - start
 
     @property
     def tables(self):
-        """Names of its tables: those of `cohort export-data`."""
+        """Names of the tables, those of `cohort export-data`."""
         if self._tables is None:
             self._tables = self._native.tables([], [])
         return sorted(self._tables)
 
     def table(self, name):
-        """Returns a table as a `pandas.DataFrame`: a row for each observation, as `cohort export-data` writes it.
+        """Returns a table as a `pandas.DataFrame`, with the rows that `cohort export-data` writes.
 
-        Its `attrs["units"]` is a dictionary of the units of columns that have one. Raises LookupError if it has no such
-        table.
+        Its `attrs["units"]` is a dictionary of the units of its columns. Raises LookupError if there is no such table.
         """
         pandas = package("pandas", "a table")
         table = self._table(name)
@@ -122,15 +121,15 @@ class Recording:
     def poses(self):
         """Poses in the world frame, an `xarray.DataArray` (time [s], object, component: x y z [m], qw qx qy qz).
 
-        Objects are those that move; poses of their links and devices, if recorded, are in the table `trajectories`. NaN
-        where an object has none. The coordinate `run` is the number of the world of each time.
+        Objects are those that move; recorded poses of their links and devices are in the table `trajectories`. Missing
+        poses are NaN. The coordinate `run` is the number of the world at each time.
         """
         if "trajectories" not in self.tables:
             raise RecordingError(
                 f"{self.file} has no poses: record them with `record: {{poses: 10}}` in the experiment"
             )
         table = self._table("trajectories")
-        objects = self._objects_among(table.values)
+        objects = self._objects_among([table.values[each] for each in numpy.unique(table.codes("object"))])
         place_of = {name: place for place, name in enumerate(objects)}
         place = numpy.array([place_of.get(name, -1) for name in table.values])[table.codes("object")]
         rows = place >= 0
@@ -143,11 +142,12 @@ class Recording:
 
     @property
     def observations(self):
-        """What robots observe, an `xarray.DataArray` (time [s], robot, channel), with a coordinate `unit` of channels.
+        """Observations of the robots, an `xarray.DataArray` (time [s], robot, channel), with a coordinate `unit` of
+        channels.
 
-        Channels are named as those of `Robot.observation_channels`; the values of one that has several are `NAME/0`,
-        `NAME/1`, … NaN where a robot has no such channel or nothing was recorded of it. The coordinate `run` is the
-        number of the world of each time.
+        Channels have the names of `Robot.observation_channels`; the values of a channel with several are `NAME/0`,
+        `NAME/1`, … Values are NaN if a robot has no such channel or was not recorded. The coordinate `run` is the
+        number of the world at each time.
         """
         if not any(each.startswith("observations_") for each in self.tables):
             record = "record: {observations: 10}"
@@ -156,37 +156,37 @@ class Recording:
 
     @property
     def commands(self):
-        """Commands as they act, an `xarray.DataArray` (time [s], robot, channel), as `observations`.
+        """Commands of the robots, an `xarray.DataArray` (time [s], robot, channel), like `observations`.
 
-        Its times are the ticks from which a new command acts: of each robot whose commands change, all of its channels.
-        NaN for the other robots: `commands_at` fills them.
+        Its times are the ticks from which a new command acts. It has all channels of each robot whose command changes
+        there, and NaN for the other robots; `commands_at` fills these in.
         """
         return self._values("commands", 2)
 
     def commands_at(self, times=None, run=0):
-        """Returns the commands that act from given times on, as `commands`, each robot with its last ones. NaN
-        before a robot comes.
+        """Returns the commands that act from given times on, like `commands`, with the last commands of each robot.
+        They are NaN before a robot is added.
 
         Args:
             times: simulated times [s], an array; all ticks by default.
-            run: the number of the world.
+            run: number of the world.
         """
         if times is None:
             ticks = self._table("ticks")
             times = ticks.time[ticks.run == run]
         times = numpy.asarray(times, dtype=numpy.float64)
         if times.ndim != 1:
-            raise ValueError(f"times have {times.ndim} dimensions, expected one")
+            raise ValueError(f"times has {times.ndim} dimensions, expected one")
         changes = self.commands
         rosters = [roster for roster in self._rosters if roster[0] == run]
         if not rosters:
-            raise ValueError(f"there is no run {run}, expected one below {len(self.worlds)}")
+            raise ValueError(f"unknown run {run}, expected a number below {len(self.worlds)}")
         in_run = changes.coords["run"].values == run
         change_times = changes.coords["time"].values[in_run]
         change_values = changes.values[in_run]
         names = list(zip(changes.coords["channel"].values, changes.coords["unit"].values))
         values = numpy.full((len(times), *changes.shape[1:]), numpy.nan)
-        # A roster has the commands of its time: later ones count for robots that have come only.
+        # A roster has the commands at its time: later ones matter only for robots that were added.
         first = {robot[0]: (came, kinds, robot) for _, came, kinds, robots in reversed(rosters) for robot in robots}
         for robot, name in enumerate(self.robots):
             if name not in first:
@@ -206,20 +206,20 @@ class Recording:
 
     @property
     def events(self):
-        """What happened in the run, a `pandas.DataFrame`: run, time [s], tick, kind, text, count."""
+        """Events of the run, a `pandas.DataFrame`: run, time [s], tick, kind, text, count."""
         if "events" in self.tables:
             return self.table("events")
         return package("pandas", "a table").DataFrame({name: [] for name in _EVENT_COLUMNS})
 
     def with_events(self, frame):
-        """Returns a table with the last event before or at the time of each row beside it.
+        """Returns a table with the last event at or before the time of each row.
 
-        `frame` is a `pandas.DataFrame` with a column `time` [s], and `run` if there are several worlds. The new
-        columns are `event_time` [s], `event_kind` and `event_text`, missing before the first event.
+        `frame` is a `pandas.DataFrame` with a column `time` [s], and `run` if there are several worlds. The new columns
+        are `event_time` [s], `event_kind` and `event_text`, missing before the first event.
         """
         pandas = package("pandas", "a table")
         if "time" not in frame.columns:
-            raise ValueError(f"the table has the columns {list(frame.columns)}, expected one called 'time'")
+            raise ValueError(f"the table has no column 'time'; its columns are {list(frame.columns)}")
         by = ["run"] if "run" in frame.columns else []
         events = self.events.astype({"run": "int64", "time": "float64"})
         events = events[["run", "time", "kind", "text"]].assign(event_time=events["time"])
@@ -230,24 +230,24 @@ class Recording:
         return joined.sort_values("_row").drop(columns="_row").set_axis(frame.index)
 
     def images(self, robot, sensor):
-        """Yields (time [s], image) of a camera of a robot, an array uint8 [height, width, 3] of red, green and blue.
+        """Yields (time [s], image) of a robot's camera, an array uint8 [height, width, 3] of red, green and blue.
 
         Args:
-            robot: its scoped name.
-            sensor: the name of a camera that gives images, such as a `cohort:panorama`.
+            robot: scoped name of the robot.
+            sensor: name of a camera with images, such as a `cohort:panorama`.
 
         Raises LookupError if there is no such robot or camera, and `cohort.RecordingError` if no observations of the
         robot were recorded.
         """
         if robot not in self.robots:
-            raise LookupError(f"there is no robot '{robot}', expected one of {', '.join(self.robots)}")
+            raise LookupError(f"unknown robot '{robot}', expected one of {', '.join(self.robots)}")
         kinds_of = {name: kinds[kind] for *_, kinds, robots in self._rosters for name, _, kind, _ in robots}
         model, channels, _ = kinds_of[robot]
         shape = self._native.image_shape(model, sensor)
         names = [name for name, _ in value_names(channels)]
         first = f"{sensor}/0/image/0"
         if shape is None or first not in names:
-            raise LookupError(f"robots of model '{model}' have no camera '{sensor}' that gives images")
+            raise LookupError(f"robots of model '{model}' have no camera '{sensor}' with images")
         table = self._native.tables([f"observations_{model}"], [robot]).get(f"observations_{model}")
         if table is None:
             raise RecordingError(f"{self.file} has no observations of '{robot}'")
@@ -262,15 +262,15 @@ class Recording:
     def verify(self, threads=1):
         """Replays the recording without controllers, compares the state of every tick, and returns a `Verification`.
 
-        Other threads of Python run meanwhile. Ctrl-C ends it with KeyboardInterrupt.
+        Other Python threads run meanwhile. Ctrl-C ends it with KeyboardInterrupt.
         """
         ticks, difference, problem = self._native.verify(_at_least_one(threads))
         return Verification(ticks, *(difference or (None,) * 4), problem)
 
     def simulation_at(self, time):
-        """Returns a `Simulation` that goes on from the first tick that is not before a time of the recording [s].
+        """Returns a `Simulation` that continues from the first tick at or after a time of the recording [s].
 
-        Its commands are those that acted until then. Raises ValueError if the recording ends before.
+        It starts with the commands that acted until then. Raises ValueError if the recording ends before.
         """
         state = self._native.state_at(time)
         if state is None:
@@ -293,7 +293,7 @@ class Recording:
             self._tables.update({name: Table(*read[name]) for name in wanted})
 
     def _objects_among(self, frames):
-        """Returns which of the frames are objects: neither links nor devices, whose names go on those of an object."""
+        """Returns the frames that are objects, without links and devices, whose names extend the name of an object."""
         robots, known = set(self.robots), set(frames)
 
         def is_object(name):
@@ -303,7 +303,7 @@ class Recording:
         return [each for each in frames if is_object(each)]
 
     def _values(self, what, kind_part):
-        """Returns the tables `WHAT_MODEL` as one array; `kind_part` is the place of their channels in a kind."""
+        """Returns the tables `WHAT_MODEL` as one array; `kind_part` is the index of their channels in a kind."""
         kinds = {kind[0]: kind[kind_part] for *_, kinds, _ in self._rosters for kind in kinds}
         names = list(dict.fromkeys(each for channels in kinds.values() for each in value_names(channels)))
         place_of = {name: place for place, name in enumerate(names)}
@@ -314,7 +314,7 @@ class Recording:
         runs, times, row_places = times_of(tables)
         values = numpy.full((len(times), len(robot_of), len(names)), numpy.nan)
         for model, table, rows in zip(models, tables, row_places):
-            robots = numpy.array([robot_of[each] for each in table.values])[table.codes("robot")]
+            robots = numpy.array([robot_of.get(each, -1) for each in table.values])[table.codes("robot")]
             channels = [place_of[each] for each in value_names(kinds[model])]
             values[rows[:, None], robots[:, None], channels] = table.reals[:, 1:]
         coordinates = {"robot": list(robot_of), "channel": [name for name, _ in names]}
@@ -339,13 +339,13 @@ def _at_least_one(threads):
 
 
 def compare(first, second, threads=1):
-    """Compares two recordings tick by tick and returns a `Comparison` that says where they part, and in what.
+    """Compares two recordings tick by tick and returns a `Comparison` with the first difference.
 
     Args:
         first, second: each a `Recording`, or its path.
-        threads: that step the worlds, which run again up to where they part.
+        threads: number of threads that step the worlds, which run again up to the first difference.
 
-    Raises what `Recording` does.
+    Raises the errors of `Recording`.
     """
     both = [each if isinstance(each, Recording) else Recording(each) for each in (first, second)]
     ticks, parting, ends = both[0]._native.compare(both[1]._native, _at_least_one(threads))

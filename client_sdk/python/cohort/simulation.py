@@ -34,7 +34,7 @@ def _orientation(yaw, orientation):
 
 
 class Robot:
-    """A robot of a simulation. Its arrays show what the simulation has now."""
+    """A robot of a simulation. Its arrays show the current state."""
 
     def __init__(self, simulation: Simulation, robot: int) -> None:
         self._simulation = simulation
@@ -48,22 +48,22 @@ class Robot:
 
     @property
     def observation(self) -> numpy.ndarray:
-        """What it observed at the last tick at which it was asked, an array [value] in SI units, read-only."""
+        """Observation at the last tick at which the robot was due, an array [value] in SI units, read-only."""
         return self._native.observations[self.id, : self.observation_channels.size]
 
     @property
     def command(self) -> numpy.ndarray:
-        """What commands it, an array [value] in SI units, to be written."""
+        """Command, an array [value] in SI units, writable."""
         return self._native.commands[self.id, : self.command_channels.size]
 
     @property
     def pose(self) -> numpy.ndarray:
-        """Pose of its root link in the world frame: x y z [m], quaternion w x y z; an array [7]."""
+        """Pose of its root link in the world frame, x y z [m] and quaternion w x y z; an array [7]."""
         return self._native.object_poses[self.object]
 
     @property
     def velocity(self) -> numpy.ndarray:
-        """Velocity of the origin of its root link along the axes of the world frame [m/s, rad/s]; an array [6]."""
+        """Velocity of the origin of its root link, expressed in the world frame [m/s, rad/s]; an array [6]."""
         return self._native.object_velocities[self.object]
 
     def __repr__(self) -> str:
@@ -71,7 +71,7 @@ class Robot:
 
 
 class Simulation:
-    """One world, advancing tick by tick in this process. The program that has it commands all robots.
+    """One world that advances tick by tick in this process. The program commands all robots.
 
         simulation = cohort.Simulation("obstacle_avoidance", seed=1)
         left = simulation.robots[0].command_channels.index("treel/left/velocity")
@@ -79,15 +79,15 @@ class Simulation:
         simulation.step(100)
         print(simulation.poses[:, :2])
 
-    Arrays are float64 in SI units. Every result is a function of the experiment and of the commands, for any number of
-    threads. One thread of Python uses it at a time; others get a RuntimeError meanwhile. Steps run without Python's
-    global lock. It does not survive a fork of the process. The controllers that the experiment names are not run:
-    `Experiment.run` does that.
+    Arrays are float64 in SI units. Results depend only on the experiment and the commands, for any number of threads.
+    Only one Python thread may use a simulation at a time; others get a RuntimeError. Steps run without Python's global
+    lock. A simulation cannot be used after a fork. It does not run the controllers of the experiment; `Experiment.run`
+    does.
 
     Args:
-        experiment: an `Experiment`, or what `Experiment.read` takes.
-        seed, duration: in place of those of the experiment.
-        threads: that step the world.
+        experiment: an `Experiment`, or an argument of `Experiment.read`.
+        seed, duration: replace those of the experiment.
+        threads: number of threads that step the world.
     """
 
     def __init__(
@@ -100,7 +100,7 @@ class Simulation:
         if not isinstance(experiment, Experiment):
             experiment = Experiment.read(experiment, seed, duration)
         elif duration is not None:
-            raise ValueError("an Experiment has its duration: give it to Experiment.read")
+            raise ValueError("duration cannot be used with an Experiment; pass it to Experiment.read")
         elif seed is not None:
             experiment = experiment.with_seed(seed)
         if threads < 1:
@@ -112,12 +112,12 @@ class Simulation:
 
     @property
     def experiment(self) -> Experiment:
-        """Its `Experiment`."""
+        """The `Experiment` of the simulation."""
         return self._experiment
 
     @property
     def tick(self) -> int:
-        """How many steps there have been."""
+        """Number of steps since the start."""
         return self._native.tick
 
     @property
@@ -127,58 +127,60 @@ class Simulation:
 
     @property
     def state_hash(self) -> int:
-        """A hash of everything that decides how the run goes on, a 64-bit integer; `cohort run` prints the same."""
+        """Hash of the state that determines the rest of the run, a 64-bit integer; `cohort run` prints the same."""
         return self._native.state_hash
 
     @property
     def robots(self) -> list[Robot]:
-        """The robots, a list of `Robot` in the order of their ids."""
+        """Robots, a list of `Robot` in the order of their ids."""
         for robot in range(len(self._robots), self._native.robot_count):
             self._robots.append(Robot(self, robot))
         return self._robots
 
     @property
     def observations(self) -> numpy.ndarray:
-        """What all robots observe, an array [robot, value], read-only.
+        """Observations of all robots, an array [robot, value], read-only.
 
-        It shows the present tick after each step without being asked for again, until robots come, or until `reset` or
+        The array shows the current tick after each step. It stays valid until robots are added, or until `reset` or
         `restore`. Rows of robots with fewer values end in zeros.
         """
         return self._native.observations
 
     @property
     def commands(self) -> numpy.ndarray:
-        """What commands all robots, an array [robot, value], to be written. Values act until they change."""
+        """Commands of all robots, an array [robot, value], writable. Values act until they change."""
         return self._native.commands
 
     @property
     def poses(self) -> numpy.ndarray:
-        """Poses of the root links of all robots in the world frame [robot, 7]: x y z [m], quaternion w x y z."""
+        """Poses of the root links of all robots in the world frame, x y z [m] and quaternion w x y z; an array [robot,
+        7].
+        """
         return self._native.object_poses[[each.object for each in self.robots]]
 
     @property
     def velocities(self) -> numpy.ndarray:
-        """Velocities of the root links of all robots: linear [m/s], angular [rad/s]; an array [robot, 6]."""
+        """Velocities of the root links of all robots, linear [m/s] and angular [rad/s]; an array [robot, 6]."""
         return self._native.object_velocities[[each.object for each in self.robots]]
 
     @property
     def objects(self) -> list[str]:
-        """Scoped names of everything in the world, robots too; the order of `object_poses`."""
+        """Scoped names of all objects in the world, including robots; the order of `object_poses`."""
         return self._native.object_names
 
     @property
     def object_poses(self) -> numpy.ndarray:
-        """Poses of everything in the world, as `poses`; an array [object, 7]."""
+        """Poses of all objects in the world, like `poses`; an array [object, 7]."""
         return self._native.object_poses
 
     @property
     def object_velocities(self) -> numpy.ndarray:
-        """Velocities of everything in the world, as `velocities`; an array [object, 6]."""
+        """Velocities of all objects in the world, like `velocities`; an array [object, 6]."""
         return self._native.object_velocities
 
     @property
     def objects_present(self) -> numpy.ndarray:
-        """Which objects are in the world: neither taken out nor still to come; an array [object] of bool."""
+        """True for objects that are in the world, not removed and not yet to be added; an array [object] of bool."""
         return self._native.objects_present
 
     def pose(self, name: str) -> numpy.ndarray:
@@ -186,47 +188,47 @@ class Simulation:
         return self._native.object_poses[self._native.object_called(name)]
 
     def contacts(self) -> dict[str, numpy.ndarray]:
-        """Returns what touched during the last step, a dictionary of arrays with a row for each contact point.
+        """Returns the contacts of the last step, a dictionary of arrays with one row per contact point.
 
-        `objects` [n, 2]: their places in `objects`; `position` [n, 3] in the world [m]; `normal` [n, 3]: unit vector
-        from the second object to the first; `distance` [n]: negative where they overlap [m]; `impulse` [n]: along the
-        normal over the step [N s].
+        `objects` [n, 2]: indices into `objects`; `position` [n, 3]: in the world frame [m]; `normal` [n, 3]: unit
+        vector from the second object to the first. `distance` [n]: negative if they overlap [m]; `impulse` [n]: along
+        the normal over the step [N s].
         """
         return self._native.contacts()
 
     @property
     def stop_reason(self) -> str | None:
-        """Which stop condition of the experiment holds; None if none does."""
+        """The stop condition of the experiment that holds; None if none does."""
         return self._native.stop_reason
 
     @property
     def is_over(self) -> bool:
-        """Whether a stop condition holds, or the experiment's duration has passed."""
+        """True if a stop condition holds, or the experiment's duration has passed."""
         return self._native.is_over
 
     @property
     def happened(self) -> list[str]:
-        """What happened at this tick, a list of sentences: what broke, and events of the experiment."""
+        """Events at this tick, a list of sentences: invalid states, and events of the experiment."""
         return self._native.happened
 
     def step(self, ticks: int = 1) -> None:
         """Steps the world. `commands` act in each of the ticks.
 
-        Raises ValueError before anything moves if a command cannot act, naming robot and channel. After Ctrl-C the
-        simulation stands at the tick that it has reached, and goes on from there.
+        Raises ValueError, naming robot and channel, before anything moves if a command is invalid. After Ctrl-C the
+        simulation remains at the tick that it has reached, and can continue from there.
         """
         self._native.step(ticks, False)
 
     def run(self, until: float | None = None, each: Callable[[Simulation], object] | None = None) -> None:
-        """Steps to the experiment's end.
+        """Steps to the end of the experiment.
 
         Args:
-            until: simulated time [s] at which it stops, if the experiment does not end before.
-            each: is called with the simulation before each step, to write commands.
+            until: simulated time [s] to stop at, if the experiment does not end before.
+            each: called with the simulation before each step, to write commands.
         """
         end = math.inf if until is None else until
         if until is None and self._experiment.duration == 0:
-            raise ValueError("the experiment has no end: give `until`")
+            raise ValueError("the experiment has no end; specify `until`")
         while not self.is_over and self.time < end - self._experiment.step / 2:
             if each is None:
                 left = min(end, self._experiment.duration or end) - self.time
@@ -236,18 +238,20 @@ class Simulation:
                 self._native.step(1, True)
 
     def reset(self, seed: int | None = None) -> None:
-        """Begins again, with another seed if one is given. Reads no file."""
+        """Restarts the run, with another seed if one is given. Reads no file."""
         if seed is not None:
             self._experiment = self._experiment.with_seed(seed)
         self._native.reset(self._experiment._native)
         self._robots = []
 
     def save(self) -> bytes:
-        """Returns everything that decides how the run goes on, as bytes, for `restore` of the same experiment."""
+        """Returns a snapshot of the run as bytes, for `restore` with the same experiment."""
         return self._native.save()
 
     def restore(self, snapshot: bytes) -> None:
-        """Goes on from what `save` returned. Raises `cohort.SnapshotError`, and changes nothing, if it does not fit."""
+        """Continues from a snapshot of `save`. Raises `cohort.SnapshotError`, and changes nothing, if it does not
+        match.
+        """
         self._native.restore(snapshot)
         self._robots = []
 
@@ -262,18 +266,18 @@ class Simulation:
         team: str = "",
         allow_renaming: bool = False,
     ) -> str:
-        """Brings a new object into the world, at rest, and returns its scoped name.
+        """Adds a new object to the world, at rest, and returns its scoped name.
 
         Args:
-            model: the name of one of the world's models, a path of an SDF or URDF file, or such a text.
-            position: of the model in the world [m].
-            yaw: about the vertical [rad].
-            orientation: in place of yaw, a quaternion w x y z.
-            name: scoped name; that of the model by default.
-            team: whose robot it is, if it is a robot.
-            allow_renaming: whether a name that is taken gets a number.
+            model: name of one of the world's models, path of an SDF, URDF or YAML file, or the text of one.
+            position: of the model in the world frame [m].
+            yaw: about the vertical axis [rad].
+            orientation: quaternion w x y z, replaces `yaw`.
+            name: scoped name; the name of the model by default.
+            team: team of a robot.
+            allow_renaming: appends a number if the name is taken.
 
-        Raises ValueError that says why it cannot be done; nothing is changed then. So do the functions below.
+        Raises ValueError with the reason if it fails; then nothing has changed. So do the functions below.
         """
         text = ""
         if isinstance(model, os.PathLike) or (isinstance(model, str) and "<" not in model and "\n" not in model):
@@ -288,19 +292,19 @@ class Simulation:
         )
 
     def remove(self, name: str) -> None:
-        """Takes an object out of the world, for good."""
+        """Removes an object from the world permanently."""
         self._native.remove(name)
 
     def set_pose(
         self, name: str, position: ArrayLike, yaw: float = 0.0, *, orientation: ArrayLike | None = None
     ) -> None:
-        """Puts an object elsewhere, at rest, with its joints as they are. Arguments as those of `spawn`."""
+        """Moves an object to a pose, at rest, and keeps its joint positions. The arguments are those of `spawn`."""
         self._native.set_pose(name, _vector(position, "position"), _orientation(yaw, orientation))
 
     def set_velocity(
         self, name: str, linear: ArrayLike = (0.0, 0.0, 0.0), angular: ArrayLike = (0.0, 0.0, 0.0)
     ) -> None:
-        """Gives an object a velocity along the axes of the world frame [m/s, rad/s]."""
+        """Sets the velocity of an object, expressed in the world frame [m/s, rad/s]."""
         self._native.set_velocity(name, _vector(linear, "linear"), _vector(angular, "angular"))
 
     def set_light(
@@ -317,28 +321,28 @@ class Simulation:
         duration: float = 0.0,
         link: str = "",
     ) -> None:
-        """Pushes a link at its centre of mass, in world axes, from now on.
+        """Applies a force and a torque at the centre of mass of a link, in the world frame, from now on.
 
         Args:
-            name: of the object.
+            name: name of the object.
             force, torque: [N], [N m].
-            duration: simulated time [s]; 0: for one step.
-            link: its name; the root link by default.
+            duration: simulated time [s]; 0: one step.
+            link: name of the link; the root link by default.
         """
         self._native.apply_force(name, link, _vector(force, "force"), _vector(torque, "torque"), duration)
 
     def plot(self, paths: ArrayLike | None = None, *, radius: float = 0.06, axes: Axes | None = None) -> Axes:
-        """Draws the world from above at the present tick, and returns the `matplotlib.axes.Axes`.
+        """Draws the world from above at the current tick, and returns the `matplotlib.axes.Axes`.
 
-        A robot is a circle with a line to where its x axis points. Another object is a square at its position; one that
-        was not moved from the world's origin, such as the ground, is not drawn.
+        A robot is a circle with a line along its x axis. Another object is a square at its position; an object that was
+        not moved from the world's origin, such as the ground, is not drawn.
 
         Args:
             paths: an array [step, robot, 2 or more] of positions, such as copies of `poses` after some of the steps.
-            radius: of the circles [m].
-            axes: to draw on; by default those of a new figure.
+            radius: radius of the circles [m].
+            axes: axes to draw on; those of a new figure by default.
 
-        Needs the package matplotlib. Raises ValueError if `paths` has another shape.
+        Requires the package matplotlib. Raises ValueError if `paths` has another shape.
         """
         return _plots.plot(self, paths, radius, axes)
 
@@ -348,14 +352,14 @@ class Simulation:
             simulation.view(open=True)
             simulation.run(until=60)
 
-        The page of `cohort view` is served at 127.0.0.1 until the view is closed or the simulation is gone. Viewers see
-        at most 30 states a second, and the last one after each call. They change nothing, so the state hash is the
-        same. In Jupyter a view that ends a cell shows itself. A simulation has one view: while it is open, it is
-        returned again.
+        Serves the page of `cohort view` at 127.0.0.1 until the view is closed or the simulation is deleted. Viewers see
+        at most 30 states a second, and the last one after each call. They cannot change anything, so the state hash is
+        the same. In Jupyter, a view at the end of a cell displays itself. A simulation has one view; while it is open,
+        this returns it again.
 
         Args:
-            port: where browsers find it; by default 8080, or any free port if that is taken. 0: any free one.
-            open: whether to open the page in a browser; in Jupyter nothing is opened.
+            port: port of the page; by default 8080, or any free port if that is taken. 0: any free one.
+            open: opens the page in a browser; has no effect in Jupyter.
 
         Raises FileNotFoundError if the page was not built, RuntimeError if the port is taken, and ValueError if the
         simulation has a view at another port.
@@ -363,7 +367,7 @@ class Simulation:
         if self._view is None or self._view.closed:
             self._view = View(self._native, str(self._experiment.name), port)
         elif port and port != self._view.port:
-            raise ValueError(f"the simulation is shown at {self._view.url} already: close that view first")
+            raise ValueError(f"the simulation already has a view at {self._view.url}; close that view first")
         if open:
             self._view.open()
         return self._view

@@ -17,34 +17,34 @@ def _is_in_jupyter():
 
 
 class View:
-    """A web server of this process that shows a simulation: `Simulation.view` returns it.
+    """A web server in this process that shows a simulation; returned by `Simulation.view`.
 
-    It ends with `close`, with a `with` block, or when neither the view nor the simulation is used any more.
+    It ends with `close`, at the end of a `with` block, or when neither the view nor the simulation is used any more.
     """
 
     def __init__(self, simulation, name: str, port: int | None) -> None:
         if port is not None and not 0 <= port <= 65535:
             raise ValueError(f"port is {port}, expected 0 to 65535")
-        self._simulation = simulation  # what is shown has to live
+        self._simulation = simulation  # keeps the simulation alive
         self._native = simulation.open_view(str(_files.page_folder()), port)
         self._name = name
         self.port: int = self._native.port
         self.url: str = f"http://127.0.0.1:{self.port}/"
-        weakref.finalize(self, self._native.close)  # also when Python ends
+        weakref.finalize(self, self._native.close)  # also when Python exits
 
     @property
     def closed(self) -> bool:
-        """Whether it shows nothing any more."""
+        """True if the view has ended."""
         return self._native.is_closed
 
     def close(self) -> None:
-        """Ends it and frees its port. The pages that show it keep their last picture."""
+        """Ends the view and frees its port. Open pages keep their last picture."""
         self._native.close()
 
     def open(self) -> None:
-        """Opens the page in a browser; in Jupyter, which shows the view itself, it does nothing."""
+        """Opens the page in a browser; does nothing in Jupyter, which displays the view itself."""
         if not _is_in_jupyter() and not webbrowser.open(self.url):
-            warnings.warn(f"no browser was found: open {self.url} in one", stacklevel=3)
+            warnings.warn(f"no browser was found; open {self.url} yourself", stacklevel=3)
 
     def __enter__(self) -> View:
         return self

@@ -9,7 +9,7 @@ namespace cohort::python {
 namespace {
 
 PyObject* maker_in(const char* file) {
-  // Kept to the end of the process, as Python itself is. Guarded by Python's lock.
+  // Kept until the process ends, like Python itself. Guarded by Python's lock.
   static auto& makers = *new std::map<std::string, Owned>;
   if (const auto known = makers.find(file); known != makers.end()) return known->second.get();
   const Owned module = checked(PyImport_ImportModule("cohort._hosting"));

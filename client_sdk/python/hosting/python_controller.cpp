@@ -18,7 +18,7 @@ PythonController::~PythonController() {
 
 void PythonController::start(const Start& start) {
   const Lock lock;
-  // Arrays that the controller has kept show this memory, so it is never moved: a robot's layout stays the same.
+  // Arrays that the controller has kept refer to this memory, so it is never moved; a robot's layout stays the same.
   observation_.resize(size_of(start.observation_channels));
   command_.resize(size_of(start.command_channels));
   neutral_ = neutral_of(start.command_channels);

@@ -7,11 +7,11 @@
 
 namespace cohort::python {
 
-/// One robot's controller: an object of `cohort._hosting.Adapter`, which calls the class of the user. Observations and
-/// commands are arrays of NumPy that show the memory of this object.
+/// One robot's controller: an object of `cohort._hosting.Adapter`, which calls the user's class. Observations and
+/// commands are NumPy arrays that refer to the memory of this object.
 class PythonController final : public Controller {
  public:
-  /// `make_adapter` is called without arguments. Throws std::runtime_error with what Python raises.
+  /// Calls `make_adapter` without arguments. Throws std::runtime_error with the Python exception.
   explicit PythonController(PyObject* make_adapter);
   PythonController(const PythonController&) = delete;
   PythonController& operator=(const PythonController&) = delete;

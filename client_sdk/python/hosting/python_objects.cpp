@@ -16,14 +16,14 @@ std::string text_of(PyObject* object) {
   return {};
 }
 
-// Throws what Python has raised: a ParameterError as one of C++, all else as `cohort._hosting.describe` puts it, with
-// the lines that led to it.
+// Throws the current Python exception: a ParameterError as the C++ one, any other as described by
+// `cohort._hosting.describe`, with the lines that led to it.
 [[noreturn]] void throw_raised() {
   PyObject *type = nullptr, *value = nullptr, *traceback = nullptr;
   PyErr_Fetch(&type, &value, &traceback);
   PyErr_NormalizeException(&type, &value, &traceback);
   const Owned owned_type(type), owned_value(value), owned_traceback(traceback);
-  if (!owned_value) throw std::runtime_error("Python failed without an exception");
+  if (!owned_value) throw std::runtime_error("Python reported an error without an exception");
   if (owned_traceback) PyException_SetTraceback(owned_value.get(), owned_traceback.get());
   const Owned module(PyImport_ImportModule("cohort._hosting"));
   const auto call = [&](const char* function) {
@@ -111,7 +111,7 @@ void note_asked(const Parameters& parameters, PyObject* asked) {
 }
 
 Owned memory_of(std::vector<double>& values, bool is_written) {
-  values.reserve(1);  // Python wants an address also where there are none
+  values.reserve(1);  // Python requires an address even if there are no values
   return checked(PyMemoryView_FromMemory(reinterpret_cast<char*>(values.data()),
                                          static_cast<Py_ssize_t>(values.size() * sizeof(double)),
                                          is_written ? PyBUF_WRITE : PyBUF_READ));

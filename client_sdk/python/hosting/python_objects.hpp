@@ -1,6 +1,6 @@
 #pragma once
 
-#define PY_SSIZE_T_CLEAN  // before Python.h: lengths of bytes are Py_ssize_t
+#define PY_SSIZE_T_CLEAN  // before Python.h: makes lengths of bytes Py_ssize_t
 #include <Python.h>
 
 #include <cohort/controller.hpp>
@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-/// Objects of Python for C++, with the C interface of Python alone.
+/// Python objects for C++, using only Python's C interface.
 namespace cohort::python {
 
-/// Holds Python's global lock as long as it lives, on any thread.
+/// Holds Python's global lock during its lifetime, on any thread.
 class Lock {
  public:
   Lock() {
-    // Without this, Python would forget a thread that is not its own after each call, and what it keeps for it: the
-    // values of context variables, how NumPy treats errors.
+    // Without this, Python would discard the state of a foreign thread after each call: the values of context
+    // variables, and NumPy's error settings.
     if (PyGILState_GetThisThreadState() == nullptr) {
       PyGILState_Ensure();
       PyEval_SaveThread();
@@ -31,7 +31,7 @@ class Lock {
   PyGILState_STATE state_;
 };
 
-/// A reference to an object, owned by this. The lock has to be held wherever it is made, changed or destroyed.
+/// An owned reference to an object. The lock must be held when it is created, changed or destroyed.
 class Owned {
  public:
   Owned() = default;
@@ -58,29 +58,29 @@ class Owned {
   PyObject* object_ = nullptr;
 };
 
-/// Returns `object`. If it is null, throws std::runtime_error with the exception that Python has raised: ParameterError
-/// for one of the package.
+/// Returns `object`. If it is null, throws std::runtime_error with the current Python exception, or ParameterError for
+/// one of the package.
 Owned checked(PyObject* object);
 
-/// Returns what `cohort._hosting.Start` is made of, a dictionary.
+/// Returns the arguments of `cohort._hosting.Start` as a dictionary.
 Owned facts_of(const Start& start);
-/// Tells the parameters which of them Python has asked for; `asked` is a list of names.
+/// Marks the parameters that Python has read; `asked` is a list of names.
 void note_asked(const Parameters& parameters, PyObject* asked);
 
-/// Returns the memory of these values as an object of Python, which must not be used after them. It may be written to
-/// if `is_written`.
+/// Returns a Python object that refers to the memory of these values and must not be used after they are destroyed. It
+/// is writable if `is_written`.
 Owned memory_of(std::vector<double>& values, bool is_written);
 
-/// Returns how many values channels have.
+/// Returns the number of values of channels.
 std::size_t size_of(const std::vector<ChannelInfo>& channels);
 /// Returns the neutral values of channels.
 std::vector<double> neutral_of(const std::vector<ChannelInfo>& channels);
-/// Returns channels as Command::set takes them.
+/// Returns the channels in the type of Command::set.
 std::vector<CommandChannel> command_channels_of(const std::vector<ChannelInfo>& channels);
-/// Gives all values to a command, each brought into the range of its channel.
+/// Sets all values of a command, each clamped to the range of its channel.
 void set_all(Command& command, const std::vector<CommandChannel>& channels, std::span<const double> values);
 
-/// Writes what `save` returned: bytes, or None if nothing can be saved.
+/// Writes the result of `save`: bytes, or None if the state cannot be saved.
 void write_state(StateWriter& state, PyObject* saved);
 
 }  // namespace cohort::python

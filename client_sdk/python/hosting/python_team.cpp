@@ -10,7 +10,7 @@
 namespace cohort::python {
 namespace {
 
-// Runs code of the user. Whatever it throws becomes a failure that says where and why.
+// Runs user code. Turns any exception into a failure with the place and the reason.
 template <class Failure = ControllerFailure, class Call>
 decltype(auto) guarded(const std::string& name, const char* function, std::uint64_t tick, Call call) {
   try {
@@ -46,9 +46,9 @@ void PythonTeam::start(const wire::Admit& admit, std::span<const wire::RobotDesc
   }
   for (const Start& start : starts)
     if (start.model != starts[0].model)
-      throw ControllerFailure("the controller '" + name_ + "' drives all robots of a process together, and " +
+      throw ControllerFailure("the controller '" + name_ + "' drives all robots of a process together, but " +
                               starts[0].name + " and " + start.name +
-                              " are of different models: let one process drive each model");
+                              " have different models; use one process per model");
   const bool is_same = starts[0].reason == StartReason::reset || starts[0].reason == StartReason::restored;
   const Lock lock;
   guarded(name_, "start", admit.tick, [&] {
@@ -77,20 +77,20 @@ std::span<const double> PythonTeam::answer(const wire::Observation& frame) {
   const std::size_t count = frame.robots.size();
   if (count > robots_.size() || frame.values.size() != count * observation_size_)
     throw ControllerFailure("the frame of tick " + std::to_string(frame.tick) +
-                            " does not fit the robots of this process");
+                            " does not match the robots of this process");
   const Lock lock;
   return guarded(name_, "step", frame.tick, [&]() -> std::span<const double> {
     std::ranges::copy(frame.values, observations_.begin());
     for (std::size_t row = 0; row < count; ++row)
       std::ranges::copy(neutral_, commands_.begin() + static_cast<std::ptrdiff_t>(row * neutral_.size()));
-    // None if all robots are asked, else the places of those that are.
+    // None if all robots are due, else the rows of those due.
     Owned rows;
     if (count < robots_.size()) {
       rows = checked(PyList_New(0));
       for (const std::uint32_t robot : frame.robots) {
         const auto place = std::ranges::lower_bound(robots_, robot);
         if (place == robots_.end() || *place != robot)
-          throw std::runtime_error("robot " + std::to_string(robot) + " was not given to this process");
+          throw std::runtime_error("robot " + std::to_string(robot) + " is not driven by this process");
         const Owned number = checked(PyLong_FromSsize_t(place - robots_.begin()));
         if (PyList_Append(rows.get(), number.get()) != 0) checked(nullptr);
       }
@@ -107,7 +107,7 @@ std::span<const double> PythonTeam::answer(const wire::Observation& frame) {
   });
 }
 
-// The state of all goes with the first robot; that of the others is empty.
+// The first robot has the state of all; the other states are empty.
 std::vector<RobotState> PythonTeam::save() const {
   std::vector<RobotState> states;
   if (robots_.empty()) return states;
@@ -116,8 +116,8 @@ std::vector<RobotState> PythonTeam::save() const {
     StateWriter writer;
     write_state(writer, checked(PyObject_CallMethod(adapter_.get(), "save", nullptr)).get());
     if (writer.bytes().size() > largest_state)
-      throw StateError("its state has " + std::to_string(writer.bytes().size()) + " bytes, and " +
-                       std::to_string(largest_state) + " are the most");
+      throw StateError("its state has " + std::to_string(writer.bytes().size()) + " bytes; the maximum is " +
+                       std::to_string(largest_state));
     for (const std::uint32_t robot : robots_) {
       RobotState& saved = states.emplace_back(RobotState{robot});
       if (writer.is_left_out()) continue;
@@ -134,8 +134,8 @@ std::vector<std::string> PythonTeam::load(std::span<const RobotState> states) {
   });
   if (first == states.end()) return {};
   if (first->state->controller != name_ || first->state->bytes.empty())
-    return {"the state is of controllers '" + first->state->controller + "', or of other robots together: '" + name_ +
-            "' starts without it"};
+    return {"the saved state belongs to controller '" + first->state->controller +
+            "' or to another group of robots; '" + name_ + "' starts without state"};
   const Lock lock;
   guarded(name_, "load", 0, [&] {
     StateReader reader(first->state->bytes);

@@ -11,12 +11,12 @@
 
 namespace cohort::python {
 
-/// One object of Python that drives all robots of this process: an adapter of `cohort._hosting.TeamAdapter`. Its arrays
-/// [robot, value] show the memory of this object.
+/// A Python object that drives all robots of this process, an adapter of `cohort._hosting.TeamAdapter`. Its arrays
+/// [robot, value] refer to the memory of this object.
 class PythonTeam final : public FrameHandler {
  public:
-  /// `make_adapter` is called without arguments, and must outlive this. `name`: of the class, by which states are told
-  /// from those of others.
+  /// Calls `make_adapter` without arguments; it must outlive this object. `name` is that of the class, and identifies
+  /// its saved states.
   PythonTeam(PyObject* make_adapter, std::string name);
   PythonTeam(const PythonTeam&) = delete;
   PythonTeam& operator=(const PythonTeam&) = delete;
@@ -31,17 +31,17 @@ class PythonTeam final : public FrameHandler {
   PyObject* make_adapter_;
   const std::string name_;
   Owned adapter_;
-  std::vector<std::uint32_t> robots_;  // ascending ids
-  std::size_t observation_size_ = 0;   // of one robot
-  std::vector<double> neutral_;        // of one robot
+  std::vector<std::uint32_t> robots_;  // in ascending order of ids
+  std::size_t observation_size_ = 0;   // size for one robot
+  std::vector<double> neutral_;        // values of one robot
   std::vector<CommandChannel> command_channels_;
   std::vector<double> observations_;  // [robot, value]
   std::vector<double> commands_;
   std::vector<double> values_;
 };
 
-/// Returns how to drive robots by what `maker` makes, an object of `cohort._hosting.Maker` that must outlive all
-/// controllers: each robot by a controller, or all by one.
+/// Returns a factory that drives robots with controllers from `maker`: one per robot, or one for all. `maker` is an
+/// object of `cohort._hosting.Maker` that must outlive all controllers.
 ControllerKind kind_of_maker(PyObject* maker);
 
 }  // namespace cohort::python

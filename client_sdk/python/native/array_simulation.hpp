@@ -13,11 +13,11 @@
 
 namespace cohort::python {
 
-/// Brings a value that is a bound of its channel, but for the rounding to float32 of a policy, to this bound.
+/// Replaces a value that equals a bound of its channel up to float32 rounding, as from a policy, by this bound.
 void take_bounds_of_float32(const std::vector<Channel>& channels, std::span<double> values);
 
-/// A Simulation with what its robots observe and are commanded in arrays [robot, channel]. Rows are as long as the
-/// longest one. One thread at a time.
+/// A Simulation with the observations and commands of its robots in arrays [robot, channel]. Rows are as long as the
+/// longest one. For one thread at a time.
 class ArraySimulation {
  public:
   ArraySimulation(std::shared_ptr<const description::Experiment> experiment, unsigned threads);
@@ -29,24 +29,24 @@ class ArraySimulation {
 
   std::size_t observation_size() const { return observation_size_; }
   std::size_t command_size() const { return command_size_; }
-  /// [robot, channel]; another array after robots have come, and after a reset or a restore.
+  /// Returns an array [robot, channel]; another one after robots were added, and after a reset or a restore.
   const std::shared_ptr<std::vector<double>>& observations() const { return observations_; }
   const std::shared_ptr<std::vector<double>>& commands() const { return commands_; }
 
-  /// Counts the worlds that there have been: a reset or a restore makes another one.
+  /// Returns the number of the world: each reset or restore makes another one.
   std::uint32_t world_number() const { return world_number_; }
 
   bool is_timed_out() const;
   bool is_over() const { return simulation_->stop_reason().has_value() || is_timed_out(); }
 
-  /// Gives the commands to the simulation. Throws std::invalid_argument, and changes nothing, if one cannot act.
+  /// Passes the commands to the simulation. Throws std::invalid_argument, and changes nothing, if one is invalid.
   void command();
-  /// One tick with the commands that were given.
+  /// Steps one tick with the commands that were passed.
   void step();
-  /// Does what a program asks for between steps.
+  /// Performs an action between steps.
   std::string act(const Action& action);
   void reset(std::shared_ptr<const description::Experiment> experiment);
-  /// Throws SnapshotError, and changes nothing, if the snapshot is of something else.
+  /// Restores a snapshot. Throws SnapshotError, and changes nothing, if it does not match.
   void restore(std::span<const std::byte> snapshot);
 
  private:

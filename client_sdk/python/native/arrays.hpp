@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-/// NumPy arrays of what C++ has.
+/// NumPy arrays of C++ data.
 namespace cohort::python {
 
 namespace nb = nanobind;
@@ -26,7 +26,7 @@ nb::ndarray<nb::numpy, Value, nb::c_contig> owned_array(std::vector<Value> value
   return {kept->data(), shape, owner};
 }
 
-/// Returns an array of values that live as long as `owner`.
+/// Returns an array of values that `owner` keeps alive.
 template <class Value>
 nb::ndarray<nb::numpy, Value, nb::c_contig> view_of(Value* values, std::initializer_list<std::size_t> shape,
                                                     nb::handle owner) {

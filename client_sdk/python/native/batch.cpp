@@ -20,19 +20,20 @@
 namespace cohort::python {
 namespace {
 
-/// What Python holds: a batch, and who uses it now.
+/// A batch owned by Python, and its current user.
 struct HeldBatch {
   HeldBatch(const description::Experiment& experiment, std::size_t worlds, unsigned threads)
       : batch(experiment, worlds, threads) {}
   Batch batch;
   mutable OneUser user;
 
-  /// Throws std::invalid_argument if there is no such robot.
+  /// Returns the kind of a robot. Throws std::invalid_argument if there is no such robot.
   const RobotKind& kind_of(std::uint32_t robot) const {
     if (robot >= batch.robots()) throw std::invalid_argument(there_is_no("robot", robot, batch.robots()));
     return batch.kinds()[batch.kind_of(robot)];
   }
-  /// Returns the world, which nobody steps meanwhile. Throws std::invalid_argument if there is no such world.
+  /// Calls `get` with the batch, which is not stepped meanwhile. Throws std::invalid_argument if there is no such
+  /// world.
   template <class Get>
   auto read_world(std::size_t world, const Get& get) const {
     const OneUser::Turn turn(user);
@@ -42,7 +43,7 @@ struct HeldBatch {
 
  private:
   static std::string there_is_no(const char* what, std::size_t index, std::size_t count) {
-    return std::string("there is no ") + what + " " + std::to_string(index) + ", expected one below " +
+    return "no " + std::string(what) + " " + std::to_string(index) + ", expected a number below " +
            std::to_string(count);
   }
 };
@@ -69,12 +70,12 @@ void step_batch(HeldBatch& held, std::uint64_t ticks, const std::optional<Mask>&
   batch.step(ticks, chosen);
 }
 
-// Resets the worlds that the mask has, each to its seed.
+// Resets the worlds in the mask, each to its seed.
 void reset_worlds(HeldBatch& held, const Mask& mask, const Seeds& seeds) {
   const OneUser::Turn turn(held.user);
   const std::size_t worlds = held.batch.worlds();
   if (mask.shape(0) != worlds || seeds.shape(0) != worlds)
-    throw std::invalid_argument("expected a mask and seeds for " + std::to_string(worlds) + " worlds");
+    throw std::invalid_argument("expected `only` and `seeds` for " + std::to_string(worlds) + " worlds");
   const nb::gil_scoped_release no_gil;
   for (std::size_t world = 0; world < worlds; ++world)
     if (mask(world)) held.batch.reset(world, seeds(world));

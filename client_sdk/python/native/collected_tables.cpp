@@ -28,7 +28,7 @@ class CollectedRows final : public data::TableWriter {
     table_->texts.push_back(known->second);
   }
 
-  CollectedTable* table_;  // null: rows are left out
+  CollectedTable* table_;  // null: skip rows
   const std::function<void()>& each_row_;
   std::unordered_map<std::string, std::int32_t> places_;
 };

@@ -13,18 +13,18 @@
 
 namespace cohort::python {
 
-/// A table in memory: a matrix in rows for each type of column.
+/// A table in memory: one row-major matrix for each type of column.
 struct CollectedTable {
   std::vector<data::Column> columns;
   std::size_t rows = 0;
   std::vector<double> reals{};
   std::vector<std::int64_t> wholes{};
-  std::vector<std::int32_t> texts{};       ///< places in `text_values`
-  std::vector<std::string> text_values{};  ///< each once, in the order in which they first come
+  std::vector<std::int32_t> texts{};       ///< indices into `text_values`
+  std::vector<std::string> text_values{};  ///< distinct values, in the order of their first occurrence
 };
 
-/// Collects tables. `is_kept` chooses by name which of them get their rows. `each_row` is called before each row, kept
-/// or not; what it throws goes through.
+/// Collects tables. `is_kept` selects by name the tables whose rows are kept. `each_row` is called before each row,
+/// kept or not; its exceptions are passed on.
 class CollectedTables final : public data::TableSink {
  public:
   CollectedTables(std::function<bool(const std::string& name)> is_kept, std::function<void()> each_row)
@@ -33,7 +33,7 @@ class CollectedTables final : public data::TableSink {
   std::unique_ptr<data::TableWriter> begin(const std::string& name, const std::vector<data::Column>& columns) override;
   void finish() override {}
 
-  /// All tables by name.
+  /// Returns all tables by name.
   std::map<std::string, CollectedTable>& tables() { return tables_; }
 
  private:

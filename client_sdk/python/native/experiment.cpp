@@ -37,7 +37,7 @@ std::optional<std::chrono::nanoseconds> nanoseconds_of(std::optional<double> sec
   if (!seconds) return std::nullopt;
   constexpr double longest = 9e9;  // about 285 years, and less than 2^63 ns
   if (!(*seconds >= 0.0 && *seconds <= longest))
-    throw std::invalid_argument("duration is " + std::to_string(*seconds) + ", expected seconds from 0 to 9e9");
+    throw std::invalid_argument("duration is " + std::to_string(*seconds) + ", expected 0 to 9e9 s");
   return std::chrono::nanoseconds(std::llround(*seconds * 1e9));
 }
 

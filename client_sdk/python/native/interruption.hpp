@@ -8,11 +8,11 @@
 
 namespace cohort::python {
 
-/// Notices Ctrl-C while C++ works without Python's global lock. One thread.
+/// Detects Ctrl-C while C++ runs without Python's global lock. For one thread.
 class Interruption {
  public:
-  /// Returns whether the work is to end. Looks now and then only, so it may be asked often. Python's handlers run
-  /// within it, on the thread that asks.
+  /// Returns true if the work must end. It is cheap, because it checks only occasionally. Python's signal handlers run
+  /// inside this call, on the calling thread.
   bool is_wanted() {
     const auto now = std::chrono::steady_clock::now();
     if (error_ || now - looked_ < std::chrono::milliseconds(50)) return error_.has_value();
@@ -21,7 +21,7 @@ class Interruption {
     if (PyErr_CheckSignals() != 0) error_.emplace();
     return error_.has_value();
   }
-  /// Throws what a handler has raised, if one has. Needs Python's global lock.
+  /// Throws the exception of a handler, if there is one. Requires Python's global lock.
   void rethrow() {
     if (error_) throw *std::exchange(error_, std::nullopt);
   }

@@ -15,11 +15,11 @@ using Seconds = std::chrono::duration<double>;
 using std::chrono::nanoseconds;
 
 constexpr std::uint16_t usual_port = 8080;
-constexpr std::chrono::microseconds frame_interval{33'334};  // 30 frames a second at most
-constexpr int least_rest = 19;                               // frames take a twentieth of the time at most
+constexpr std::chrono::microseconds frame_interval{33'334};  // at most 30 frames a second
+constexpr int least_rest = 19;                               // frames take at most a twentieth of the time
 constexpr std::chrono::milliseconds until_paused{500};
 
-// Notebooks of this machine show the page in a frame. No viewer can change anything here.
+// Notebooks on this machine embed the page in a frame. Viewers cannot change anything here.
 constexpr const char* pages_of_this_machine = "http://127.0.0.1:* http://localhost:*";
 
 view::WebOptions options_for(const std::string& name, std::optional<std::uint16_t> port) {
@@ -45,21 +45,21 @@ LiveView::LiveView(const ArraySimulation& simulation, view::PageFiles page, std:
     try {
       server.run(*this);
     } catch (const std::exception&) {
-      // The pages lose their connection; the program goes on.
+      // The pages lose their connection; the program continues.
     }
   });
   showing_ = std::thread([this] {
     try {
       show_between_turns();
     } catch (const std::exception&) {
-      // As above: there is no memory for a frame.
+      // As above: not enough memory for a frame.
     }
   });
 }
 
 void LiveView::close() {
   if (process_ != ::getpid()) {
-    // The threads are the parent's, and what they hold or wait for is held for ever here: this is never destroyed.
+    // The threads belong to the parent, and their locks stay locked here: so this is never destroyed.
     if (!is_closed_.exchange(true)) static_cast<void>(new std::shared_ptr<LiveView>(shared_from_this()));
     return;
   }
@@ -176,7 +176,7 @@ void LiveView::show_status() {
 
 void LiveView::ask(const view::ViewRequest& request, std::function<void(const view::Answer&)> answer) {
   answer({false, "'" + request.operation +
-                     "' is not for viewers here: a Python program steps this world, and it alone "
+                     "' is not available to viewers: the Python program that steps this world also "
                      "plays, pauses and changes it"});
 }
 

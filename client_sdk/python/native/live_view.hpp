@@ -20,27 +20,27 @@
 
 namespace cohort::python {
 
-/// A web server of this process that shows a simulation while a program steps it.
+/// A web server in this process that shows a simulation while a program steps it.
 ///
-/// The program takes a turn for everything that may change the simulation. Within a turn the program's thread shows the
-/// simulation now and then; between turns, when nothing changes it, a thread of the view shows how the last turn left
-/// it. Nothing here needs Python's global lock.
+/// The program takes a turn for each operation that may change the simulation. During a turn, the program's thread
+/// shows the simulation from time to time. Between turns nothing changes it, and a thread of the view shows the state
+/// after the last turn. Nothing here needs Python's global lock.
 class LiveView final : public view::Source, public std::enable_shared_from_this<LiveView> {
  public:
-  /// Listens at 127.0.0.1: at `port`, or without one at 8080, or any free port where that is taken. Shows the
-  /// simulation as it is. Throws std::runtime_error if the port is taken. `simulation` must live until this is closed.
+  /// Listens at 127.0.0.1, at `port`; without one at 8080, or any free port if that is taken. Shows the current
+  /// simulation. Throws std::runtime_error if the port is taken. `simulation` must outlive the open view.
   LiveView(const ArraySimulation& simulation, view::PageFiles page, std::optional<std::uint16_t> port);
   ~LiveView() override { close(); }
 
   std::uint16_t port() const { return port_; }
   bool is_closed() const { return is_closed_; }
-  /// Ends the server and frees its port. Any thread, also within a turn. In a process that was forked the view of the
-  /// parent goes on. Who owns this calls it before the last owner goes.
+  /// Ends the server and frees its port. Thread-safe, also during a turn. In a forked process, the parent's view
+  /// continues. The owner calls it before the last reference is released.
   void close();
 
-  /// Begins a turn of the program. Waits while the view reads the simulation.
+  /// Starts a turn of the program. Waits while the view reads the simulation.
   void begin_turn();
-  /// Notes that the simulation has changed, and shows it if it is time. Within a turn.
+  /// Records a change of the simulation, and shows it if it is time. Call it during a turn.
   void changed();
   void end_turn();
 
@@ -50,7 +50,7 @@ class LiveView final : public view::Source, public std::enable_shared_from_this<
  private:
   using Clock = std::chrono::steady_clock;
 
-  // What only who may read the simulation uses: the program within its turn, the view between turns.
+  // Data for the reader of the simulation: the program during its turn, the view between turns.
   struct Shown {
     std::optional<viewing::SceneMaker> maker{};
     std::uint32_t world = 0;
@@ -87,7 +87,7 @@ class LiveView final : public view::Source, public std::enable_shared_from_this<
   std::mutex watched_mutex_;  // guards the next one
   std::vector<std::uint32_t> watched_;
 
-  std::mutex server_mutex_;  // guards the pointer: who publishes within a turn does not wait for who closes
+  std::mutex server_mutex_;  // guards the pointer; publishing during a turn does not wait for close
   std::unique_ptr<view::WebServer> server_;
   std::uint16_t port_ = 0;
   std::thread serving_;

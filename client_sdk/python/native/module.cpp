@@ -8,7 +8,7 @@
 #include "client_sdk/python/native/parts.hpp"
 
 NB_MODULE(_native, module) {
-  nanobind::set_leak_warnings(false);  // of objects that live when Python ends
+  nanobind::set_leak_warnings(false);  // about objects that are alive when Python exits
   cohort::bind_library_calls();
   module.attr("version") = COHORT_VERSION;
   module.def("bind_library_calls", &cohort::bind_library_calls);

@@ -7,16 +7,16 @@
 
 namespace cohort::python {
 
-/// Lets one thread of one process in at a time: calls into C++ give up Python's global lock, and after a fork the
-/// threads of a pool of workers are gone.
+/// Admits one thread of one process at a time. It is needed because calls into C++ release Python's global lock, and
+/// because a fork does not copy the threads of a worker pool.
 class OneUser {
  public:
   class Turn {
    public:
     explicit Turn(OneUser& user) : user_(user) {
       if (user_.process_ != ::getpid())
-        throw std::runtime_error("it was made before this process was forked: make another one in this process");
-      if (user_.is_used_.exchange(true)) throw std::runtime_error("another thread is using it now");
+        throw std::runtime_error("this object cannot be used after a fork: create another one in this process");
+      if (user_.is_used_.exchange(true)) throw std::runtime_error("another thread is using this object");
     }
     Turn(const Turn&) = delete;
     Turn& operator=(const Turn&) = delete;

@@ -2,7 +2,7 @@
 
 #include <nanobind/nanobind.h>
 
-/// The parts of the extension module, each in a source of its own. Each adds its classes to the module.
+/// The parts of the extension module, each in its own source file. Each adds its classes to the module.
 namespace cohort::python {
 
 void add_experiment(nanobind::module_& module);

@@ -28,7 +28,7 @@ void add_unary(nb::module_& module, const char* name, double (*function)(double)
 
 void add_binary(nb::module_& module, const char* name, double (*function)(double, double)) {
   module.def(name, [function](const Values& x, const Values& y) {
-    if (x.shape(0) != y.shape(0)) throw std::invalid_argument("expected as many values of one as of the other");
+    if (x.shape(0) != y.shape(0)) throw std::invalid_argument("expected two arrays of the same size");
     return computed(x.shape(0), [&](std::size_t i) { return function(x(i), y(i)); });
   });
 }

@@ -38,12 +38,12 @@ using description::Experiment;
 using recording::McapError;
 using recording::Recording;
 
-// Ends reading where it cannot be told to end otherwise.
+// Thrown to stop reading where there is no other way to stop it.
 struct Interrupted {};
 
 double in_seconds(std::chrono::nanoseconds time) { return std::chrono::duration<double>(time).count(); }
 
-// A file that cannot be opened: FileError is also what recording to one throws.
+// Error of a file that cannot be opened. It differs from FileError, which recording to a file also throws.
 class CannotBeOpened : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -81,8 +81,8 @@ nb::list channels_of(const std::vector<recording::RecordedChannel>& channels) {
   return list;
 }
 
-// Tuples (run, simulated time, kinds, robots), of kinds (model, observation, command), of robots (name, team, kind,
-// command). A world has another one when robots have come.
+// Returns tuples (run, simulated time, kinds, robots); kinds are (model, observation, command), robots are (name, team,
+// kind, command). A world has another tuple when robots were added.
 nb::list rosters_of(const Recording& recording) {
   nb::list rosters;
   const recording::Channel* const channel = recording.reader().channel(recording::Roster::topic);
@@ -103,18 +103,18 @@ nb::list rosters_of(const Recording& recording) {
         kinds.append(nb::make_tuple(kind.model, channels_of(kind.observation), channels_of(kind.command)));
       nb::list robots;
       for (const auto& robot : roster.robots) {
-        if (robot.kind >= roster.kinds.size()) throw messages::CdrError("a robot is of no kind");
+        if (robot.kind >= roster.kinds.size()) throw messages::CdrError("a robot has an unknown kind");
         robots.append(nb::make_tuple(robot.name, robot.team, robot.kind, robot.command));
       }
       rosters.append(nb::make_tuple(run, in_seconds(message->publish_time), kinds, robots));
     }
   } catch (const messages::CdrError& error) {
-    throw McapError(recording.file(), 0, std::string("a message is not what Cohort records: ") + error.what());
+    throw McapError(recording.file(), 0, std::string("a message is not in Cohort's format: ") + error.what());
   }
   return rosters;
 }
 
-// A tuple (columns, reals, wholes, texts, text values), of columns (name, type, unit).
+// Returns a tuple (columns, reals, wholes, texts, text values); columns are (name, type, unit).
 nb::tuple tuple_of(CollectedTable table) {
   std::size_t counts[3] = {};
   nb::list columns;
@@ -128,7 +128,7 @@ nb::tuple tuple_of(CollectedTable table) {
                         owned_array(std::move(table.texts), {table.rows, counts[2]}), table.text_values);
 }
 
-// By name; None for the rows of those that are not asked for. All of them if none is named.
+// Returns tables by name; None instead of rows that were not requested. Returns all rows if no name is given.
 nb::dict tables_of(const Recording& recording, const std::vector<std::string>& names,
                    const std::vector<std::string>& robots) {
   const std::set<std::string> kept(names.begin(), names.end());
@@ -160,7 +160,7 @@ std::shared_ptr<const Experiment> experiment_of(const Recording& recording, std:
   return std::make_shared<const Experiment>(recording.experiment(recording.worlds().at(world)));
 }
 
-// (height, width) of the image of a device; None if robots of that model have no such device.
+// Returns (height, width) of the image of a device; None if robots of that model have no such device.
 nb::object image_shape(const Recording& recording, const std::string& robot_model, const std::string& device_name) {
   const std::shared_ptr<const Experiment> experiment = experiment_of(recording, 0);
   for (const description::Model& model : experiment->world.models) {
@@ -207,12 +207,12 @@ nb::tuple compare(const Recording& first, const Recording& second, unsigned thre
       found.ends);
 }
 
-// (place of the world, its state as a snapshot) at the first boundary that is not before a time of the recording; None
+// Returns (index of the world, its state as a snapshot) at the first boundary at or after a time of the recording; None
 // if there is none.
 nb::object state_at(const Recording& recording, double time) {
   constexpr double longest = 9e9;  // less than 2^63 ns
   if (!(time >= 0.0 && time <= longest))
-    throw nb::value_error(("time is " + std::to_string(time) + ", expected seconds from 0 to 9e9").c_str());
+    throw nb::value_error(("time is " + std::to_string(time) + ", expected 0 to 9e9 s").c_str());
   const std::chrono::nanoseconds log_time(std::llround(time * 1e9));
   std::vector<std::byte> state;
   std::size_t world = 0;

@@ -30,11 +30,11 @@ using description::Experiment;
 
 double seconds(std::chrono::nanoseconds time) { return std::chrono::duration<double>(time).count(); }
 
-/// What drives the teams of a run: plugins, and classes of Python.
+/// Controllers of the teams of a run: plugins and Python classes.
 class TeamControllers {
  public:
-  /// `controllers`: for each team, in order, the name or the path of a plugin, or what makes an adapter of a class of
-  /// Python. Throws std::runtime_error for a plugin that cannot be loaded.
+  /// Loads the controllers. `controllers` has for each team, in order, the name or path of a plugin, or a maker of
+  /// adapters of a Python class. Throws std::runtime_error for a plugin that cannot be loaded.
   TeamControllers(const nb::list& controllers, const std::vector<fs::path>& folders) {
     for (nb::handle controller : controllers) {
       if (nb::isinstance<nb::str>(controller)) {
@@ -95,7 +95,7 @@ nb::dict run(const std::shared_ptr<const Experiment>& experiment, unsigned threa
     result = session::run_in_process(*experiment, simulation, drivers.kinds(), {}, listener, stop);
     if (recorder) recorder->finish(session::word_of(result.end), result.error);
     if (recorder && recorder->error())
-      throw std::runtime_error("the recording ended before its run: " + *recorder->error());
+      throw std::runtime_error("the recording ended before the run: " + *recorder->error());
   }
   interruption.rethrow();
   return dictionary_of(result);

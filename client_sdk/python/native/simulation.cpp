@@ -25,7 +25,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-/// What Python holds: a simulation, who uses it now, and the view that shows it.
+/// A simulation owned by Python, its current user, and its view.
 class Held {
  public:
   Held(std::shared_ptr<const description::Experiment> experiment, unsigned threads)
@@ -37,14 +37,14 @@ class Held {
   ArraySimulation arrays;
   mutable OneUser user;
 
-  /// Returns what `get` reads of the simulation, which nobody steps meanwhile.
+  /// Calls `get` with the simulation, which is not stepped meanwhile, and returns its result.
   template <class Get>
   auto read(const Get& get) const {
     const OneUser::Turn turn(user);
     return get(arrays.simulation());
   }
 
-  /// The only use of the simulation, by Python and by the view. Begins and ends with Python's global lock.
+  /// Exclusive use of the simulation, by Python or by the view. Starts and ends with Python's global lock held.
   class Turn {
    public:
     explicit Turn(Held& held) : turn_(held.user), view_(held.view_) {
@@ -55,7 +55,7 @@ class Held {
     ~Turn() {
       if (view_ != nullptr) view_->end_turn();
     }
-    /// Shows how the simulation has changed, if it is time.
+    /// Shows the changes of the simulation, if it is time.
     void show() {
       if (view_ != nullptr) view_->changed();
     }
@@ -65,19 +65,19 @@ class Held {
     std::shared_ptr<LiveView> view_;
   };
 
-  /// Throws std::runtime_error if the port is taken.
+  /// Opens a view. Throws std::runtime_error if the port is taken.
   std::shared_ptr<LiveView> open_view(const std::string& page, std::optional<std::uint16_t> port) {
     const OneUser::Turn turn(user);
     close_view();
     return view_ = std::make_shared<LiveView>(arrays, view::read_page(page), port);
   }
 
-  /// The same with a robot. Throws std::invalid_argument if there is no such robot.
+  /// Calls `get` with a robot. Throws std::invalid_argument if there is no such robot.
   template <class Get>
   auto read_robot(std::uint32_t robot, const Get& get) const {
     return read([&](const Simulation& simulation) {
       if (robot >= simulation.robot_count())
-        throw std::invalid_argument("there is no robot " + std::to_string(robot) + ", expected an id below " +
+        throw std::invalid_argument("unknown robot " + std::to_string(robot) + ", expected an id below " +
                                     std::to_string(simulation.robot_count()));
       return get(simulation, robot, simulation.kinds()[simulation.kind_of(robot)]);
     });
@@ -85,7 +85,7 @@ class Held {
   std::uint32_t object_called(const std::string& name) const {
     return read([&](const Simulation& simulation) {
       const auto object = simulation.objects().find(name);
-      if (!object) throw std::invalid_argument("there is no object '" + name + "'");
+      if (!object) throw std::invalid_argument("unknown object '" + name + "'");
       return *object;
     });
   }
@@ -102,7 +102,7 @@ Pose pose_of(const Vector3d& position, const Vector4d& wxyz) {
   Eigen::Quaterniond orientation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   const double norm = orientation.norm();
   if (!position.allFinite() || !std::isfinite(norm) || norm == 0.0)
-    throw std::invalid_argument("a pose needs a finite position [m] and a quaternion (w, x, y, z) that is not zero");
+    throw std::invalid_argument("invalid pose: expected a finite position [m] and a nonzero quaternion (w, x, y, z)");
   orientation.coeffs() /= norm;
   return {position, orientation};
 }
@@ -116,8 +116,8 @@ void append(std::vector<double>& values, const Vector3d& vector) {
   values.insert(values.end(), {vector.x(), vector.y(), vector.z()});
 }
 
-// Steps until the run is over or as often as is asked. Looks for Ctrl-C now and then: the simulation then stands at the
-// boundary that it has reached.
+// Steps at most `ticks` times, optionally until the run is over. Checks for Ctrl-C from time to time; the simulation
+// then stays at the boundary that it has reached.
 std::uint64_t step_simulation(Held& held, std::uint64_t ticks, bool stop_when_over) {
   Held::Turn turn(held);
   constexpr auto look_every = std::chrono::milliseconds(50);
@@ -203,7 +203,7 @@ nb::ndarray<nb::numpy, bool, nb::c_contig> objects_present(const Held& held) {
   return {present, {objects.size()}, owner};
 }
 
-// The array keeps what it shows alive, also after it was replaced by another one.
+// The array keeps its data alive, also after it was replaced by another one.
 template <class Value>
 nb::ndarray<nb::numpy, Value, nb::c_contig> shared_array(const std::shared_ptr<std::vector<double>>& values,
                                                          std::size_t rows, std::size_t columns) {
@@ -236,8 +236,7 @@ std::string apply_force(Held& held, const std::string& name, const std::string& 
                         const Vector3d& torque, double seconds) {
   const double step = std::chrono::duration<double>(held.arrays.experiment().world.step).count();
   if (!(seconds >= 0.0 && seconds <= 1e6))
-    throw std::invalid_argument("the duration of a force is " + std::to_string(seconds) +
-                                ", expected seconds from 0 (one step) to 1e6");
+    throw std::invalid_argument("duration is " + std::to_string(seconds) + ", expected 0 (one step) to 1e6 s");
   const std::int64_t steps = std::max<std::int64_t>(1, std::llround(seconds / step));
   return act(held, ApplyForce{name, link, force, torque, held.arrays.experiment().world.step * steps});
 }
@@ -248,7 +247,7 @@ nb::bytes save(Held& held) {
   return nb::bytes(bytes.data(), bytes.size());
 }
 
-// The simulation keeps it, so nothing else may read meanwhile.
+// Computes the hash, which the simulation caches, so it excludes other readers.
 std::uint64_t state_hash(Held& held) {
   const Held::Turn turn(held);
   return held.arrays.simulation().state_hash();

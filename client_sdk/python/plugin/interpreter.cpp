@@ -15,30 +15,29 @@
 #include <system_error>
 #include <vector>
 
-// This library links no Python: the functions below are looked up in that of the user.
+// This library is not linked against Python: it looks up the functions below in the user's Python.
 namespace cohort::python {
 namespace {
 
 namespace fs = std::filesystem;
 
 // Prints where the interpreter and its shared library are.
-constexpr const char* tell_where =
-    "import os, sys, sysconfig\n"
-    "value = sysconfig.get_config_var\n"
-    "folders = [value(\"LIBDIR\"), value(\"LIBPL\"), os.path.join(sys.base_prefix, \"lib\")]\n"
-    "names = [value(\"INSTSONAME\"), value(\"LDLIBRARY\")]\n"
-    "files = [os.path.join(folder, name) for folder in folders for name in names if folder and name and \".so\" in "
-    "name]\n"
-    "print(sys.executable)\n"
-    "print(next(filter(os.path.exists, files), \"\"))\n";
+constexpr const char* tell_where = R"(import os, sys, sysconfig
+value = sysconfig.get_config_var
+folders = [value("LIBDIR"), value("LIBPL"), os.path.join(sys.base_prefix, "lib")]
+names = [value("INSTSONAME"), value("LDLIBRARY")]
+files = [os.path.join(folder, name) for folder in folders for name in names if folder and name and ".so" in name]
+print(sys.executable)
+print(next(filter(os.path.exists, files), ""))
+)";
 
 struct Found {
-  std::string interpreter;  // as it is named, for messages
+  std::string interpreter;  // its name in messages
   std::string executable{};
   std::string library{};
 };
 
-std::string advice() { return ". Set COHORT_PYTHON to the Python of an environment with the Python package of Cohort"; }
+std::string advice() { return ". Set COHORT_PYTHON to a Python interpreter that has the Python package of Cohort"; }
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -61,7 +60,7 @@ Found find_interpreter() {
   const std::vector<std::string> lines = lines_of(said);
   if (lines.size() < 2 || !fs::path(lines[lines.size() - 2]).is_absolute())
     throw std::runtime_error("the Python interpreter '" + found.interpreter + "' cannot be run (" +
-                             (lines.empty() ? "it says nothing" : lines.back()) + ")" + advice());
+                             (lines.empty() ? "no output" : lines.back()) + ")" + advice());
   found.executable = lines[lines.size() - 2];
   found.library = lines.back();
   if (found.library.empty())
@@ -71,12 +70,12 @@ Found find_interpreter() {
   return found;
 }
 
-// What is called of Python's stable interface.
+// The functions used of Python's stable interface.
 struct Python {
   Found found = find_interpreter();
   void* library = ::dlopen(found.library.c_str(), RTLD_NOW | RTLD_GLOBAL);  // extension modules bind to it
 
-  // Deprecated, and yet of the stable interface, which has nothing else for it.
+  // Deprecated, but the stable interface has no replacement.
   void (*set_program_name)(const wchar_t*) = function("Py_SetProgramName");
   decltype(&Py_DecodeLocale) decode_locale = function("Py_DecodeLocale");
   decltype(&Py_InitializeEx) initialize = function("Py_InitializeEx");
@@ -105,10 +104,10 @@ struct Python {
     if (address != nullptr) return {address};
     const char* const error = ::dlerror();
     throw std::runtime_error("the Python interpreter " + found.executable + " cannot be embedded: " +
-                             (error != nullptr ? error : "its library cannot be loaded") + advice());
+                             (error != nullptr ? error : "its shared library cannot be loaded") + advice());
   }
 
-  // What Python has raised.
+  // Returns the message of the current Python exception.
   std::string raised() const {
     PyObject *type = nullptr, *value = nullptr, *traceback = nullptr;
     fetch_error(&type, &value, &traceback);
@@ -120,7 +119,7 @@ struct Python {
   }
 };
 
-// The folder of the package where this plugin is that of a build tree.
+// Returns the folder of the package if this plugin is in a build tree.
 fs::path package_of_build_tree() {
   Dl_info here{};
   if (::dladdr(reinterpret_cast<const void*>(&controllers_of_package), &here) == 0) return {};
@@ -138,12 +137,11 @@ void put_first_on_path(const Python& python, const fs::path& folder) {
 
 Python start_interpreter() {
   Python python;
-  // From the name of its program Python finds its libraries, and the virtual environment that it is in. It keeps the
-  // pointer.
+  // From the name of its program, Python finds its libraries and its virtual environment. It keeps the pointer.
   wchar_t* const name = python.decode_locale(python.found.executable.c_str(), nullptr);
-  if (name == nullptr) throw std::runtime_error(python.found.executable + " is no path in this locale");
+  if (name == nullptr) throw std::runtime_error(python.found.executable + " is not a valid path in this locale");
   python.set_program_name(name);
-  python.initialize(0);  // without handlers of signals
+  python.initialize(0);  // without signal handlers
   if (const fs::path folder = package_of_build_tree(); !folder.empty()) put_first_on_path(python, folder);
   python.save_thread();
   return python;
@@ -152,7 +150,7 @@ Python start_interpreter() {
 const FileControllers& import_package() {
   static const Python python = start_interpreter();
   const PyGILState_STATE state = python.lock();
-  // By itself first: what PyCapsule_Import says of a module that it cannot import leaves out why.
+  // Import it first, because errors of PyCapsule_Import lack the reason of a failed import.
   PyObject* const module = python.import("cohort._hosting");
   const void* const capsule = module != nullptr ? python.import_capsule(FileControllers::capsule, 0) : nullptr;
   const std::string error = capsule != nullptr ? "" : python.raised();
@@ -164,7 +162,7 @@ const FileControllers& import_package() {
   const auto& controllers = *static_cast<const FileControllers*>(capsule);
   if (std::string_view(controllers.version) != COHORT_VERSION)
     throw std::runtime_error("the Python package of Cohort in " + python.found.executable + " has version " +
-                             controllers.version + ", expected " + COHORT_VERSION + ", that of this program");
+                             controllers.version + ", expected " + COHORT_VERSION + ", the version of this program");
   return controllers;
 }
 

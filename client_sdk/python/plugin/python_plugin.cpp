@@ -3,12 +3,13 @@
 
 #include "client_sdk/python/plugin/interpreter.hpp"
 
-// The plugin by which `cohort` runs controllers in files of Python.
+// The plugin with which `cohort` runs controllers in Python files.
 
 extern "C" __attribute__((visibility("default"))) const cohort::Plugin cohort_plugin = {
     cohort::Plugin::current_abi, "python",
     []() -> cohort::Controller* {
-      throw std::runtime_error("the plugin 'python' needs a file: name the file of a controller, such as wanderer.py");
+      throw std::runtime_error(
+          "the plugin 'python' cannot be used alone; give a controller's file, such as wanderer.py");
     },
     [](cohort::Controller* controller) { delete controller; }};
 

@@ -10,7 +10,7 @@
 #include "client_sdk/include/cohort/control.hpp"
 #include "client_sdk/src/c_options.hpp"
 
-// What stands behind the handle, with what the last calls gave.
+// The handle, with the results of the last calls.
 struct CohortControl {
   explicit CohortControl(const cohort::ControlOptions& options) : control(options) { control.stop_on(&cancelled); }
 
@@ -49,7 +49,7 @@ CohortResult result_in_c(ControlResult result) {
   return cohort_result_failed;
 }
 
-// Calls `ask` with the handle. 0, or -1 with the last error.
+// Calls `ask` with the handle. Returns 0, or -1 with the last error.
 template <class Ask>
 int attempt(CohortControl* handle, const Ask& ask) {
   handle->result = cohort_result_ok;
@@ -199,7 +199,7 @@ int cohort_control_set_entity_state(CohortControl* control, const char* entity, 
     else if (pose != nullptr)
       it.control.set_pose(entity, cohort::pose_from_c(pose));
     else
-      throw cohort::ControlError("neither a pose nor a twist was given", cohort::ControlResult::malformed);
+      throw cohort::ControlError("expected a pose, a twist or both", cohort::ControlResult::malformed);
   });
 }
 

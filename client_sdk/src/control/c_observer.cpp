@@ -15,7 +15,7 @@ struct CohortObserver {
 
   cohort::Observer observer;
   cohort::WorldState state{};
-  std::vector<CohortPose> poses{};  // of the state
+  std::vector<CohortPose> poses{};  // poses of the state
   std::vector<cohort::ObservedRobot> robots{};
   std::vector<CohortRunEvent> events{};
 };
@@ -25,12 +25,12 @@ namespace {
 
 std::chrono::milliseconds limit_of(int milliseconds) { return std::chrono::milliseconds(std::max(milliseconds, 0)); }
 
-// Returns the count that `ask` brings; -1 if it brings none, with the last error.
+// Returns the count from `ask`; -1 with the last error if there is none.
 template <class Ask>
 int64_t count_of(const Ask& ask) {
   try {
     if (const std::optional<std::size_t> count = ask()) return static_cast<int64_t>(*count);
-    last_error() = "the server has not answered in time";
+    last_error() = "no answer from the server within the time limit";
   } catch (const std::exception& error) {
     last_error() = error.what();
   }

@@ -31,14 +31,14 @@ struct Control::State {
 
   ControlError no_reply(milliseconds limit) const {
     if (flag()) return ControlError("interrupted", ControlResult::interrupted);
-    if (client.server_is_gone()) return ControlError("the server has gone", ControlResult::server_gone);
+    if (client.server_is_gone()) return ControlError("the server is gone", ControlResult::server_gone);
     std::ostringstream seconds;
     seconds << 1e-3 * static_cast<double>(limit.count());
-    const char* const why = client.sees_server() ? "" : ": no server that can be controlled is there";
-    return ControlError("it was not done within " + seconds.str() + " s" + why, ControlResult::no_answer);
+    const char* const why = client.sees_server() ? "" : ": no controllable server found";
+    return ControlError("request not done within " + seconds.str() + " s" + why, ControlResult::no_answer);
   }
 
-  // Throws unless it was done.
+  // Sends a request and returns its reply. Throws unless it was done.
   wire::Reply request(const wire::Operation& operation, Takes takes = Takes::a_moment) {
     const milliseconds limit = time_limit.value_or(takes == Takes::a_moment ? usual_limit : no_limit);
     auto reply = client.ask(operation, limit, flag());
@@ -54,12 +54,12 @@ struct Control::State {
     return last;
   }
 
-  // What the operation returns.
+  // Returns the result of the operation.
   template <class One>
   typename One::Returned get(const One& operation) {
     wire::Reply reply = request(operation);
     if (auto* const returned = std::get_if<typename One::Returned>(&reply.returned)) return std::move(*returned);
-    throw ControlError("the server's reply to " + wire::name_of(One::code) + " does not have what it was asked for",
+    throw ControlError("the server's reply to " + wire::name_of(One::code) + " lacks the requested data",
                        ControlResult::bad_reply);
   }
 
@@ -89,7 +89,7 @@ SimulationState Control::state() { return state_->perform(wire::GetSimulationSta
 SimulationStatus Control::status() {
   const wire::Reply reply = state_->request(wire::GetStatus{});
   if (const auto* const status = reply.get<wire::SimulationStatus>()) return status_from_wire(reply, *status);
-  throw ControlError("the server says nothing of its run", ControlResult::bad_reply);
+  throw ControlError("the server's reply lacks the status of the run", ControlResult::bad_reply);
 }
 
 ControlReply Control::play() { return state_->perform(wire::SetSimulationState{SimulationState::playing}); }
@@ -120,6 +120,13 @@ ControlReply Control::reset(std::optional<std::uint64_t> seed, ResetScope scope)
 ControlReply Control::back(std::chrono::nanoseconds time) {
   return state_->perform(wire::GoBack{time.count()}, Takes::as_long_as_the_run);
 }
+
+ControlReply Control::hold_time() { return state_->perform(wire::AdvanceTime{}); }
+ControlReply Control::advance_time(std::uint64_t steps) {
+  if (steps == 0) throw ControlError("steps is 0, expected at least 1", ControlResult::malformed);
+  return state_->perform(wire::AdvanceTime{.steps = steps}, Takes::as_long_as_the_run);
+}
+ControlReply Control::release_time() { return state_->perform(wire::AdvanceTime{.release = true}); }
 
 ControlReply Control::set_speed(double speed) { return state_->perform(wire::SetSpeed{speed}); }
 
@@ -175,14 +182,13 @@ std::vector<std::byte> Control::save_snapshot() {
   const std::uint64_t size = state_->get(wire::SaveSnapshot{}).size;
   const ControlReply saved = state_->last;
   if (size > wire::largest_data)
-    throw ControlError("the server says that its snapshot is larger than may be", ControlResult::bad_reply);
+    throw ControlError("the server announced a snapshot that is too large", ControlResult::bad_reply);
   std::vector<std::byte> bytes;
   bytes.reserve(size);
   while (bytes.size() < size) {
     const wire::DataPart part = state_->get(wire::GetData{bytes.size()});
     if (part.offset != bytes.size() || part.size != size || part.data.empty() || part.data.size() > size - bytes.size())
-      throw ControlError("the server sends another part of the snapshot than it was asked for",
-                         ControlResult::bad_reply);
+      throw ControlError("the server sent the wrong part of the snapshot", ControlResult::bad_reply);
     const auto data = std::as_bytes(std::span(part.data));
     bytes.insert(bytes.end(), data.begin(), data.end());
   }
@@ -210,8 +216,7 @@ RecordingPart Control::fetch_recording(std::uint64_t offset) {
   const auto bytes = std::as_bytes(std::span(data.data));
   const std::uint64_t end = offset + bytes.size();
   if (data.offset != offset || (data.size != 0 && data.size < end))
-    throw ControlError("the server sends another part of the recording than it was asked for",
-                       ControlResult::bad_reply);
+    throw ControlError("the server sent the wrong part of the recording", ControlResult::bad_reply);
   return {{bytes.begin(), bytes.end()}, data.size != 0 && data.size == end, state_->last.message};
 }
 
@@ -225,7 +230,7 @@ std::string Control::save_recording(const std::filesystem::path& file) {
     size += part.bytes.size();
     if (part.bytes.empty() && !part.is_last) std::this_thread::sleep_for(fetches_again_after);
     if (!part.is_last) continue;
-    // The server may go once it knows that all has arrived; it may have gone already.
+    // The server may exit once it knows that everything has arrived; it may already have exited.
     state_->client.ask(wire::GetRecording{size}, for_last_word, state_->flag());
     return part.problem;
   }

@@ -10,17 +10,18 @@
 #include <utility>
 #include <variant>
 
+#include "client_sdk/src/network_clock.hpp"
 #include "client_sdk/src/this_process.hpp"
 #include "client_sdk/text/printable.hpp"
 
 namespace cohort {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = NetworkClock;
 using namespace std::chrono_literals;
 
 constexpr auto look_interval = 10ms;
-constexpr std::chrono::milliseconds first_interval{50};  // after which a request is asked again
+constexpr std::chrono::milliseconds first_interval{50};  // until a request is sent again
 constexpr std::chrono::milliseconds longest_interval{1000};
 
 std::optional<wire::Identity> identity_of(const ControlOptions& options) {
@@ -28,12 +29,12 @@ std::optional<wire::Identity> identity_of(const ControlOptions& options) {
   wire::Identity identity = wire::read_identity(options.secure);
   if (!identity.may_control && identity.role != wire::Role::observer)
     throw wire::WireError("the identity in " + options.secure +
-                          " may neither control a run nor look on; one that may control is made by 'cohort security "
-                          "add DIR NAME --robots none,control', and that of observers looks on");
+                          " can neither control nor observe a run. Create one that can control with 'cohort security "
+                          "add DIR NAME --robots none,control', or use the observers' identity");
   return identity;
 }
 
-// Make what a server says fit to be shown.
+// Make texts from a server safe to print.
 void clean(wire::EntityName& name) { name.entity = printable(name.entity); }
 void clean(wire::EntityNames& names) {
   for (std::string& entity : names.entities) entity = printable(entity);
@@ -64,7 +65,7 @@ struct ControlClient::State {
                 wire::partition_of(id), static_cast<int>(wire::requests_under_way)),
         requests(participant) {}
 
-  // On a thread of DDS.
+  // Called on a DDS thread.
   void receive(const wire::Reply& reply) {
     if (reply.client != id) return;
     {
@@ -84,7 +85,7 @@ struct ControlClient::State {
   const std::uint64_t id = random_id();
   const std::string label;
   std::uint64_t next_number = 1;
-  std::optional<Clock::time_point> seen_at;  // a server, for the last time
+  std::optional<Clock::time_point> seen_at;  // when a server was last seen
 
   std::mutex mutex;
   std::condition_variable wake;
@@ -108,6 +109,7 @@ bool ControlClient::server_is_gone() const {
 }
 
 bool ControlClient::wait_for_server(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
+  const WaitsByNetworkClock real_time;
   const auto until = Clock::now() + at_most;
   while (!state_->sees_server()) {
     if (stop || Clock::now() > until) return false;
@@ -119,6 +121,7 @@ bool ControlClient::wait_for_server(std::chrono::milliseconds at_most, const std
 std::optional<wire::Reply> ControlClient::ask(wire::Operation operation, std::chrono::milliseconds at_most,
                                               const std::atomic<bool>& stop) {
   State& state = *state_;
+  const WaitsByNetworkClock real_time;
   const auto begin = Clock::now();
   const auto is_late = [&] { return Clock::now() - begin > at_most; };
   const wire::Request request{
@@ -131,7 +134,7 @@ std::optional<wire::Reply> ControlClient::ask(wire::Operation operation, std::ch
   Clock::time_point ask_at = begin;
   std::chrono::milliseconds interval = first_interval;
   while (!stop && !is_late() && !server_is_gone()) {
-    // What is written before anybody reads it is lost.
+    // Data written before there is a reader is lost.
     if (state.sees_server() && Clock::now() >= ask_at) {
       state.requests.write(request);
       ask_at = Clock::now() + interval;

@@ -11,27 +11,27 @@
 
 namespace cohort {
 
-/// Sends the requests of docs/protocol.md, "Control", and waits for their replies: what Control and Observer stand on.
-/// Requests are asked again until their reply comes; the server does each once. One thread uses it.
+/// Sends the requests of docs/protocol.md, "Control", and waits for their replies; the base of Control and Observer.
+/// Requests are sent again until their reply arrives; the server performs each once. For one thread.
 class ControlClient {
  public:
   /// Does not wait for the server. Throws wire::WireError if its address or the identity cannot be used.
   explicit ControlClient(const ControlOptions& options);
   ~ControlClient();
 
-  /// Waits until a server is there; false if none is within `at_most`, or `stop` is set.
+  /// Waits for a server; returns false if none is there within `at_most`, or if `stop` is set.
   bool wait_for_server(std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
 
-  /// Asks and waits for the reply, whatever its result is. Nothing if none comes within `at_most`, `stop` is set, or
-  /// the server goes; what was asked for may happen all the same.
+  /// Sends a request and returns its reply, with any result. Returns nothing if none arrives within `at_most`, if
+  /// `stop` is set, or if the server is gone; the request may still be done.
   std::optional<wire::Reply> ask(wire::Operation operation, std::chrono::milliseconds at_most,
                                  const std::atomic<bool>& stop);
-  /// Returns whether a server is there that takes requests.
+  /// Returns true if there is a server that accepts requests.
   bool sees_server() const;
-  /// A server was there, and is there no more.
+  /// Returns true if a server was there and is gone.
   bool server_is_gone() const;
 
-  /// Through which it asks; for readers of its owner, which must not outlive it.
+  /// Returns the participant of the requests; for readers of the owner, which must not outlive it.
   wire::Participant& participant();
 
  private:
@@ -39,7 +39,7 @@ class ControlClient {
   std::unique_ptr<State> state_;
 };
 
-/// Makes one. Throws ControlError (`no_attachment`) if the server's address or the identity cannot be used.
+/// Creates a client. Throws ControlError (`no_attachment`) if the server's address or the identity cannot be used.
 ControlClient attach(const ControlOptions& options);
 
 }  // namespace cohort

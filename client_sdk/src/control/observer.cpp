@@ -25,12 +25,12 @@ constexpr std::size_t numbers_of_a_pose = 7;
 constexpr milliseconds asks_for_robots_for{1'000};
 constexpr milliseconds until_readers_are_missed{500};
 
-// Throws ControlError if it cannot look on.
+// Returns the options. Throws ControlError if they do not allow to observe.
 ControlOptions checked(const ObserverOptions& options) {
   try {
     if (!options.secure.empty() && wire::read_identity(options.secure).role != wire::Role::observer)
       throw wire::WireError("the identity in " + options.secure +
-                            " is not that of observers, which 'cohort security init' makes as 'observer'");
+                            " is not an observer's. Use the identity 'observer' from 'cohort security init'");
   } catch (const wire::WireError& error) {
     throw ControlError(error.what(), ControlResult::no_attachment);
   }
@@ -74,7 +74,7 @@ struct Observer::State {
                {[this](const wire::SceneDescription& scene, const wire::Sender&) { receive(scene); }, {}},
                view_partition) {}
 
-  // On threads of DDS.
+  // Called on DDS threads.
 
   void receive(const wire::WorldState& state) {
     if (!is_whole(state)) return;
@@ -98,7 +98,7 @@ struct Observer::State {
         end = ObserverEnded{ObserverEnd::run_ended, printable(scene.end), printable(scene.end_text)};
       }
       notify();
-    } catch (const messages::CdrError&) {  // of a server of another version: there are no names
+    } catch (const messages::CdrError&) {  // from a server of another version: names are missing
     }
   }
 
@@ -118,7 +118,7 @@ struct Observer::State {
     notify();
   }
 
-  // With the lock.
+  // Called with the lock held.
 
   void notify() {
     descriptor.set_readable(!waiting.empty() || is_over());
@@ -126,8 +126,8 @@ struct Observer::State {
   }
   bool is_over() const { return end.has_value() || (had_server && servers.empty()); }
 
-  // The server describes its scene when a reader of updates has come. It counts these readers now and then, so one that
-  // takes the place of another may not be noticed, while the run is paused.
+  // The server describes its scene when a new reader of updates appears. It counts these readers from time to time, so
+  // while the run is paused it may not notice one that replaces another.
   std::optional<std::vector<ObservedRobot>> ask_for_robots(milliseconds at_most) {
     {
       const std::lock_guard lock(mutex);
@@ -136,7 +136,7 @@ struct Observer::State {
     const wire::Reader<wire::SceneUpdate> updates(
         client.participant(), {[this](const wire::SceneUpdate& update, const wire::Sender&) { receive(update); }, {}},
         view_partition);
-    std::unique_lock lock(mutex);  // goes before the reader, which waits for its callback
+    std::unique_lock lock(mutex);  // destroyed before the reader, which waits for its callback
     const auto is_described = [&] { return revision && described && described->revision == *revision; };
     changed.wait_for(lock, at_most, [&] { return is_described() || is_over(); });
     if (!is_described()) return std::nullopt;
@@ -149,18 +149,18 @@ struct Observer::State {
   };
 
   EventDescriptor descriptor;
-  mutable std::mutex mutex;  // guards all down to the client
+  mutable std::mutex mutex;  // guards the following members up to the client
   std::condition_variable changed;
   std::deque<WorldState> waiting;
   std::optional<WorldState> newest;
-  std::optional<ObserverEnded> end;  // as the server said
-  std::set<std::uint64_t> servers;   // writers of world states that live
+  std::optional<ObserverEnded> end;  // as reported by the server
+  std::set<std::uint64_t> servers;   // live writers of world states
   bool had_server = false;
   std::optional<Described> described;
-  std::optional<std::uint32_t> revision;  // of the last update, while robots are asked for
+  std::optional<std::uint32_t> revision;  // that of the last update, during a request for robots
 
   const std::atomic<bool> never{false};
-  RunHistory known;  // revision and run of what was returned last
+  RunHistory known;  // revision and run of the last result
   ControlClient client;
   wire::Reader<wire::WorldState> states;
   wire::Reader<wire::SceneDescription> scenes;
@@ -191,7 +191,7 @@ std::optional<ObserverEnded> Observer::ended() const {
   const std::lock_guard lock(state_->mutex);
   if (state_->end) return state_->end;
   if (!state_->is_over()) return std::nullopt;
-  return ObserverEnded{ObserverEnd::server_gone, "", "the server has gone"};
+  return ObserverEnded{ObserverEnd::server_gone, "", "the server is gone"};
 }
 
 std::optional<std::vector<ObservedRobot>> Observer::robots(milliseconds at_most) {

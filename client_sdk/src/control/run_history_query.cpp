@@ -15,8 +15,7 @@ messages::RunHistory decode_part(const wire::HistoryPart& part) {
   try {
     return messages::decode<messages::RunHistory>(std::as_bytes(std::span(part.data)));
   } catch (const messages::CdrError& error) {
-    throw ControlError(std::string("the server sends a history that cannot be read: ") + error.what(),
-                       ControlResult::bad_reply);
+    throw ControlError(std::string("the server sent an invalid history: ") + error.what(), ControlResult::bad_reply);
   }
 }
 
@@ -41,7 +40,7 @@ RunHistory query_history(std::uint64_t since, const std::function<wire::Reply(co
   for (;;) {
     const wire::Reply reply = ask({history.revision});
     const auto* const part = reply.get<wire::HistoryPart>();
-    if (part == nullptr) throw ControlError("the server sends no history", ControlResult::bad_reply);
+    if (part == nullptr) throw ControlError("the server's reply lacks the history", ControlResult::bad_reply);
     if (reply.run != history.run) {  // each run counts its revisions from 0
       const bool was_asked_of_it = history.run == 0;
       history.events.clear();

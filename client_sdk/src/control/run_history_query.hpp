@@ -7,8 +7,8 @@
 
 namespace cohort {
 
-/// Asks for all that has happened since a revision, part by part; `ask` returns the reply to a GetHistory that was
-/// done. Throws ControlError (`bad_reply`) if a reply has no history.
+/// Requests all events since a revision part by part; `ask` returns the reply to a successful GetHistory. Throws
+/// ControlError (`bad_reply`) if a reply has no history.
 RunHistory query_history(std::uint64_t since, const std::function<wire::Reply(const wire::GetHistory&)>& ask);
 
 }  // namespace cohort

@@ -12,8 +12,8 @@
 
 namespace cohort::geometry {
 
-/// The square cells of a uniform grid over the xy plane, and how they are kept in a limited number of buckets. Tiles of
-/// 8 x 8 cells are hashed, so that cells side by side in a tile are so in memory: those of a row follow each other.
+/// The square cells of a uniform grid over the xy plane, stored in a limited number of buckets. Tiles of 8 x 8 cells
+/// are hashed, so that neighbouring cells of a tile are near each other in memory and those of a row are contiguous.
 class Cells {
  public:
   static constexpr std::int64_t tile_edge = 8;  ///< in cells
@@ -24,10 +24,10 @@ class Cells {
   }
   double size() const { return edge_; }  ///< [m]
 
-  /// Of the column or row that a coordinate is in.
+  /// Returns the index of the column or row that contains a coordinate.
   std::int64_t index_of(double coordinate) const { return integer_floor(coordinate * inverse_); }
 
-  /// Chooses the number of buckets for so many items, and returns it. Different cells may share a bucket.
+  /// Chooses the number of buckets for this many items and returns it. Different cells may share a bucket.
   std::size_t choose_buckets(std::size_t items) {
     constexpr std::size_t cells_a_tile = tile_edge * tile_edge;
     const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(cells_a_tile, 4 * items));
@@ -41,28 +41,28 @@ class Cells {
     return static_cast<std::size_t>(((hash ^ hash >> 29) & mask_) << 6 | (y & 7) << 3 | (x & 7));
   }
 
-  /// How far along a ray of length `range` there is anything of what lies within `extent`. Short rays are taken as they
-  /// are: they cross so few cells that asking costs more.
+  /// Returns how far along a ray of length `range` anything within `extent` can be. Short rays keep their length: they
+  /// cross so few cells that the test would cost more.
   double end_of(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
                 const Bounds& extent) const {
     constexpr double few = 8.0;
     return range > few * edge_ ? std::min(range, extent.last_along(origin, direction)) : range;
   }
 
-  /// Whether to look at so many items one by one takes no longer than to look into all cells of a rectangle. So a
-  /// search has a bound, however small the cells are and wherever it leads.
+  /// Returns whether testing this many items one by one takes no longer than visiting all cells of a rectangle. This
+  /// bounds the cost of a search for any cell size and any rectangle.
   bool are_more_than(std::size_t items, const Bounds& rectangle) const {
     const Eigen::Vector2d size = (rectangle.upper - rectangle.lower).head<2>().cwiseMax(0.0);
     return !((size.x() * inverse_ + 2.0) * (size.y() * inverse_ + 2.0) <= most_cells_of(items));
   }
-  /// The same of the cells along a ray that ends at `end`.
+  /// Returns the same for the cells along a ray that ends at `end`.
   bool along_are_more_than(std::size_t items, const Eigen::Vector3d& direction, double end) const {
     const double across = std::abs(direction.x()) + std::abs(direction.y());
     return across != 0.0 && !(end * across * inverse_ <= most_cells_of(items));
   }
 
-  /// Calls `visit(column, row)` for the cells along a ray of unit direction, near ones first. `visit` returns how far
-  /// along the ray the search may end, which may shrink from call to call.
+  /// Calls `visit(column, row)` for the cells along a ray of unit direction, near ones first. `visit` returns the
+  /// distance at which the search may end, which may decrease from call to call.
   template <class Visit>
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Visit&& visit) const {
     std::int64_t column = index_of(origin.x());
@@ -99,7 +99,7 @@ class Cells {
 
   double edge_ = 1.0;
   double inverse_ = 1.0;
-  std::uint64_t mask_ = 0;  // of the tiles
+  std::uint64_t mask_ = 0;  // mask of the hash of tiles
 };
 
 }  // namespace cohort::geometry

@@ -8,7 +8,8 @@ void CornerGrid::build(std::span<const std::uint32_t> items, const std::vector<B
   extent_ = bounds[items[0]];
   for (const std::uint32_t item : items) extent_.include(bounds[item]);
 
-  // Counting sort into buckets: sizes, then ends, then items from the last to the first, which leaves the beginnings.
+  // Counting sort into buckets: count, then prefix sums, then insert the items from the last to the first, which leaves
+  // the start of each bucket.
   const std::size_t buckets = cells_.choose_buckets(items.size());
   begin_.assign(buckets + 1, 0);
   buckets_.resize(items.size());

@@ -10,20 +10,20 @@
 
 namespace cohort::geometry {
 
-/// A uniform grid over the xy plane, hashed, so that it has no edge, for items that are no wider than a cell: each is
-/// in one cell only, that of the lower corner of its bounds, and its bounds with it, so that a query reads a few short
-/// stretches of memory. Built at once; queries may then run from any thread.
+/// A uniform grid over the xy plane, hashed and therefore unbounded, for items that are no wider than a cell. Each
+/// item, with its bounds, is only in the cell of the lower corner of its bounds; a query reads a few short ranges of
+/// memory. Built at once; threads may then query it concurrently.
 class CornerGrid {
  public:
   void set_cell_size(double edge) { cells_.set_size(edge); }
   double cell_size() const { return cells_.size(); }
 
-  /// `items`: indices; `bounds[item]` must be finite, and at most as wide as a cell along x and y. Equal input gives an
-  /// equal grid, whatever was in it before.
+  /// Builds the grid. `items`: indices; `bounds[item]` must be finite, and at most as wide as a cell along x and y.
+  /// Equal input gives an equal grid, regardless of its earlier content.
   void build(std::span<const std::uint32_t> items, const std::vector<Bounds>& bounds);
 
-  /// Calls `visit(item)` once for each item whose bounds overlap `query`, in an order that depends on the grid's
-  /// content alone. The query may be infinite.
+  /// Calls `visit(item)` once for each item whose bounds overlap `query`, in an order that depends only on the content
+  /// of the grid. The query may be infinite.
   template <class Visit>
   void for_each_overlap(const Bounds& query, Visit&& visit) const {
     if (entries_.empty()) return;
@@ -46,9 +46,9 @@ class CornerGrid {
     }
   }
 
-  /// Calls `visit(item)` for all items that may be on a ray of unit direction, near ones first, some more than once;
-  /// for all items if the ray is long for cells of this size. `visit` returns how far along the ray the search may end,
-  /// which may shrink from call to call. `range` may be infinite.
+  /// Calls `visit(item)` for all items that may be on a ray of unit direction, near ones first, some more than once.
+  /// Visits all items if the ray is long for cells of this size. `visit` returns the distance at which the search may
+  /// end, which may decrease from call to call. `range` may be infinite.
   template <class Visit>
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
                       Visit&& visit) const {
@@ -72,7 +72,7 @@ class CornerGrid {
     std::uint32_t item = 0;
   };
 
-  // All in the buckets of these cells.
+  // Visits all items in the buckets of these cells.
   template <class Visit>
   void for_each_in_row(std::int64_t first, std::int64_t last, std::int64_t row, Visit&& visit) const {
     while (first <= last) {
@@ -85,10 +85,10 @@ class CornerGrid {
   }
 
   Cells cells_;
-  std::vector<std::uint32_t> begin_;  // of each bucket in entries_, and one past the last
+  std::vector<std::uint32_t> begin_;  // start of each bucket in entries_, and one past the last
   std::vector<Entry> entries_;
-  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of all items
-  std::vector<std::uint32_t> buckets_;                               // of the items, while the grid is built
+  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // bounds of all items
+  std::vector<std::uint32_t> buckets_;                               // buckets of the items, used while building
 };
 
 }  // namespace cohort::geometry

@@ -10,20 +10,21 @@
 
 namespace cohort::geometry {
 
-/// A uniform grid over the xy plane, hashed, so that it has no edge. Holds items by index, each in every cell that its
-/// bounds touch. Built at once; queries may then run from any thread.
+/// A uniform grid over the xy plane, hashed and therefore unbounded. Holds items by index, each in every cell that its
+/// bounds touch. Built at once; threads may then query it concurrently.
 class Grid {
  public:
   void set_cell_size(double edge) { cells_.set_size(edge); }
 
-  /// Cells that `bounds` touches; more than any grid should hold if it is very large.
+  /// Returns the number of cells that `bounds` touches; for very large bounds, it exceeds what a grid should hold.
   double cells_covered(const Bounds& bounds) const;
 
-  /// `items`: indices; `bounds[item]` must be finite. Equal input gives an equal grid, whatever was in it before.
+  /// Builds the grid. `items`: indices; `bounds[item]` must be finite. Equal input gives an equal grid, regardless of
+  /// its earlier content.
   void build(std::span<const std::uint32_t> items, const std::vector<Bounds>& bounds);
 
-  /// Calls `visit(item)` once for each item of the grid whose bounds overlap `query`, in an order that depends on the
-  /// grid's content alone.
+  /// Calls `visit(item)` once for each item of the grid whose bounds overlap `query`, in an order that depends only on
+  /// the content of the grid.
   template <class Visit>
   void for_each_overlap(const Bounds& query, const std::vector<Bounds>& bounds, Visit&& visit) const {
     if (entries_.empty()) return;
@@ -44,7 +45,7 @@ class Grid {
           if (i > 0 && items[i - 1] == item) continue;  // two of its cells fell into this bucket
           const Bounds& other = bounds[item];
           if (!query.overlaps(other)) continue;
-          // Of the cells that both touch, the lowest one reports.
+          // The lowest cell that both touch reports the item.
           if (std::max(first, cells_.index_of(other.lower.x())) == column &&
               std::max(first_row, cells_.index_of(other.lower.y())) == row)
             visit(item);
@@ -52,9 +53,9 @@ class Grid {
       }
   }
 
-  /// Calls `visit(item)` for the items of the cells along a ray, near cells first, some items more than once; all items
-  /// if the ray is long for cells of this size. `visit` returns how far along the ray the search may end, which may
-  /// shrink from call to call. `range` may be infinite.
+  /// Calls `visit(item)` for the items of the cells along a ray, near cells first, some items more than once. Visits
+  /// all items if the ray is long for cells of this size. `visit` returns the distance at which the search may end,
+  /// which may decrease from call to call. `range` may be infinite.
   template <class Visit>
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
                       Visit&& visit) const {
@@ -77,10 +78,10 @@ class Grid {
   }
 
   Cells cells_;
-  std::vector<std::uint32_t> begin_;    // of each bucket in entries_, and one past the last
+  std::vector<std::uint32_t> begin_;    // start of each bucket in entries_, and one past the last
   std::vector<std::uint32_t> entries_;  // items, ascending within a bucket
   std::vector<std::uint32_t> items_;    // each once
-  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of all items
+  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // bounds of all items
 };
 
 }  // namespace cohort::geometry

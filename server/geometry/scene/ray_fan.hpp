@@ -6,21 +6,21 @@
 
 namespace cohort::geometry {
 
-/// Several rays from about one place, as of a ring of sensors: what they may hit is looked for once, and each ray tests
-/// the nearest of it first. For as long as nothing moves.
+/// Several rays from about one place, such as those of a ring of sensors. Their candidates are searched once, and each
+/// ray tests the nearest first. Valid as long as nothing moves.
 class RayFan {
  public:
-  /// All rays stay inside `region` and start near `centre_W`: the nearer, the faster. Those of `ignored_body` are left
-  /// out.
+  /// Prepares for rays that stay inside `region` and start near `centre_W`: the nearer, the faster. Solids of
+  /// `ignored_body` are ignored.
   RayFan(const Scene& scene, const Eigen::Vector3d& centre_W, const Bounds& region,
          BodyId ignored_body = Scene::no_body);
 
-  /// The same as `Scene::cast_ray`, bit for bit.
+  /// Returns the same as `Scene::cast_ray`, bit for bit.
   std::optional<RayHit> cast(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range) const;
 
  private:
   struct Candidate {
-    double distance = 0.0;  // no point of it is nearer to the centre [m]
+    double distance = 0.0;  // least distance of its points from the centre [m]
     Scene::Ball ball;
     std::uint32_t solid = 0;
   };

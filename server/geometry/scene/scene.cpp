@@ -9,7 +9,7 @@
 namespace cohort::geometry {
 namespace {
 
-// A solid that touches more cells than this is kept in a list of its own: walls, floors, planes.
+// A solid that touches more cells than this is kept in a separate list: walls, floors, planes.
 constexpr double most_cells = 64.0;
 
 }  // namespace
@@ -35,12 +35,12 @@ void Scene::reserve(std::size_t solids) {
   is_removed_.reserve(solids);
 }
 
-// As wide as the widest body that moves, but for the few that are much wider than the others. Not much narrower than
-// what a search is for, which looks some millimetres around things, however small they are.
+// Returns the cell size: the width of the widest moving body, ignoring the few that are much wider than the others. It
+// has a lower bound, because a search extends some millimetres around things of any size.
 double Scene::choose_cell_size() const {
   constexpr double much_wider = 4.0;
   constexpr double narrowest = 0.02;  // [m]
-  // Of each body its widest solid. Those of a body mostly follow each other.
+  // Collect the widest solid of each body. The solids of one body are mostly contiguous.
   std::vector<std::pair<BodyId, double>> widest;
   for (const Solid& solid : solids_) {
     if (!solid.moves) continue;

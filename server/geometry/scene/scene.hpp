@@ -28,8 +28,8 @@ struct RayHit {
   Eigen::Vector3d normal_W;  ///< outward; zero if the ray starts inside
 };
 
-/// Everything solid in the world, for collision, ground contact, sensing and placement alike. Poses are set between
-/// `update` calls; queries are const and run from any thread.
+/// All solids of the world, for collision, ground contact, sensing and placement. Poses are set between `update` calls;
+/// queries are const and may run from any thread.
 class Scene {
  public:
   static constexpr BodyId no_body{0xffffffffu};
@@ -37,11 +37,11 @@ class Scene {
   /// Adds a solid; `build` must follow before the first query. Returns its index.
   std::uint32_t add(SolidKindPtr kind, BodyId body, bool moves, const Pose& X_WC);
   std::uint32_t add(const LoneSolid& solid);
-  /// Takes memory for as many solids, so that there is none to spare after they were added.
+  /// Reserves memory for exactly this many solids.
   void reserve(std::size_t solids);
-  /// Chooses the cell size and sorts what does not move. After the last `add`; again if more are added later.
+  /// Chooses the cell size and sorts the static solids. Call it after the last `add`, and again after later ones.
   void build();
-  /// Takes a solid out of all further queries, until `put_back`. Its index is never another one's.
+  /// Excludes a solid from all further queries until `put_back`. Its index is never reused.
   void remove(std::uint32_t index);
   void put_back(std::uint32_t index);
   bool is_removed(std::uint32_t index) const { return is_removed_[index] != 0; }
@@ -50,31 +50,31 @@ class Scene {
   const Solid& solid(std::uint32_t index) const { return solids_[index]; }
   const Bounds& bounds(std::uint32_t index) const { return bounds_[index]; }
 
-  /// Moves a solid. Different ones that move may be moved from different threads; after one that does not, `build`.
+  /// Moves a solid. Threads may move different moving solids; a static one requires `build` afterwards.
   void set_pose(std::uint32_t index, const Pose& X_WC);
-  /// Takes the new poses into the grid.
+  /// Updates the grid with the new poses.
   void update();
 
-  /// The first solid along a ray of unit direction and length `range`, which may be infinite, those of `ignored_body`
-  /// left out. Of two at the
-  /// very same distance the one with the lower index, so the answer depends on the scene alone.
+  /// Returns the first solid along a ray of unit direction and length `range`, which may be infinite. Solids of
+  /// `ignored_body` are ignored. If two solids are at exactly the same distance, the one with the lower index is hit,
+  /// so that the result depends only on the scene.
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
                                  BodyId ignored_body = no_body) const;
 
-  /// Whether such a ray meets nothing but these two bodies.
+  /// Returns whether such a ray hits nothing except these two bodies.
   bool is_free(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range, BodyId ignored_body,
                BodyId other_ignored_body = no_body) const;
 
-  /// As `cast_ray`, among `candidates` only.
+  /// Casts a ray like `cast_ray`, among `candidates` only.
   std::optional<RayHit> cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
                                        const Eigen::Vector3d& direction_W, double range) const;
 
-  /// A ball that holds a solid, around its origin: a ray that misses the ball misses the solid.
+  /// The bounding sphere of a solid, around its origin: a ray that misses the sphere misses the solid.
   struct Ball {
     Eigen::Vector3d centre_W;
     double radius = 0.0;  ///< [m], infinite for planes and height maps
 
-    /// Whether a ray surely passes beside it on its first `reach`.
+    /// Returns whether a ray certainly misses it within the distance `reach`.
     bool is_missed(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double reach) const {
       const Eigen::Vector3d offset = centre_W - origin_W;
       const double along = offset.dot(direction_W);
@@ -83,18 +83,18 @@ class Scene {
   };
   Ball ball(std::uint32_t index) const { return {solids_[index].X_WC.position, solids_[index].radius}; }
 
-  /// Makes `best` the solid's hit if that is nearer along the ray, or as near and of a lower index. Returns how far a
-  /// nearer hit may be.
+  /// Sets `best` to the hit of this solid if it is nearer along the ray, or equally near with a lower index. Returns
+  /// the greatest distance of a nearer hit.
   double improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
                  const Eigen::Vector3d& direction_W, double range) const;
 
-  /// Whether a solid's bounds overlap `query`, or, of a plane, it reaches into it.
+  /// Returns whether a solid's bounds overlap `query`; for a plane, whether its solid side does.
   bool reaches_into(std::uint32_t index, const Bounds& query) const {
     return std::holds_alternative<description::Plane>(solids_[index].shape()) ? reaches(index, query)
                                                                               : bounds_[index].overlaps(query);
   }
 
-  /// Calls `visit(index)` once for each solid whose bounds overlap `query` (for a plane: that it reaches into).
+  /// Calls `visit(index)` once for each solid whose bounds (for a plane, its solid side) overlap `query`.
   template <class Visit>
   void for_each_overlap(const Bounds& query, Visit&& visit) const {
     for_each_static_overlap(query, visit);
@@ -103,7 +103,7 @@ class Scene {
       if (bounds_[index].overlaps(query)) visit(index);
     wide_grid_.for_each_overlap(query, bounds_, visit);
   }
-  /// The same, of those that do not move.
+  /// Does the same for static solids only.
   template <class Visit>
   void for_each_static_overlap(const Bounds& query, Visit&& visit) const {
     for (const std::uint32_t index : large_)
@@ -115,13 +115,13 @@ class Scene {
   double choose_cell_size() const;
   bool reaches(std::uint32_t large_solid, const Bounds& query) const;
   std::vector<Solid> solids_;
-  std::vector<Eigen::Vector3d> p_CW_;  // of each solid: the world's origin as it sees it
+  std::vector<Eigen::Vector3d> p_CW_;  // by solid: the world's origin in its frame
   std::vector<Bounds> bounds_;
   std::vector<char> is_removed_;
-  // What does not move.
-  std::vector<std::uint32_t> large_;  // planes, and what would fill many cells
+  // Static solids:
+  std::vector<std::uint32_t> large_;  // planes, and solids that would fill many cells
   Grid static_grid_;
-  // What moves.
+  // Moving solids:
   std::vector<std::uint32_t> moving_;        // no wider than a cell, in any orientation
   std::vector<std::uint32_t> wide_;          // the others, but for
   std::vector<std::uint32_t> large_moving_;  // those that would fill many cells

@@ -13,27 +13,27 @@
 
 namespace cohort::geometry {
 
-/// What the solids of one collision of a model have in common, however many bodies and worlds have one. Constant.
+/// The common data of all solids of one collision of a model, in all its bodies and worlds. Immutable.
 struct SolidKind {
   Shape shape;
   description::Surface surface;
-  std::uint32_t link = 0;       ///< of the model
-  std::uint32_t collision = 0;  ///< of the link
+  std::uint32_t link = 0;       ///< index in the model
+  std::uint32_t collision = 0;  ///< index in the link
   Eigen::Vector3d color = description::default_color();
-  double radius = 0.0;  ///< of a ball around the origin of C that holds it [m], infinite for planes and height maps
-  std::shared_ptr<const MeshSurface> mesh{};  ///< of a mesh
+  double radius = 0.0;  ///< bounding ball around the origin of C [m], infinite for planes and height maps
+  std::shared_ptr<const MeshSurface> mesh{};  ///< for a mesh
 };
 using SolidKindPtr = std::shared_ptr<const SolidKind>;
 
-/// Fills in the radius and, unless there is one already, the surface of a mesh.
+/// Computes the radius and, unless it exists already, the surface of a mesh.
 SolidKindPtr make_solid_kind(SolidKind kind);
 
 /// One collision shape, placed in the world.
 struct Solid {
   SolidKindPtr kind;
-  BodyId body;  ///< whose it is; solids of one body do not see each other
+  BodyId body;  ///< its body; solids of one body do not see each other
   bool moves = false;
-  double radius = 0.0;  ///< of its kind; where it is read, so is the rest
+  double radius = 0.0;  ///< copy of the kind's, near the data that is read with it
   Pose X_WC;
 
   const Shape& shape() const { return kind->shape; }
@@ -43,16 +43,16 @@ struct Solid {
   const Eigen::Vector3d& color() const { return kind->color; }
 };
 
-/// The kinds of solids that the models of a world have. Copies share them.
+/// The kinds of solids of a world's models. Copies share them.
 class SolidKinds {
  public:
-  /// Returns those of the model's collisions, links in their order. `index`: of the model in its world.
+  /// Returns the kinds of the model's collisions, in the order of the links. `index`: index of the model in its world.
   const std::vector<SolidKindPtr>& of_model(std::size_t index, const description::Model& model);
 
  private:
   using MeshKey = std::pair<const description::TriangleMesh*, bool>;  // the bool: convex
 
-  std::vector<std::shared_ptr<const std::vector<SolidKindPtr>>> by_model_;  // null: nobody has asked yet
+  std::vector<std::shared_ptr<const std::vector<SolidKindPtr>>> by_model_;  // null: not requested yet
   std::map<MeshKey, std::shared_ptr<const MeshSurface>> meshes_;
 };
 

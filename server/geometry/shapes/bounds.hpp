@@ -6,12 +6,12 @@
 
 #include "server/description/shape.hpp"
 
-/// What all shapes have: bounds, and where a ray enters.
+/// Properties of all shapes: their bounds, and where a ray enters.
 namespace cohort::geometry {
 
 using description::Shape;
 
-/// Whether a shape is what everything stands on: solid without end below its surface.
+/// Returns whether a shape is ground: solid without limit below its surface.
 inline bool is_ground(const Shape& shape) {
   return std::holds_alternative<description::Plane>(shape) || std::holds_alternative<description::Heightmap>(shape);
 }
@@ -28,13 +28,13 @@ struct Bounds {
     lower = lower.cwiseMin(other.lower);
     upper = upper.cwiseMax(other.upper);
   }
-  /// No point within is further along a ray of unit direction than this [m].
+  /// Returns an upper bound on the distance of any point within along a ray of unit direction [m].
   double last_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
   Bounds grown_by(double margin) const { return {lower.array() - margin, upper.array() + margin}; }
 };
 
-/// Where a ray enters a solid: `distance` along the unit direction, 0 if it starts inside, infinite if it misses.
-/// `normal`: outward unit normal of the surface there, undefined if it starts inside or misses.
+/// The point at which a ray enters a solid. `distance`: along the unit direction, 0 if it starts inside, infinite if it
+/// misses. `normal`: outward unit normal of the surface there, undefined if the ray starts inside or misses.
 struct RayEntry {
   double distance = std::numeric_limits<double>::infinity();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();

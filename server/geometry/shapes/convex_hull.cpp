@@ -28,7 +28,7 @@ struct ExactVector {
   Exact x, y, z;
 };
 
-// Without std::hypot, whose bits depend on the processor.
+// Avoids std::hypot, whose bits depend on the processor.
 template <class Vector>
 double squared_length(const Vector& v) {
   const auto x = static_cast<double>(v.x), y = static_cast<double>(v.y), z = static_cast<double>(v.z);
@@ -43,7 +43,7 @@ ExactVector cross_product(const LatticePoint& a, const LatticePoint& b) {
 struct Face {
   std::array<Index, 3> corners;     // counter-clockwise seen from outside
   std::array<Index, 3> neighbours;  // over the edge from this corner to the next
-  std::vector<Index> outside;       // points that see this face and have no other to wait at
+  std::vector<Index> outside;       // points that see this face and are assigned to it
   bool is_gone = false;
 };
 
@@ -52,7 +52,7 @@ class Hull {
   explicit Hull(const std::vector<Eigen::Vector3d>& points) {
     round(points);
     start();
-    // Faces that are made stand behind those that are there; a face whose points are all dealt with is done.
+    // New faces are appended; a face without any outside points is finished.
     for (Index face = 0; face < faces_.size(); ++face)
       if (!faces_[face].is_gone && !faces_[face].outside.empty()) add_furthest(face);
   }
@@ -79,7 +79,8 @@ class Hull {
 
   [[noreturn]] static void fail() { throw std::invalid_argument("the points span no volume"); }
 
-  // > 0 if the point is outside of the plane through the corners: six times the volume that they span.
+  // Returns six times the signed volume of the corners and the point: > 0 if the point is outside the plane through the
+  // corners.
   Exact height(const std::array<Index, 3>& corners, Index point) const {
     const LatticePoint& a = points_[corners[0]];
     const ExactVector normal = cross_product(points_[corners[1]] - a, points_[corners[2]] - a);
@@ -87,7 +88,7 @@ class Hull {
     return normal.x * to.x + normal.y * to.y + normal.z * to.z;
   }
 
-  // The point for which `measure` is greatest, and not zero.
+  // Returns the point with the greatest `measure`, which must not be zero.
   template <class Measure>
   Index furthest(Measure&& measure) const {
     Index found = none;
@@ -101,7 +102,7 @@ class Hull {
     return found;
   }
 
-  // Four points that span a volume. The sizes of what they span need not be exact, but for zero.
+  // Chooses four points that span a volume. The measures need to be exact only for zero.
   void start() {
     const Index a = furthest([&](Index i) { return squared_length(points_[i] - points_[0]); });
     Index b = furthest([&](Index i) { return squared_length(points_[i] - points_[a]); });
@@ -116,7 +117,7 @@ class Hull {
     distribute(all, 0);
   }
 
-  // Lets each point wait at the first face, from `first` on, that it sees. One that sees none is inside.
+  // Assigns each point to the first face, from `first` on, that it sees. A point that sees none is inside.
   void distribute(const std::vector<Index>& points, Index first) {
     for (const Index point : points)
       for (Index face = first; face < faces_.size(); ++face)
@@ -142,7 +143,7 @@ class Hull {
     distribute(homeless, first_new);
   }
 
-  // All faces that the point sees; they are connected.
+  // Removes and returns all faces that the point sees; they are connected.
   std::vector<Index> remove_visible(Index seen, Index point) {
     std::vector<Index> visible{seen};
     faces_[seen].is_gone = true;
@@ -155,7 +156,7 @@ class Hull {
     return visible;
   }
 
-  // A face from the point to each edge of the gap; they follow each other round it.
+  // Adds a face from the point to each edge of the gap, in order around it.
   void close_gap(const std::vector<Index>& visible, Index point) {
     const auto first_new = static_cast<Index>(faces_.size());
     for (const Index face : visible)

@@ -9,7 +9,7 @@ std::vector<Eigen::Vector2d> convex_hull_2d(std::vector<Eigen::Vector2d> points)
   std::ranges::sort(points, {}, [](const Eigen::Vector2d& point) { return std::pair(point.x(), point.y()); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
-  // One side there, the other one back.
+  // Build the lower hull forwards, then the upper hull backwards.
   std::vector<Eigen::Vector2d> hull;
   const auto add = [&](const Eigen::Vector2d& point, std::size_t fixed) {
     while (hull.size() > fixed) {

@@ -10,10 +10,10 @@
 namespace cohort::geometry {
 namespace {
 
-// Below this a direction in the plane is rounding.
+// Components of a direction below this are rounding errors.
 constexpr double negligible = 1e-9;
 
-// The rectangle of the least area around points: it has an edge along one of their convex hull.
+// Returns the rectangle of least area around points: it has an edge along one of their convex hull.
 Footprint least_rectangle(const std::vector<Eigen::Vector2d>& points) {
   const std::vector<Eigen::Vector2d> hull = convex_hull_2d(points);
   Footprint least;
@@ -60,7 +60,7 @@ struct Shadow {
   std::optional<Footprint> operator()(const description::Box& box) const {
     const Eigen::Matrix3d R = X_WC.orientation.toRotationMatrix();
     const Eigen::Vector3d half = 0.5 * box.size;
-    // The edge of the box that lies flattest gives the direction of the rectangle.
+    // The most level edge of the box gives the direction of the rectangle.
     Eigen::Vector2d axis = R.col(0).head<2>();
     if (axis.norm() < R.col(1).head<2>().norm() - negligible) axis = R.col(1).head<2>();
     Footprint footprint = on_axis(axis.normalized());
@@ -104,7 +104,7 @@ struct Shadow {
     return footprint;
   }
 
-  // The shadow is an ellipse. The rounded rectangle as long and as wide as that holds it.
+  // The projection is an ellipse. It lies within the rounded rectangle of the same length and width.
   std::optional<Footprint> operator()(const description::Ellipsoid& ellipsoid) const {
     const Eigen::Matrix3d axes = X_WC.orientation.toRotationMatrix() * ellipsoid.radii.asDiagonal();
     const Eigen::Matrix2d spread = axes.topRows<2>() * axes.topRows<2>().transpose();

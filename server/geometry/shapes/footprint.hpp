@@ -7,27 +7,28 @@
 
 namespace cohort::geometry {
 
-/// The shadow of a shape on the ground: a rectangle with rounded corners, which a circle is too.
+/// The projection of a shape onto the ground: a rectangle with rounded corners, or a circle.
 struct Footprint {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Eigen::Vector2d axis = Eigen::Vector2d::UnitX();  ///< unit vector along the rectangle's first edge
   Eigen::Vector2d half = Eigen::Vector2d::Zero();   ///< half the edges of the rectangle
-  double radius = 0.0;                              ///< reaches this far around it
-  double lowest = 0.0;                              ///< z of the shape
+  double radius = 0.0;                              ///< distance by which it extends around the rectangle
+  double lowest = 0.0;                              ///< least z of the shape
   double highest = 0.0;
 
-  /// From a point to the edge; 0 inside.
+  /// Returns the distance from a point to the edge; 0 inside.
   double distance(const Eigen::Vector2d& point) const;
-  /// Half the edges of the least upright rectangle around it.
+  /// Returns half the edges of its axis-aligned bounding rectangle.
   Eigen::Vector2d half_extent() const;
 };
 
-/// Of a shape whose pose in the world is X_WC: exact for spheres, for capsules, and for boxes and cylinders that stand
-/// upright; a rectangle around the shadow if they are tilted, and of a mesh the least one; around that of an ellipsoid,
-/// one with rounded ends. None for a plane and a height map.
+/// Returns the footprint of a shape whose pose in the world is X_WC. It is exact for spheres, capsules, and upright
+/// boxes and cylinders. For tilted boxes and cylinders it is a rectangle around the projection, and for a mesh the one
+/// of least area. For an ellipsoid it is a rectangle with rounded ends around the projection. Planes and height maps
+/// have none.
 std::optional<Footprint> footprint_of(const description::Shape& shape, const Pose& X_WC);
 
-/// Of all collisions of a model whose pose in the world is X_WM.
+/// Returns the footprints of all collisions of a model whose pose in the world is X_WM.
 std::vector<Footprint> footprints_of(const description::Model& model, const Pose& X_WM);
 
 }  // namespace cohort::geometry

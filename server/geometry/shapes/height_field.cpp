@@ -15,7 +15,7 @@ using description::HeightGrid;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// One of the two triangles of a cell as the plane that it lies in.
+/// The plane of one of the two triangles of a cell.
 struct Slope {
   Vector2d at;  // a corner
   double height;
@@ -25,7 +25,7 @@ struct Slope {
   Vector3d normal() const { return Vector3d(-gradient.x(), -gradient.y(), 1.0).normalized(); }
 };
 
-/// A walk along a ray over the cells below or above it.
+/// A traversal of the cells below or above a ray.
 class Walk {
  public:
   Walk(const HeightGrid& grid, const Vector3d& origin, const Vector3d& direction)
@@ -34,7 +34,7 @@ class Walk {
   RayEntry enter(double range) {
     double first = 0.0;
     double last = range;
-    int side = -1;  // the axis across which the ray comes over the edge; -1 if it starts within
+    int side = -1;  // axis across which the ray enters the grid; -1 if it starts within
     for (int axis = 0; axis < 2; ++axis) {
       if (direction_[axis] == 0.0) {
         if (std::abs(origin_[axis]) > half_[axis]) return {};
@@ -67,7 +67,8 @@ class Walk {
     return static_cast<double>(line) * grid_.spacing[axis] - half_[axis];
   }
 
-  // In the cell where the point at this distance is, or the nearest one if rounding puts it beside the grid.
+  // Starts in the cell that contains the point at this distance, or in the nearest one if rounding puts the point
+  // outside the grid.
   void start(double distance) {
     const Vector3d point = at(distance);
     const std::int64_t most[] = {static_cast<std::int64_t>(grid_.columns) - 2,
@@ -77,7 +78,7 @@ class Walk {
           std::clamp(integer_floor((point[axis] + half_[axis]) / grid_.spacing[axis]), std::int64_t{0}, most[axis]);
   }
 
-  // Where the ray reaches the next line of the grid across this axis.
+  // Returns the distance at which the ray reaches the next grid line across this axis.
   double to_line(int axis) const {
     if (direction_[axis] == 0.0) return infinity;
     return (border(axis, cell_[axis] + (direction_[axis] > 0.0 ? 1 : 0)) - origin_[axis]) / direction_[axis];
@@ -89,7 +90,7 @@ class Walk {
     return grid_.height(static_cast<std::size_t>(cell_[0] + right), static_cast<std::size_t>(cell_[1] + up));
   }
 
-  // > 0 beyond the diagonal of the cell, seen from its lower left corner.
+  // Returns a value > 0 beyond the diagonal of the cell, seen from its lower left corner.
   double beyond_diagonal(const Vector3d& point) const {
     return (point.head<2>() - corner()).cwiseQuotient(grid_.spacing).sum() - 1.0;
   }
@@ -129,7 +130,7 @@ class Walk {
     return speed == 0.0 ? infinity : -beyond_diagonal(origin_) / speed;
   }
 
-  // Between two distances, over one triangle.
+  // Returns where the ray enters one triangle between two distances.
   RayEntry enter_slope(double from, double to) const {
     const Slope slope = slope_at(at(std::isfinite(to) ? 0.5 * (from + to) : from));
     const double height = at(from).z() - slope.below(at(from));
@@ -160,7 +161,7 @@ Bounds bounds_of(const HeightGrid& grid, const Pose& X_WC) {
       bounds.lower = bounds.lower.cwiseMin(point_W);
       bounds.upper = bounds.upper.cwiseMax(point_W);
     }
-  constexpr double upright = 1e-9;  // below this a lean is rounding
+  constexpr double upright = 1e-9;  // a smaller tilt is rounding
   const Vector3d up_W = X_WC.orientation * Vector3d::UnitZ();
   for (int axis = 0; axis < 3; ++axis) {
     if (up_W[axis] > upright) bounds.lower[axis] = -infinity;

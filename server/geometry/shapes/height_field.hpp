@@ -5,11 +5,12 @@
 /// Rays on a height map.
 namespace cohort::geometry {
 
-/// The tightest bounds at X_WC; without lower end along the height map's own z axis, since all below is solid.
+/// Returns the tightest bounds at X_WC. They have no lower end along the height map's own z axis, because everything
+/// below the surface is solid.
 Bounds bounds_of(const description::HeightGrid& grid, const Pose& X_WC);
 
-/// Where a ray enters, no further than `range`: through the surface, or through a side of the rectangle below it. The
-/// rules of cast_ray of a Shape hold.
+/// Returns where a ray enters, at most at `range`: through the surface, or through a side of the rectangle below it.
+/// The rules of cast_ray of a Shape apply.
 RayEntry cast_ray(const description::HeightGrid& grid, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                   double range);
 

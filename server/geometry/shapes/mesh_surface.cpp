@@ -17,7 +17,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 constexpr std::uint32_t triangles_a_leaf = 4;
 constexpr std::size_t deepest = 64;  // the tree is halved at every level
 
-// Boxes are met a little too early rather than too late, so that rounding cannot lose a triangle. [m]
+// Boxes are entered slightly early, so that rounding cannot lose a triangle [m].
 constexpr double slack = 1e-9;
 
 Bounds bounds_round(const std::vector<Vector3d>& vertices, const Triangle& triangle) {
@@ -49,9 +49,9 @@ double volume_of(const std::vector<Vector3d>& vertices, const std::vector<Triang
   return sixfold / 6.0;
 }
 
-// The sign of the turn from p to q about the origin. Where they are in line with it, the origin is taken to be moved by
-// an infinitely small step along x, then by one infinitely smaller along y; so of two triangles that share an edge, a
-// ray through this edge meets exactly one.
+// Returns the sign of the rotation from p to q about the origin. If both are in line with the origin, it is perturbed
+// by an infinitesimal step along x, then by an infinitely smaller one along y. A ray through the common edge of two
+// triangles therefore hits exactly one of them.
 int turn(const Eigen::Vector2d& p, const Eigen::Vector2d& q, double cross) {
   if (cross != 0.0) return cross > 0.0 ? 1 : -1;
   if (p.y() != q.y()) return p.y() > q.y() ? 1 : -1;
@@ -61,8 +61,8 @@ int turn(const Eigen::Vector2d& p, const Eigen::Vector2d& q, double cross) {
 
 }  // namespace
 
-// Woop, Benthin, Wald, "Watertight ray/triangle intersection", Journal of Computer Graphics Techniques 2(1), 2013: the
-// axes are permuted and sheared so that the ray runs along the third from the origin.
+// A ray in the form of Woop, Benthin, Wald, "Watertight ray/triangle intersection", Journal of Computer Graphics
+// Techniques 2(1), 2013. The axes are permuted and sheared so that the ray runs along the third axis from the origin.
 struct MeshSurface::Ray {
   Ray(const Vector3d& from, const Vector3d& along) : origin(from), direction(along) {
     along.cwiseAbs().maxCoeff(&z);
@@ -77,7 +77,7 @@ struct MeshSurface::Ray {
     return {p[x] - shear.x() * p[z], p[y] - shear.y() * p[z], shear.z() * p[z]};
   }
 
-  /// Where it enters a box; infinite if it does not.
+  /// Returns the distance at which the ray enters a box; infinite if it misses.
   double enter(const Bounds& box) const {
     double first = 0.0;
     double last = infinity;
@@ -140,7 +140,7 @@ void MeshSurface::make_tree(const description::TriangleMesh& mesh) {
 
   struct Part {
     std::uint32_t begin, end;
-    std::uint32_t parent;  // whose second child it is
+    std::uint32_t parent;  // node of which it is the second child
   };
   constexpr std::uint32_t none = 0xffffffffu;
   std::vector<Part> waiting{{0, static_cast<std::uint32_t>(order_.size()), none}};
@@ -206,7 +206,7 @@ MeshSurface::Crossing MeshSurface::cross(const Ray& ray, std::uint32_t triangle)
   if (side == 0 || turn(c.head<2>(), a.head<2>(), v) != side || turn(a.head<2>(), b.head<2>(), w) != side) return {};
   const double area = u + v + w;
   if (area == 0.0) return {};
-  // The axes keep their handedness: seen along the ray, a front is clockwise.
+  // The axes keep their handedness: seen along the ray, a front face is clockwise.
   return {outward_ > 0.0 ? -side : side, (u * a.z() + v * b.z() + w * c.z()) / area};
 }
 
@@ -214,7 +214,7 @@ bool MeshSurface::is_inside(const Ray& ray) const {
   if (!is_closed_ || !((ray.origin - nodes_[0].box.lower).array() >= 0.0).all() ||
       !((nodes_[0].box.upper - ray.origin).array() >= 0.0).all())
     return false;
-  int left = 0;  // how many more solids the ray leaves than it enters
+  int left = 0;  // number of solids that the ray leaves minus those that it enters
   for_each_along(ray, infinity, [&](std::uint32_t triangle) {
     const Crossing crossing = cross(ray, triangle);
     if (crossing.side != 0 && crossing.distance >= 0.0) left -= crossing.side;
@@ -242,7 +242,7 @@ RayEntry MeshSurface::cast_ray(const Vector3d& origin, const Vector3d& direction
   });
   if (best.distance > range) return {};
   best.normal = normal_of(met);
-  if (best.normal.dot(direction) > 0.0) best.normal = -best.normal;  // of a skin, the side that is met
+  if (best.normal.dot(direction) > 0.0) best.normal = -best.normal;  // for an open surface, the side that is hit
   return best;
 }
 

@@ -104,7 +104,7 @@ RayEntry enter(const Cylinder& cylinder, const Vector3d& origin, const Vector3d&
 
   if (c > 0.0) {
     const double discriminant = b * b - a * c;
-    if (b >= 0.0 || discriminant < 0.0) return {};  // leads away from the axis, or passes beside it
+    if (b >= 0.0 || discriminant < 0.0) return {};  // moves away from the axis, or passes beside it
     const double distance = (-b - std::sqrt(discriminant)) / a;
     const double z = origin.z() + distance * direction.z();
     if (std::abs(z) <= half) {
@@ -112,7 +112,7 @@ RayEntry enter(const Cylinder& cylinder, const Vector3d& origin, const Vector3d&
       return {distance, Vector3d(at.x(), at.y(), 0.0) / cylinder.radius};
     }
   }
-  // Only an end is left: the one that faces the origin.
+  // Only the end cap that faces the origin is left.
   if (std::abs(origin.z()) <= half || origin.z() * direction.z() >= 0.0) return {};
   const double end = origin.z() > 0.0 ? half : -half;
   const double distance = (end - origin.z()) / direction.z();
@@ -129,7 +129,7 @@ RayEntry enter(const Capsule& capsule, const Vector3d& origin, const Vector3d& d
     const double a = direction.head<2>().squaredNorm();
     const double b = origin.head<2>().dot(direction.head<2>());
     const double discriminant = b * b - a * c;
-    if (b >= 0.0 || discriminant < 0.0) return {};  // leads away from the axis, or passes beside it
+    if (b >= 0.0 || discriminant < 0.0) return {};  // moves away from the axis, or passes beside it
     const double distance = (-b - std::sqrt(discriminant)) / a;
     const Vector3d at = origin + distance * direction;
     if (std::abs(at.z()) <= half) return {distance, Vector3d(at.x(), at.y(), 0.0) / capsule.radius};
@@ -137,12 +137,12 @@ RayEntry enter(const Capsule& capsule, const Vector3d& origin, const Vector3d& d
   } else if (std::abs(z) <= half) {
     return {0.0, Vector3d::Zero()};
   }
-  // Beyond an end: the ray can only come in through the half sphere there.
+  // Beyond an end, the ray can only enter through the half sphere there.
   return enter(Sphere{capsule.radius}, origin - Vector3d(0.0, 0.0, z > 0.0 ? half : -half), direction);
 }
 
 RayEntry enter(const Ellipsoid& ellipsoid, const Vector3d& origin, const Vector3d& direction) {
-  // In units of the radii it is a sphere.
+  // Scaled by its radii, it is a unit sphere.
   const Vector3d o = origin.cwiseQuotient(ellipsoid.radii);
   const Vector3d d = direction.cwiseQuotient(ellipsoid.radii);
   const double c = o.squaredNorm() - 1.0;

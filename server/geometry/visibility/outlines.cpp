@@ -44,9 +44,9 @@ struct Circumscribe {
     return outline;
   }
 
-  // A cylinder of this radius and half length, or anything that holds it, leans by an angle of this sine: a point of
-  // the inner cylinder, a from the axis and b above the middle, is at most a + b * lean from the leaning axis and
-  // b + a * lean along it.
+  // Sets the inner cylinder of a solid that holds a cylinder of this radius and half length, tilted by an angle with
+  // sine `lean`. Consider a point of the inner cylinder, a from the axis and b above the middle. It is at most a + b *
+  // lean from the tilted axis and b + a * lean along it.
   void set_inner(Outline& outline, double radius, double half_length, double lean) const {
     const double a = radius - half_length * lean;
     const double b = half_length - radius * lean;
@@ -132,7 +132,7 @@ Outlines::Outlines(const Scene& scene) : scene_(&scene), item_of_(scene.size(), 
   width_ = widths[widths.size() / 2];
 }
 
-// A cell of the grid costs as much as some items that are too far away.
+// A cell of the grid costs as much as this many items that are out of range.
 bool Outlines::is_grid_faster(double range) const {
   constexpr double items_a_cell = 4.0;
   const double edge = 2.0 * range / width_ + 3.0;

@@ -24,9 +24,9 @@ constexpr double angle_slack = 1e-9;  // more than the rounding of an angle [rad
 
 }  // namespace
 
-/// Pixels that a solid may cover: columns from `first` on, which go round, and rows.
+/// The pixels that a solid may cover: rows, and columns from `first_column` on, which wrap around.
 struct Panorama::Window {
-  double nearest = 0.0;  // no point of it is nearer [m]
+  double nearest = 0.0;  // least distance of its points [m]
   std::uint32_t solid = 0;
   std::size_t first_column = 0;
   std::size_t columns = 0;
@@ -42,7 +42,7 @@ struct Panorama::View {
 
 namespace {
 
-/// Bearings and elevations that a solid is seen at, in the frame S. All that there are unless told otherwise.
+/// The bearings and elevations at which a solid is seen, in the frame S. By default, all.
 struct Extent {
   double nearest = 0.0;
   double first_bearing = 0.0;
@@ -71,7 +71,7 @@ Extent extent_of(const Scene::Ball& ball, const Pose& X_SW) {
   return extent;
 }
 
-// Of the corners of a box, and so of all between them.
+// Returns the extent of the corners of a box, and so of everything between them.
 Extent extent_of(const std::array<Vector3d, 8>& corners_S) {
   Extent extent;
   Vector2d centre = Vector2d::Zero();
@@ -80,8 +80,8 @@ Extent extent_of(const std::array<Vector3d, 8>& corners_S) {
   const double level = centre.norm();
   if (!(level > rounding)) return extent;
   const Vector2d ahead = centre / level;
-  double least = infinity;  // along `ahead`: nothing is nearer to the axis
-  double farthest = 0.0;    // from the axis
+  double least = infinity;  // along `ahead`: least distance from the axis
+  double farthest = 0.0;    // greatest distance from the axis
   double right = 0.0, left = 0.0;
   double lowest = infinity, highest = -infinity;
   for (const Vector3d& corner : corners_S) {
@@ -104,7 +104,7 @@ Extent extent_of(const std::array<Vector3d, 8>& corners_S) {
     extent.least_elevation = std::atan2(lowest, lowest < 0.0 ? least : farthest);
     extent.most_elevation = std::atan2(highest, highest > 0.0 ? least : farthest);
   }
-  // Corners that are not within half a turn are around the axis.
+  // Otherwise the corners span at least half a turn: they surround the axis.
   if (left - right < pi - 1e-3 && least > 0.0) {
     const double bearing = std::atan2(centre.y(), centre.x());
     const double widened = std::asin(std::min(1.0, rounding / least));
@@ -122,7 +122,7 @@ std::array<Vector3d, 8> corners_of(const Vector3d& lower, const Vector3d& upper,
   return corners;
 }
 
-// A ray of elevation e meets the surface somewhere on its way round if it descends: |n_xy| cos e - n_z sin e > 0.
+// A ray of elevation e hits the surface at some bearing if it descends there: |n_xy| cos e - n_z sin e > 0.
 Extent extent_of(const description::Plane& plane, const Pose& X_WC, const Pose& X_WS) {
   Extent extent;
   const Vector3d normal_W = X_WC.orientation * plane.normal;
@@ -154,7 +154,7 @@ Panorama::Panorama(std::size_t columns, std::vector<double> elevations) : elevat
   const bool in_order = ascending_ ? std::is_sorted(elevations_.begin(), elevations_.end())
                                    : std::is_sorted(elevations_.rbegin(), elevations_.rend());
   if (!in_order || !(std::abs(elevations_.front()) <= 0.5 * pi) || !(std::abs(elevations_.back()) <= 0.5 * pi))
-    throw std::invalid_argument("the elevations of a panorama must be in order, and within a quarter turn of level");
+    throw std::invalid_argument("the elevations of a panorama must be sorted and within +-90 degrees");
   for (std::size_t column = 0; column < columns; ++column) {
     const double bearing = 2.0 * pi * static_cast<double>(column) / static_cast<double>(columns);
     bearings_S_.emplace_back(std::cos(bearing), std::sin(bearing));
@@ -188,7 +188,7 @@ std::optional<Panorama::Window> Panorama::window_of(const Scene& scene, std::uin
   if (window.first_row >= window.last_row) return std::nullopt;
   const auto count = static_cast<std::int64_t>(columns());
   const double a_radian = static_cast<double>(count) / (2.0 * pi);
-  // The least column that is not before the first bearing, and the greatest that is not beyond the last.
+  // The first column at or after the first bearing, and the last one at or before the last bearing.
   const std::int64_t first = -integer_floor(-(extent.first_bearing - angle_slack) * a_radian);
   const std::int64_t last = integer_floor((extent.last_bearing + angle_slack) * a_radian);
   if (last < first) return std::nullopt;

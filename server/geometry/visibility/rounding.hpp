@@ -2,7 +2,7 @@
 
 namespace cohort::geometry {
 
-/// More than any rounding of lengths like this one. [m]
+/// Returns an upper bound on the rounding error of lengths of this size [m].
 inline double rounding_of(double length) { return 1e-7 + 1e-8 * length; }
 
 }  // namespace cohort::geometry

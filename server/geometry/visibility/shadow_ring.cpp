@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double level = 1e-9;  // planes that lean less are ground
+constexpr double level = 1e-9;  // planes that are tilted by less are ground
 
 void keep(double& nearest, double distance, double range) {
   if (distance <= range) nearest = std::min(nearest, distance);
@@ -101,7 +101,7 @@ void ShadowRing::shade_by_rectangle(const Shadow& rectangle, double range, std::
   if ((source.cwiseAbs() - half).cwiseMax(0.0).norm() > range) return;
   const Vector2d edge = half.x() * axis;
   const Vector2d side = half.y() * left_of(axis);
-  // Bearings relative to that of the centre, between which it lies: all corners are within half a turn.
+  // Bearings of its extent relative to that of the centre: all corners are within half a turn.
   double least = 0.0;
   double most = 0.0;
   for (const Vector2d& corner : {Vector2d(rectangle.centre - edge - side), Vector2d(rectangle.centre + edge - side),

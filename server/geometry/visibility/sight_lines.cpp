@@ -15,14 +15,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double turns = 4.0;            // that turn_of has in a full one
+constexpr double turns = 4.0;            // units of turn_of in a full turn
 constexpr double least_square = 1e-200;  // squares of lengths below this lose digits [m^2]
 constexpr std::uint32_t least_bins = 16;
 constexpr std::uint32_t most_bins = 256;
-constexpr std::size_t ranks = 256;  // that distances are sorted by
+constexpr std::size_t ranks = 256;  // number of ranks by which distances are sorted
 
-// Grows with the azimuth, from 0 along x to 4 at the full turn: the length along a square that stands on its corner,
-// which needs neither root nor arc tangent.
+// Returns a value that grows with the azimuth, from 0 along x to 4 at the full turn: the length along a square that
+// stands on its corner. It needs neither a root nor an arc tangent.
 double turn_of(const Vector2d& direction) {
   const double across = direction.y() / (std::abs(direction.x()) + std::abs(direction.y()));
   if (direction.x() < 0.0) return 2.0 - across;
@@ -34,12 +34,12 @@ bool both_below(double a, double b, double limit) { return a < limit && b < limi
 
 }  // namespace
 
-/// From the source to a receiver.
+/// The segment from the source to a receiver.
 struct SightLines::Line {
   Vector3d offset_W;
   // Seen from above:
   double length;
-  Vector2d along;  // unit, within rounding; not a number if the length is 0
+  Vector2d along;  // unit, within rounding; NaN if the length is 0
   double slope;
   BodyId receiver_body;
 };
@@ -102,7 +102,7 @@ void SightLines::add(const Outlines::Item& item) {
   candidate.solid = item.solid;
   candidate.body = item.body;
 
-  Vector2d rightmost, leftmost;  // directions between which it is seen
+  Vector2d rightmost, leftmost;  // it is seen between these directions
   if (outline.is_round()) {
     candidate.nearest = distance - candidate.radius;
     const double tangent = std::sqrt(std::max(0.0, squared - candidate.radius * candidate.radius));
@@ -134,14 +134,14 @@ void SightLines::add(const Outlines::Item& item) {
   const double from = turn_of(rightmost);
   double to = turn_of(leftmost);
   if (to < from) to += turns;
-  // In units of the finest bins; fill_bins makes them coarser.
+  // In units of the finest bins; fill_bins makes the bins coarser.
   constexpr double fine = most_bins / turns;
   const double first = std::max(0.0, (from - slack) * fine);
   stretches_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>((to + slack) * fine), 0});
   candidates_.push_back(candidate);
 }
 
-// By counting, coarsely: within a rank the order stays. `nearest` then becomes the least of those that share a rank.
+// Sorts coarsely by counting: within a rank the order stays. `nearest` then becomes the minimum over its rank.
 void SightLines::sort_candidates() {
   const std::size_t count = candidates_.size();
   double farthest = 0.0;
@@ -208,14 +208,14 @@ bool SightLines::is_hit(std::uint32_t solid, const Line& line) const {
 }
 
 inline bool SightLines::is_blocked_by(const Candidate& candidate, const Line& line) const {
-  // Every test is written so that what is not a number decides nothing.
+  // Every test is written so that NaN decides nothing.
   const double middle = line.along.dot(candidate.centre);
   const double beside = cross(line.along, candidate.centre);
   const double squared = candidate.radius * candidate.radius - beside * beside;
   if (squared < 0.0 || candidate.body == line.receiver_body) return false;
   const double inner_squared = candidate.inner_radius * candidate.inner_radius - beside * beside;
   const bool meets_inner = candidate.inner_radius > 0.0 && inner_squared > 0.0;
-  // The first test spares a root, and finds most of what is met.
+  // The first test saves a root and finds most hits.
   const double at = std::clamp(middle, 0.0, line.length);
   const double at_z = line.slope * at;
   if (meets_inner && (at - middle) * (at - middle) < inner_squared && at_z > candidate.inner_lowest &&
@@ -250,7 +250,7 @@ inline bool SightLines::is_blocked_by(const Candidate& candidate, const Line& li
   return is_hit(candidate.solid, line);
 }
 
-// Only a square that is this close to the range's leaves open which is the longer.
+// The squares decide unless they are this close; then compare the lengths themselves.
 bool SightLines::is_within_range(const Vector3d& offset_W, double squared) const {
   constexpr double rounding = 1e-12;
   const double limit = range_ * range_;
@@ -279,7 +279,7 @@ bool SightLines::is_free(const Vector3d& p_WR, BodyId receiver_body) const {
     if (is_blocked_by(candidate, line)) return false;
   for (const Unbounded& unbounded : unbounded_)
     if (unbounded.body != receiver_body && is_hit(unbounded.solid, line)) return false;
-  if (line.length == 0.0) return true;  // upright: all that it may meet is around
+  if (line.length == 0.0) return true;  // vertical: only candidates of around_ can block it
 
   const auto bin = std::min(static_cast<std::uint32_t>(turn_of(line.offset_W.head<2>()) * bins_a_turn_), bins_ - 1);
   const auto slope = static_cast<float>(line.slope);

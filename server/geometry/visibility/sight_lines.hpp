@@ -9,22 +9,22 @@
 
 namespace cohort::geometry {
 
-/// Which places see one source: a lamp, or a robot that sends. Made for each source at each tick, then asked for any
-/// number of receivers.
+/// Decides from which places one source is visible: a lamp, or a robot that sends. Built for each source at each tick,
+/// then queried for any number of receivers.
 ///
 /// The directions around the source, seen from above, are cut into bins. Each bin has the solids that reach into it,
-/// near ones first, each with the slopes at which a line may meet it. So a question goes through those between the two
-/// ends that are neither above nor below the line, and most of these are decided by their outline. The others are asked
-/// themselves, as Scene::cast_ray asks them; so the answers are the same.
+/// near ones first, each with the slopes at which a line may hit it. A query tests only solids between the two ends
+/// that are neither above nor below the line, and the outlines decide most of these tests. The others are tested
+/// exactly, as in Scene::cast_ray, so that the results are the same.
 class SightLines {
  public:
-  /// Takes the place of what was built before. `p_WS`: the source [m]. Beyond `range` [m], which may be infinite,
-  /// nothing is seen. The source is a part of `source_body`, which never stands in the way. `outlines` and its scene
-  /// must outlive the questions. Different objects may be built from different threads.
+  /// Builds it, replacing its earlier content. `p_WS`: the source [m]. Nothing is seen beyond `range` [m], which may be
+  /// infinite. The source is a part of `source_body`, which never blocks a line. `outlines` and its scene must outlive
+  /// all queries. Threads may build different objects.
   void build(const Outlines& outlines, const Eigen::Vector3d& p_WS, double range, BodyId source_body = Scene::no_body) {
     build(outlines, p_WS, range, source_body, {});
   }
-  /// The same, for receivers that are all within these heights: what is above or below every line is left out.
+  /// Builds it for receivers that are all within these heights: solids above or below every line are left out.
   struct Heights {
     double lowest = -std::numeric_limits<double>::infinity();  ///< z_W [m]
     double highest = std::numeric_limits<double>::infinity();
@@ -32,18 +32,18 @@ class SightLines {
   void build(const Outlines& outlines, const Eigen::Vector3d& p_WS, double range, BodyId source_body,
              const Heights& receivers);
 
-  /// Whether nothing solid is on the segment from the source to p_WR, both ends included, and this is no longer than
-  /// the range. `receiver_body` never stands in the way either. True if both ends are the same point.
+  /// Returns whether no solid is on the segment from the source to p_WR, both ends included, and the segment is not
+  /// longer than the range. `receiver_body` never blocks the line either. Returns true if both ends are the same point.
   ///
-  /// The same, bit for bit, as no hit of Scene::cast_ray from p_WS along (p_WR - p_WS) / d with range d = |p_WR - p_WS|
-  /// among the solids of other bodies. Const, callable from any thread; p_WR must be finite.
+  /// The result is the same, bit for bit, as no hit of Scene::cast_ray from p_WS along (p_WR - p_WS) / d with range d =
+  /// |p_WR - p_WS| among the solids of other bodies. Const, callable from any thread; p_WR must be finite.
   bool is_free(const Eigen::Vector3d& p_WR, BodyId receiver_body = Scene::no_body) const;
 
  private:
-  /// A solid as seen from the source: all lengths are relative to it. Outer bounds are a little too large and inner
-  /// ones a little too small, against rounding.
+  /// A solid as seen from the source: all lengths are relative to the source. Outer bounds are slightly too large and
+  /// inner ones slightly too small, against rounding.
   struct Candidate {
-    double nearest = 0.0;  // no point of it is nearer along x and y [m]
+    double nearest = 0.0;  // least horizontal distance of its points [m]
     double farthest = 0.0;
     Eigen::Vector2d centre;
     double radius = 0.0;
@@ -54,29 +54,29 @@ class SightLines {
     double inner_highest = 0.0;
     std::uint32_t solid = 0;
     BodyId body;
-    std::uint32_t rectangle = Outlines::none;  // in rectangles_, if it is one
+    std::uint32_t rectangle = Outlines::none;  // index in rectangles_, if its outline is one
   };
   struct Rectangle {
     Eigen::Vector2d axis;
     Eigen::Vector2d half;
     Eigen::Vector2d source;  // in the rectangle's frame
   };
-  /// A plane, whose `normal_W` points out of what is solid.
+  /// A plane, whose `normal_W` points out of the solid.
   struct HalfSpace {
     Eigen::Vector3d normal_W;
-    double height = 0.0;    // of the source above it
-    double rounding = 0.0;  // of heights
+    double height = 0.0;    // height of the source above it
+    double rounding = 0.0;  // bound on the rounding of heights
     std::uint32_t solid = 0;
     BodyId body;
   };
-  /// A candidate in a bin, with what leaves it out: rounded outward.
+  /// A candidate in a bin, with the values that exclude it, rounded outward.
   struct Entry {
-    float nearest = 0.0F;      // as of the candidate
-    float least_slope = 0.0F;  // of lines that may meet it: metres up for each metre along
+    float nearest = 0.0F;      // the candidate's
+    float least_slope = 0.0F;  // slopes of lines that may hit it [m/m]
     float most_slope = 0.0F;
     std::uint32_t candidate = 0;
   };
-  /// Bins that a candidate reaches into; `last` may be beyond the number of bins and go on from the first.
+  /// The bins that a candidate overlaps; `last` may exceed the number of bins and then wraps around.
   struct Stretch {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
@@ -102,15 +102,15 @@ class SightLines {
     std::uint32_t solid;
     BodyId body;
   };
-  std::vector<Unbounded> unbounded_;   // that no outline holds
-  std::vector<Candidate> around_;      // those that the source is in or below or above
+  std::vector<Unbounded> unbounded_;   // solids without an outline
+  std::vector<Candidate> around_;      // those that the source is in, below or above
   std::vector<Candidate> candidates_;  // the others
   std::vector<Rectangle> rectangles_;
-  std::vector<std::uint32_t> begin_;  // of each bin in entries_, and one past the last
+  std::vector<std::uint32_t> begin_;  // start of each bin in entries_, and one past the last
   std::vector<Entry> entries_;
-  // While it is built:
+  // Used only while building:
   std::vector<Stretch> stretches_;
-  std::vector<std::uint32_t> order_;  // of candidates_, near ones first
+  std::vector<std::uint32_t> order_;  // indices of candidates_, near ones first
 };
 
 }  // namespace cohort::geometry

@@ -12,7 +12,7 @@
 namespace cohort::parsing {
 namespace {
 
-/// What an event of some kind does to one object; nothing, and reported, if it cannot be.
+/// Reads the effect of a kind of event on one object; returns nothing, and reports it, if the effect is impossible.
 using ReadEffect = std::optional<Effect> (*)(const ScheduleEntry& entry, const World& world, std::size_t object);
 
 std::optional<Effect> read_add(const ScheduleEntry&, const World&, std::size_t) { return SetPresence{true, true}; }
@@ -25,7 +25,7 @@ std::optional<Effect> read_move(const ScheduleEntry& entry, const World&, std::s
   return PlaceAt{entry.values().pose("pose")};
 }
 
-// False, and reported, of what stays where it is.
+// Returns whether the object can move; reports it if not.
 bool can_be_pushed(const ScheduleEntry& entry, const World& world, std::size_t object) {
   const Model& model = world.models[world.instances[object].model];
   const char* const why = model.why_fixed();
@@ -108,9 +108,9 @@ void check_change(const ScheduleEntry& entry, const std::vector<const Emitter*>&
     if (!entry.is_written(key.name)) continue;
     has_any = true;
     if (std::none_of(chosen.begin(), chosen.end(), [&](const Emitter* emitter) { return key.fits(*emitter); }))
-      entry.problem(key.name, std::string("is of ") + key.owner + ", and none is chosen");
+      entry.problem(key.name, std::string("applies to ") + key.owner + ", but no such emitter is selected");
   }
-  if (!has_any) entry.problem("missing: what changes, such as 'on: false'");
+  if (!has_any) entry.problem("missing: a value to change, such as 'on: false'");
 }
 
 std::vector<std::pair<std::size_t, Effect>> read_set_emitter(const ScheduleEntry& entry, const World& world,
@@ -140,17 +140,18 @@ std::vector<std::pair<std::size_t, Effect>> read_set_emitter(const ScheduleEntry
     if (!effect.emitters.empty()) effects.emplace_back(object, std::move(effect));
   }
   if (names.empty()) {
-    entry.problem("objects", "none of them has an emitter: a light, a sound, a marker or a climate_source");
+    entry.problem("objects", "none of the objects has an emitter (light, sound, marker or climate_source)");
     return {};
   }
   for (std::size_t i = 0; i < selectors.size(); ++i)
     if (selects[i] == 0)
-      entry.problem("emitter", "none of them has an emitter '" + selectors[i] + "'" + suggestion(selectors[i], names));
+      entry.problem("emitter",
+                    "none of the objects has an emitter '" + selectors[i] + "'" + suggestion(selectors[i], names));
   if (!chosen.empty()) check_change(entry, chosen);
   return effects;
 }
 
-// A new kind of event: its keys in experiment_keys.cpp, a line here, and what it does in the simulation.
+// A new kind of event needs its keys in experiment_keys.cpp, a line here, and its effect in the simulation.
 constexpr std::pair<std::string_view, ReadEffect> effects[] = {
     {"add", &read_add},
     {"remove", &read_remove},

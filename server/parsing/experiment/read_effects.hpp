@@ -10,8 +10,8 @@
 
 namespace cohort::parsing {
 
-/// What an event of this kind does to each of some objects, in their order. What cannot be done to one is reported, and
-/// left out.
+/// Reads the effects of an event of this kind on each of some objects, in their order. Reports and omits impossible
+/// effects.
 std::vector<std::pair<std::size_t, Effect>> read_effects(std::string_view kind, const ScheduleEntry& entry,
                                                          const World& world, const std::vector<std::size_t>& objects);
 

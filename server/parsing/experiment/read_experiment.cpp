@@ -10,6 +10,8 @@
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
 #include "server/description/select_robots.hpp"
+#include "server/parsing/experiment/joint_motors.hpp"
+#include "server/parsing/experiment/read_ros2.hpp"
 #include "server/parsing/experiment/read_schedule.hpp"
 #include "server/parsing/experiment/read_teams.hpp"
 #include "server/parsing/files/input_file.hpp"
@@ -19,6 +21,7 @@
 #include "server/parsing/world/read_world.hpp"
 #include "server/parsing/yaml/yaml_document.hpp"
 #include "server/parsing/yaml/yaml_map.hpp"
+#include "server/parsing/yaml/yaml_values.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -27,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t most_threads = 1024;
 
-// The one team of a world without an experiment, if there are robots.
+// Returns the one team of a world without an experiment; none if there are no robots.
 std::vector<Team> team_of_all(const World& world) {
   if (world.robots.empty()) return {};
   Team team;
@@ -41,8 +44,8 @@ YamlMap map_of_experiment(const YamlNode& document, const YamlReport& report) {
   return {document, "", names_of_keys(experiment_part("experiment", "")), report};
 }
 
-// Reads again which robots and objects the document selects, for a world whose instances have changed. All else of
-// the experiment stays as it is.
+// Selects the robots and objects of the document again, for a world whose instances have changed. The rest of the
+// experiment stays unchanged.
 void select_again(const YamlNode& document, const fs::path& file, Experiment& experiment) {
   std::vector<Problem> problems;
   const YamlReport report(file, problems);
@@ -110,8 +113,8 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   experiment_.seed = seed.value_or(written_seed);
   if (!duration) top.require("duration", "simulated time in seconds");
   experiment_.duration = duration.value_or(read_seconds(top, "duration").value_or(experiment_.duration));
-  top.require("world", "the file of the world, relative to this file");
-  top.require("teams", "which robots have which controller");
+  top.require("world", "path of the world file, relative to this file");
+  top.require("teams", "list of teams with their robots and controllers");
   const ScheduleReader schedule(top, experiment_.file, report_);
   read_world_of(top, schedule.later_objects());
   read_step(top);
@@ -121,6 +124,7 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
     experiment_.world.physics =
         with_values(experiment_.world.physics, read_physics_map(top.where("physics"), top.path_to("physics"), report_));
   experiment_.teams = read_teams(top, world_is_read_ ? &experiment_.world : nullptr, report_);
+  experiment_.ros2 = read_ros2(top, world_is_read_ ? &experiment_.world : nullptr, experiment_.teams, report_);
   if (world_is_read_) schedule.read(experiment_);
   experiment_.select_again = [document, file = experiment_.file](Experiment& experiment) {
     select_again(*document, file, experiment);
@@ -132,7 +136,8 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
 
 Experiment ExperimentReader::read_without_experiment(std::optional<std::uint64_t> seed,
                                                      std::optional<std::chrono::nanoseconds> duration) {
-  if (auto reason = input_.why_unreadable(input_.absolute(experiment_.file)))  // as it is read, and kept
+  if (auto reason =
+          input_.why_unreadable(input_.absolute(experiment_.file)))  // the path under which it is read and kept
     throw InputError({{experiment_.file, 0, "", std::move(*reason)}});
   experiment_.name = printable(experiment_.file.stem().string());
   experiment_.seed = seed.value_or(experiment_.seed);
@@ -169,7 +174,7 @@ void ExperimentReader::read_world_of(const YamlMap& top, const std::vector<Later
 
 void ExperimentReader::read_step(const YamlMap& top) {
   constexpr std::chrono::nanoseconds longest = std::chrono::seconds(1);
-  constexpr double rounding = 1e-3;  // of a nanosecond: 1/100 s has no exact binary number
+  constexpr double rounding = 1e-3;  // in ns: 1/100 s has no exact binary representation
   const std::optional<std::chrono::nanoseconds> step = read_seconds(top, "step");
   if (!step) return;
   const double nanoseconds = *top.real("step") * 1e9;
@@ -178,7 +183,7 @@ void ExperimentReader::read_step(const YamlMap& top) {
   experiment_.world.step = *step;
 }
 
-// What was read from it is kept, for itself and for texts that come while its world runs.
+// Keeps the files that were read, for the experiment and for texts that arrive while its world runs.
 void keep_inputs(Experiment& experiment, std::shared_ptr<const KeptFiles> kept) {
   experiment.read_model = model_reader(kept, experiment.world.file.parent_path());
   experiment.inputs = std::move(kept);
@@ -195,6 +200,12 @@ Experiment read_from(InputFiles& disk, const fs::path& file, std::optional<std::
   return experiment;
 }
 
+// Lets `disk` read the file and what lies below its folders, and expands the file itself if it may run xacro.
+void open_files(InputFiles& disk, const fs::path& file, const std::vector<fs::path>& last_model_folders, Xacro xacro) {
+  disk.trust(file, last_model_folders);
+  if (xacro == Xacro::run) expand_named(disk, file);
+}
+
 }  // namespace
 
 Experiment read_experiment(const fs::path& named, std::optional<std::uint64_t> seed,
@@ -202,9 +213,32 @@ Experiment read_experiment(const fs::path& named, std::optional<std::uint64_t> s
                            const std::vector<fs::path>& last_model_folders, Xacro xacro) {
   const fs::path file = without_links(named);
   InputFiles disk;
-  disk.trust(file, last_model_folders);
-  if (xacro == Xacro::run) expand_named(disk, file);
+  open_files(disk, file, last_model_folders, xacro);
   return read_from(disk, file, seed, duration, last_model_folders);
+}
+
+Experiment read_experiment_with_joint_motors(const fs::path& named, std::optional<std::uint64_t> seed,
+                                             std::optional<std::chrono::nanoseconds> duration,
+                                             const std::vector<fs::path>& last_model_folders, Xacro xacro) {
+  const fs::path file = without_links(named);
+  InputFiles disk;
+  open_files(disk, file, last_model_folders, xacro);
+  Experiment plain = read_from(disk, file, seed, duration, last_model_folders);
+  if (!holds_lone_model(disk, file)) return plain;
+  const auto text = text_with_joint_motors(plain.world, file.filename().string());
+  if (!text) return plain;
+  const fs::path with_motors = file.parent_path() / (file.stem().string() + " (joint motors).sdf");
+  disk.add(with_motors, *text);
+  try {
+    Experiment driven = read_from(disk, with_motors, seed, duration, last_model_folders);
+    driven.world.warnings = plain.world.warnings;
+    return driven;
+  } catch (const InputError& error) {
+    plain.world.warnings.push_back(
+        {file, 0, "",
+         std::string("joints cannot be moved from the page, since the model cannot be included: ") + error.what()});
+    return plain;
+  }
 }
 
 Experiment read_experiment_texts(const std::vector<KeptFile>& texts, std::optional<std::uint64_t> seed,

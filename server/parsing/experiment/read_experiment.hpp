@@ -6,32 +6,42 @@
 
 namespace cohort::parsing {
 
-/// How long a world or a model without an experiment runs.
+/// Duration of a world or a model without an experiment.
 inline constexpr std::chrono::nanoseconds duration_without_experiment = std::chrono::seconds(10);
 
-/// Reads an experiment (YAML) and its world. Of a world or a model, an experiment without controllers: its robots are
-/// in one team, which needs none, and a model stands on a plane. `seed` and `duration`, if given, stand in for the
-/// file's; `last_model_folders` are those of `read_world`. `xacro`: whether `file` itself may be expanded. Throws
-/// InputError with every problem found.
+/// Duration of a run that only its user ends: 285 years.
+inline constexpr std::chrono::nanoseconds without_end = std::chrono::seconds(9'000'000'000);
+
+/// Reads an experiment (YAML) and its world. A world or a model becomes an experiment without controllers: its robots
+/// are in one team that needs none, and a model is placed on a plane. `seed` and `duration`, if given, replace those of
+/// the file; `last_model_folders` are those of `read_world`. `xacro`: whether `file` itself may be expanded. Throws
+/// InputError with all problems.
 Experiment read_experiment(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {},
                            std::optional<std::chrono::nanoseconds> duration = {},
                            const std::vector<std::filesystem::path>& last_model_folders = {},
                            Xacro xacro = Xacro::refused);
 
-/// Reads an experiment from the first of `texts`, and what it names of the others, as if they were files of these
-/// paths, which need not be there: messages name them, and paths are relative to their folders. Otherwise as the
+/// Reads a model by itself as the function above does, with a position motor on each joint (`text_with_joint_motors`).
+/// Any other file is read as above. `xacro` as above.
+Experiment read_experiment_with_joint_motors(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {},
+                                             std::optional<std::chrono::nanoseconds> duration = {},
+                                             const std::vector<std::filesystem::path>& last_model_folders = {},
+                                             Xacro xacro = Xacro::refused);
+
+/// Reads an experiment from the first of `texts`, and the files to which it refers from the others. The paths of the
+/// texts need not exist; they appear in messages, and relative paths start at their folders. Otherwise like the
 /// function above.
 Experiment read_experiment_texts(const std::vector<KeptFile>& texts, std::optional<std::uint64_t> seed = {},
                                  std::optional<std::chrono::nanoseconds> duration = {},
                                  const std::vector<std::filesystem::path>& last_model_folders = {});
 
-/// Reads an experiment again from what was kept when it was read first, on whatever machine and without looking at any
-/// file: the same experiment bit for bit, if `seed` and `duration` are those that it had.
+/// Reads an experiment again from the files that were kept when it was first read, on any machine and without access to
+/// other files. The result is identical if `seed` and `duration` are the same.
 Experiment read_experiment(std::shared_ptr<const KeptFiles> kept, std::optional<std::uint64_t> seed,
                            std::optional<std::chrono::nanoseconds> duration);
 
-/// What a recording of the experiment is to hold, in YAML, as the experiment itself would say it after its key
-/// `record`. What is not said is as the experiment has it. Throws InputError.
+/// Reads the contents of a recording of the experiment from YAML, with the keys of `record` in an experiment. Absent
+/// keys keep the values of the experiment. Throws InputError.
 Recorded read_recorded(const std::string& text, const Experiment& experiment);
 
 }  // namespace cohort::parsing

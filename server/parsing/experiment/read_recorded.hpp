@@ -5,7 +5,7 @@
 
 namespace cohort::parsing {
 
-/// What is written, in place of what `recorded` has. What is wrong is reported.
+/// Reads the given keys into `recorded`; reports problems.
 void read_recorded(const ScheduleEntry& entry, const World& world, Recorded& recorded);
 
 }  // namespace cohort::parsing

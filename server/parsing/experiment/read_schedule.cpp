@@ -22,7 +22,7 @@
 namespace cohort::parsing {
 namespace {
 
-// The names of the parts that may stand in a list of the experiment.
+// Returns the names of the parts that are allowed in a list of the experiment.
 std::vector<std::string> kinds_in(std::string_view list) {
   std::vector<std::string> kinds;
   for (const Extension& part : experiment_parts())
@@ -41,11 +41,11 @@ std::string either_of(const std::vector<std::string>& kinds) {
 }  // namespace
 
 struct ScheduleReader::Written {
-  std::string path;  // of the kind, such as `events[0].add`
+  std::string path;  // path of the kind, such as `events[0].add`
   std::string kind;
-  const YamlNode* map = nullptr;  // of the kind's keys
+  const YamlNode* map = nullptr;  // keys of the kind
   std::optional<std::chrono::nanoseconds> time{};
-  const YamlNode* on = nullptr;  // what makes it happen in place of a time
+  const YamlNode* on = nullptr;  // the action that triggers it, instead of a time
   std::string on_path;
 };
 
@@ -90,7 +90,7 @@ ReadCondition reader_of(std::string_view kind) {
 
 bool is_of_joints(Quantity quantity) { return quantity == Quantity::joint_force || quantity == Quantity::joint_torque; }
 
-// Ascending; what selects none is reported.
+// Returns the selected joints, ascending; reports selectors that match none.
 std::vector<std::size_t> selected_joints(const ScheduleEntry& entry, const World& world) {
   std::set<std::size_t> selected;
   std::vector<std::string> names;
@@ -103,7 +103,7 @@ std::vector<std::size_t> selected_joints(const ScheduleEntry& entry, const World
       selects = true;
     }
     if (!selects)
-      entry.problem("joints", "no breakable joint is called '" + selector + "'" + suggestion(selector, names));
+      entry.problem("joints", "there is no breakable joint '" + selector + "'" + suggestion(selector, names));
   }
   return {selected.begin(), selected.end()};
 }
@@ -114,7 +114,7 @@ void ScheduleReader::choose_kind(const YamlMap& map, const std::vector<std::stri
   for (const std::string& kind : kinds) {
     if (!map.has(kind)) continue;
     if (!written.kind.empty()) {
-      map.problem(kind, "is a second one; every entry of the list has one");
+      map.problem(kind, "is unexpected; each entry of the list has only one of these keys");
       continue;
     }
     written.kind = kind;
@@ -127,14 +127,14 @@ void ScheduleReader::read_when(const YamlMap& map, Written& written) {
   if (map.has("on")) {
     written.on = &map.where("on");
     written.on_path = map.path_to("on");
-    if (map.has("at")) map.problem("on", "has no place beside `at`");
+    if (map.has("at")) map.problem("on", "cannot be used together with `at`");
     return;
   }
-  map.require("at", "when it happens, in seconds of simulated time; or `on`, what makes it happen");
+  map.require("at", "time of the event, in seconds of simulated time; or `on`, the action that triggers it");
   const std::optional<double> seconds = map.real("at");
   if (!seconds) return;
   const std::optional<std::chrono::nanoseconds> time = schedule_time(*seconds);
-  if (!time) map.problem("at", "expected from 0 s to 9e9 s");
+  if (!time) map.problem("at", "expected a time from 0 s to 9e9 s");
   written.time = time;
 }
 
@@ -167,7 +167,7 @@ std::vector<ScheduleReader::Written> ScheduleReader::entries(const std::string& 
 }
 
 std::vector<LaterObject> ScheduleReader::later_objects() const {
-  // What is wrong is reported when all of it is read.
+  // Problems are reported when the whole list is read.
   std::vector<Problem> ignored;
   std::vector<LaterObject> objects;
   if (!top_.has("events") || !top_.where("events").is_list()) return objects;
@@ -219,7 +219,7 @@ void ScheduleReader::read_events(Experiment& experiment) const {
   for (ReadEvent& each : events) experiment.events.push_back(std::move(each.event));
 }
 
-// The robots among those chosen that have the action.
+// Reads a reaction of the selected robots that have the action.
 std::optional<Reaction> ScheduleReader::read_on(const Written& written, const World& world) const {
   const ScheduleEntry entry(*written.on, written.on_path, experiment_part("on", "an event"), report_);
   const KeyValues& values = entry.values();
@@ -242,7 +242,7 @@ std::optional<Reaction> ScheduleReader::read_on(const Written& written, const Wo
       if (name_of(device) == reaction.action) reaction.robots.push_back(robot);
     }
   if (!reaction.robots.empty()) return reaction;
-  entry.problem("action", "no robot that is chosen has an action '" + reaction.action + "'" +
+  entry.problem("action", "none of the selected robots has an action '" + reaction.action + "'" +
                               suggestion(reaction.action, {known.begin(), known.end()}));
   return std::nullopt;
 }
@@ -276,8 +276,8 @@ std::vector<ScheduleReader::ReadEvent> ScheduleReader::read_spawn(const Written&
   return events;
 }
 
-// What has been removed does not come back, and what has not come yet cannot be acted on. What comes when a robot does
-// something may be there at any time.
+// Reports events for objects that have been removed or not yet added. Objects that are added by actions of robots may
+// be present at any time.
 void ScheduleReader::check_order(const World& world, const std::vector<ReadEvent>& events,
                                  const std::vector<Event>& at_any_time) const {
   std::vector<char> is_there(world.instances.size());
@@ -290,9 +290,9 @@ void ScheduleReader::check_order(const World& world, const std::vector<ReadEvent
     if (std::holds_alternative<SpawnNew>(event.effect)) continue;
     const std::string name = "'" + world.instances[event.object].name + "'";
     if (is_gone[event.object])
-      report_.problem(*each.node, each.path, name + " has been removed by then");
+      report_.problem(*each.node, each.path, name + " has been removed before this event");
     else if (event.kind != "add" && !is_there[event.object])
-      report_.problem(*each.node, each.path, name + " has not been added by then");
+      report_.problem(*each.node, each.path, name + " has not been added before this event");
     if (event.kind == "add") is_there[event.object] = 1;
     if (event.kind == "remove" && is_there[event.object]) is_gone[event.object] = 1;
   }
@@ -326,7 +326,7 @@ void ScheduleReader::read_prints(Experiment& experiment) const {
     printed.quantity = choice_of<Quantity>(quantities, values.text("quantity"));
     const bool of_joints = is_of_joints(printed.quantity);
     if (const std::string stray = of_joints ? "objects" : "joints"; entry.is_written(stray))
-      entry.problem(stray, "has no place beside the quantity '" + values.text("quantity") + "'");
+      entry.problem(stray, "cannot be used with the quantity '" + values.text("quantity") + "'");
     if (of_joints)
       printed.joints = selected_joints(entry, experiment.world);
     else

@@ -9,22 +9,21 @@
 
 namespace cohort::parsing {
 
-/// Reads what an experiment says of the course of its run: `events`, `stop`, `print` and `history`. What is wrong goes
-/// to the report.
+/// Reads the course of an experiment: `events`, `stop`, `print`, `history` and `record`. Reports problems.
 class ScheduleReader {
  public:
   ScheduleReader(const YamlMap& top, std::filesystem::path file, const YamlReport& report)
       : top_(top), file_(std::move(file)), report_(report) {}
 
-  /// The objects that events add: to be read with the world.
+  /// Returns the objects that events add, which are read with the world.
   std::vector<LaterObject> later_objects() const;
 
-  /// All of it, into `experiment`, whose world is read.
+  /// Reads everything into `experiment`, whose world has been read.
   void read(Experiment& experiment) const;
 
  private:
   struct Written;    // one entry of a list: its kind and the map of its keys
-  struct ReadEvent;  // and where it stands
+  struct ReadEvent;  // an event and its position
   std::vector<Written> entries(const std::string& list, bool have_times) const;
   static void choose_kind(const YamlMap& map, const std::vector<std::string>& kinds, Written& written);
   static void read_when(const YamlMap& map, Written& written);

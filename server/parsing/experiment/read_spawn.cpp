@@ -11,12 +11,13 @@ namespace {
 
 constexpr const char* spawn_kind = "spawn";
 
-// The team of the new objects; empty if they are no robots, or if it is not clear which, which is reported.
+// Returns the team of the new objects; empty if they are not robots, or, with a report, if the team is not clear.
 std::string read_team(const ScheduleEntry& entry, const Model& model, const std::vector<Team>& teams) {
   const KeyValues& values = entry.values();
   const std::string team = values.has("team") ? values.text("team") : "";
   if (!model.is_robot()) {
-    if (values.has("team")) entry.problem("team", "the model '" + model.name + "' is no robot, so it is in no team");
+    if (values.has("team"))
+      entry.problem("team", "the model '" + model.name + "' is not a robot, so it cannot join a team");
     return "";
   }
   std::vector<std::string> names;
@@ -31,30 +32,30 @@ std::string read_team(const ScheduleEntry& entry, const Model& model, const std:
     return team;
   }
   if (names.size() == 1) return names.front();
-  if (!names.empty()) entry.problem("team", "missing: which of the teams a new robot joins: " + list);
+  if (!names.empty()) entry.problem("team", "missing: the team of the new robots; expected one of " + list);
   return "";
 }
 
 void check_area(const ScheduleEntry& entry) {
-  if ((entry.values().point("area").array() < 0.0).any()) entry.problem("area", "expected edges of at least 0 m");
+  if ((entry.values().point("area").array() < 0.0).any()) entry.problem("area", "expected a size >= 0 m");
 }
 
-// How often is said where it comes more than once.
+// Checks that a repetition is given exactly where the event can be repeated.
 void check_repetition(const ScheduleEntry& entry, std::optional<std::chrono::nanoseconds> at, bool is_reaction) {
   const bool repeats = entry.is_written("every");
-  if (is_reaction && repeats) entry.problem("every", "has no place beside `on`");
+  if (is_reaction && repeats) entry.problem("every", "cannot be used together with `on`");
   if (!is_reaction && !repeats && entry.is_written("most"))
-    entry.problem("most", "has no place without `every` or `on`: what happens at one time brings one object");
+    entry.problem("most", "cannot be used without `every` or `on`; an event at a single time creates one object");
   if (at && at->count() == 0)
-    entry.problem("nothing can be spawned at 0 s: what is there from the beginning stands in the world");
+    entry.problem("objects cannot be spawned at 0 s; put initial objects into the world file");
 }
 
 void check_most(const ScheduleEntry& entry, const Experiment& experiment) {
   std::size_t total = 0;
   for (const Spawner& spawner : experiment.spawners) total += std::min(spawner.most, most_spawned + 1);
   if (total > most_spawned)
-    entry.problem("most", "the events of an experiment may bring " + std::to_string(most_spawned) +
-                              " new objects together, and here it would be more");
+    entry.problem("most", "the events of an experiment can create at most " + std::to_string(most_spawned) +
+                              " new objects in total, but these create more");
 }
 
 std::vector<Event> events_of(std::size_t spawner, std::chrono::nanoseconds first, std::size_t count,
@@ -80,7 +81,7 @@ std::vector<Event> read_spawn_events(const ScheduleEntry& entry, std::optional<s
   Spawner spawner{values.text("name"), 0, values.pose("pose"), values.point("area"), "", 1};
   if (is_reaction || values.has("every")) spawner.most = static_cast<std::size_t>(values.whole("most"));
   if (!is_object_name(spawner.name + "_" + std::to_string(most_spawned)))
-    entry.problem("name", "expected parts with a slash between them, together less than 250 bytes");
+    entry.problem("name", "expected a name of parts that are separated by slashes, shorter than 250 bytes");
   const auto& models = experiment.world.spawnable_models;
   const auto model = std::ranges::find(models, values.text("model"), &SpawnableModel::uri);
   if (model == models.end()) return {};  // which is reported with the world

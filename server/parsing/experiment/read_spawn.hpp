@@ -9,9 +9,9 @@
 
 namespace cohort::parsing {
 
-/// Reads what an event `spawn` says, and adds a spawner to `experiment`, whose world and teams are read. Returns the
-/// events that it stands for, one for each time at which something comes. `at`: its time, if it has one that is right;
-/// `is_reaction`: it has `on` in place of a time.
+/// Reads an event `spawn`, and adds a spawner to `experiment`, whose world and teams have been read. Returns its
+/// events, one for each time at which an object is created. `at`: its time, if valid; `is_reaction`: it has `on`
+/// instead of a time.
 std::vector<Event> read_spawn_events(const ScheduleEntry& entry, std::optional<std::chrono::nanoseconds> at,
                                      bool is_reaction, Experiment& experiment);
 

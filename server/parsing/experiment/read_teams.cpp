@@ -33,7 +33,7 @@ bool read_required(const YamlMap& team, bool if_absent) {
 
 Policy read_policy(const YamlMap& team) {
   Policy policy;
-  // False if the key is there and its value is wrong.
+  // Returns false if the key is present with an invalid value.
   const auto ticks = [&](const char* key, std::uint64_t least, std::uint32_t& value) {
     const auto read = team.whole(key, least, greatest_tick_count);
     if (read) value = static_cast<std::uint32_t>(*read);
@@ -48,7 +48,7 @@ Policy read_policy(const YamlMap& team) {
   policy.mode = read_mode(team);
   const bool is_free = policy.mode == Mode::free;
   if (is_free && policy.delay != 0)
-    team.problem("delay", "has no meaning with mode: free, whose answers act as they come");
+    team.problem("delay", "cannot be used with mode: free, where answers act on arrival");
   policy.required = read_required(team, !is_free);
 
   const std::string on_late = team.text("on_late").value_or(is_free ? "hold" : "wait");
@@ -59,16 +59,16 @@ Policy read_policy(const YamlMap& team) {
   }
   policy.on_late = choice_of<OnLate>(late_policies, on_late);
   if (policy.on_late == OnLate::wait) {
-    if (is_free) team.problem("on_late", "nobody waits under mode: free; expected hold, zero, detach or stop");
-    if (team.has("deadline")) team.problem("deadline", "has no meaning with on_late: wait, which waits for ever");
+    if (is_free) team.problem("on_late", "'wait' cannot be used with mode: free; expected hold, zero, detach or stop");
+    if (team.has("deadline")) team.problem("deadline", "cannot be used with on_late: wait, which waits without limit");
     return policy;
   }
   if (is_free && policy.on_late == OnLate::hold) {
     if (team.has("deadline"))
-      team.problem("deadline", "has no meaning with mode: free, which holds the last command anyway");
+      team.problem("deadline", "cannot be used with mode: free and on_late: hold, which has no time limit");
     return policy;
   }
-  team.require("deadline", "how long to wait before '" + on_late + "', in seconds");
+  team.require("deadline", "wall time to wait before '" + on_late + "', in seconds");
   policy.deadline = read_seconds(team, "deadline").value_or(policy.deadline);
   return policy;
 }
@@ -82,8 +82,8 @@ OnLost read_on_lost(const YamlMap& team, const Policy& policy) {
   }
   if (policy.on_late != OnLate::wait)
     team.problem("on_lost",
-                 "'rewind' needs on_late: wait; the wall clock decides under other policies, so a run that "
-                 "is repeated may be another one");
+                 "'rewind' requires on_late: wait; with other policies the results depend on the wall clock, "
+                 "so a repeated run may differ");
   return OnLost::rewind;
 }
 
@@ -135,8 +135,8 @@ std::vector<Team> TeamReader::read(const YamlMap& top) {
 void TeamReader::read_team(const YamlNode& node, const std::string& path) {
   const YamlMap map(node, path, names_of_keys(experiment_part("teams", "experiment")), report_);
   map.require("name", "a name for the team");
-  map.require("robots", "which robots belong to it");
-  map.require("controller", "a controller plugin: its name or a path to it");
+  map.require("robots", "robots of the team");
+  map.require("controller", "name of a controller, or path to a controller plugin");
   Team team;
   team.name = map.text("name").value_or("");
   team.controller = map.text("controller").value_or("");
@@ -171,8 +171,8 @@ void TeamReader::read_team(const YamlNode& node, const std::string& path) {
   teams_.push_back(std::move(team));
 }
 
-// The controller knows what they mean; here only their shape is looked at: maps of maps, of values, and of lists of
-// values.
+// Reads parameters, whose meaning only the controller knows. Checks only their structure: maps of maps, of values, and
+// of lists of values.
 void TeamReader::read_parameters(const YamlNode& map, const std::string& path, const std::string& prefix,
                                  std::vector<Parameter>& parameters) {
   for (const auto& [key, value] : map.pairs) {
@@ -230,14 +230,15 @@ void TeamReader::claim(const YamlNode& node, const std::string& path, const std:
       taken.push_back(robot);
   }
   if (!taken.empty())
-    report_.problem(node, path, "already in another team: " + listed(taken) + " ('" + team_of_[taken[0]] + "')");
+    report_.problem(node, path,
+                    "robots that are already in another team: " + listed(taken) + " ('" + team_of_[taken[0]] + "')");
 }
 
 void TeamReader::report_robots_without_team(const YamlMap& top) {
   std::vector<std::uint32_t> without;
   for (std::uint32_t robot = 0; robot < team_of_.size(); ++robot)
     if (team_of_[robot].empty()) without.push_back(robot);
-  if (!without.empty()) top.problem("teams", "in no team: " + listed(without));
+  if (!without.empty()) top.problem("teams", "robots that are not in any team: " + listed(without));
 }
 
 std::string TeamReader::listed(const std::vector<std::uint32_t>& robots) const {
@@ -257,7 +258,7 @@ std::optional<std::chrono::nanoseconds> read_seconds(const YamlMap& map, const s
   const double nanoseconds = std::round(*seconds * 1e9);
   if (nanoseconds >= 1.0 && *seconds <= longest)
     return std::chrono::nanoseconds(static_cast<std::int64_t>(nanoseconds));
-  map.problem(key, "expected more than 0 s and at most 9e9 s");
+  map.problem(key, "expected a time > 0 s and <= 9e9 s");
   return std::nullopt;
 }
 

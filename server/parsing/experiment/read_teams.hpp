@@ -11,11 +11,11 @@
 
 namespace cohort::parsing {
 
-/// Reads a time in seconds that is more than nothing and fits into nanoseconds; nothing if the key is absent or wrong.
+/// Reads a positive time in seconds that fits into nanoseconds; returns nothing if the key is absent or invalid.
 std::optional<std::chrono::nanoseconds> read_seconds(const YamlMap& map, const std::string& key);
 
-/// Reads the teams of an experiment: their controllers and policies, and the robots of `world` that they select. Null
-/// is a world that could not be read: nothing is selected then. What is wrong goes to the report.
+/// Reads the teams of an experiment: their controllers and policies, and the robots of `world` that they select.
+/// `world` is null if it could not be read; then no robots are selected. Reports problems.
 std::vector<Team> read_teams(const YamlMap& top, const World* world, const YamlReport& report);
 
 }  // namespace cohort::parsing

@@ -15,8 +15,12 @@ std::optional<std::chrono::nanoseconds> schedule_time(double seconds) {
   return std::chrono::nanoseconds(static_cast<std::int64_t>(std::round(seconds * 1e9)));
 }
 
-ScheduleEntry::ScheduleEntry(const YamlNode& map, std::string path, const Extension& part, const YamlReport& report)
-    : map_(map), path_(std::move(path)), report_(report), values_(read_values(map, path_, part, true, report)) {}
+ScheduleEntry::ScheduleEntry(const YamlNode& map, std::string path, const Extension& part, const YamlReport& report,
+                             Fallbacks fallbacks)
+    : map_(map),
+      path_(std::move(path)),
+      report_(report),
+      values_(read_values(map, path_, part, fallbacks == Fallbacks::taken, report)) {}
 
 void ScheduleEntry::problem(const std::string& key, std::string message) const {
   report_.problem(is_written(key) ? *map_.find(key) : map_, path_ + "." + key, std::move(message));

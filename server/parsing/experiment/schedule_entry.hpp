@@ -11,26 +11,30 @@
 
 namespace cohort::parsing {
 
-/// Nothing if it is less than 0 s, or more than nanoseconds can count.
+/// Returns the time; nothing if it is less than 0 s or does not fit into nanoseconds.
 std::optional<std::chrono::nanoseconds> schedule_time(double seconds);
 
-/// The values of one map in the course of an experiment, and where they stand. What is wrong goes to the report.
+/// Selects whether an absent key has its fallback as its value.
+enum class Fallbacks { taken, left_out };
+
+/// The values of one map of an experiment, with their positions in the file. Reports problems.
 class ScheduleEntry {
  public:
   /// `map` and `report` must outlive this.
-  ScheduleEntry(const YamlNode& map, std::string path, const Extension& part, const YamlReport& report);
+  ScheduleEntry(const YamlNode& map, std::string path, const Extension& part, const YamlReport& report,
+                Fallbacks fallbacks = Fallbacks::taken);
 
   const KeyValues& values() const { return values_; }
-  /// Whether the file has the key.
+  /// Returns whether the file has the key.
   bool is_written(const std::string& key) const { return map_.find(key) != nullptr; }
-  /// At the key, or at the map if it has no such key.
+  /// Reports a problem at the key, or at the map if it has no such key.
   void problem(const std::string& key, std::string message) const;
-  /// Of the whole map.
+  /// Reports a problem of the whole map.
   void problem(std::string message) const { report_.problem(map_, path_, std::move(message)); }
 
-  /// Of a key in seconds; nothing, and reported, if it is too long.
+  /// Returns the time of a key in seconds; nothing, with a report, if it is too long.
   std::optional<std::chrono::nanoseconds> time(const std::string& key) const;
-  /// The objects that the key `objects` selects, ascending; what selects none is reported.
+  /// Returns the objects that the key `objects` selects, ascending; reports selectors that match none.
   std::vector<std::size_t> objects(const World& world) const;
 
  private:

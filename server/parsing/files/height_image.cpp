@@ -15,17 +15,17 @@ namespace {
 constexpr png_uint_32 most_pixels = 8193;  // along an edge
 
 struct Image {
-  std::string_view unread;  // of the file
+  std::string_view unread;  // rest of the file
   png_uint_32 width = 0;
   png_uint_32 height = 0;
   int bits = 0;
   int colours = 0;
   std::vector<png_byte> bytes;  // row by row; of 16 bits, the higher byte first
-  std::vector<png_bytep> rows;  // where each begins in `bytes`
+  std::vector<png_bytep> rows;  // start of each in `bytes`
   std::string error;
 };
 
-// libpng jumps out of its calls, so here is nothing that needs a destructor to run.
+// libpng leaves its calls by longjmp, so these functions must have no objects with destructors.
 extern "C" void keep_error(png_structp png, png_const_charp message) {
   static_cast<Image*>(png_get_error_ptr(png))->error = message;
   png_longjmp(png, 1);
@@ -38,7 +38,7 @@ extern "C" void take_bytes(png_structp png, png_bytep bytes, std::size_t count) 
   unread.remove_prefix(count);
 }
 
-// False if libpng fails; `image` then has its message.
+// Returns false if libpng fails; `image` then has its message.
 bool read_header(png_structp png, png_infop info, Image& image) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_user_limits(png, most_pixels, most_pixels);
@@ -69,7 +69,7 @@ Image read_png(InputFiles& input, const std::filesystem::path& path) {
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   const auto destroy = [&info](png_structp made) { png_destroy_read_struct(&made, &info, nullptr); };
   const std::unique_ptr<png_struct, decltype(destroy)> owner(png, destroy);
-  if (info == nullptr) fail("there is not enough memory");
+  if (info == nullptr) fail("not enough memory");
 
   if (!read_header(png, info, image)) fail(image.error + "; expected a PNG image");
   if (image.colours != PNG_COLOR_TYPE_GRAY || image.bits < 8)

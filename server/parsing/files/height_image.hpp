@@ -7,9 +7,8 @@
 
 namespace cohort::parsing {
 
-/// Heights from a grey PNG image: a height for each pixel, black is 0 and white is `size.z()`. The image covers
-/// `size.x()` by `size.y()`, its upper edge towards +y. Throws std::runtime_error that says what is wrong with the
-/// file.
+/// Reads heights from a grey PNG image: one for each pixel; black is 0 and white is `size.z()`. The image covers
+/// `size.x()` by `size.y()`, with its upper edge towards +y. Throws std::runtime_error with the problem of the file.
 HeightGrid read_height_image(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& size);
 
 }  // namespace cohort::parsing

@@ -18,14 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* is_a_folder = "this is a folder; name a file in it";
+constexpr const char* is_a_folder = "this is a folder; expected a file";
 
 std::string variable(const char* name) {
   const char* const value = std::getenv(name);
   return value != nullptr ? value : "";
 }
 
-// Ours, an empty one, and those of other programs.
+// Returns the folders of Cohort, an empty entry, and the folders of other programs.
 std::string folders_of_environment() {
   std::string path = variable("COHORT_MODEL_PATH");
   for (std::size_t at = path.find("::"); at != std::string::npos; at = path.find("::")) path.erase(at, 1);
@@ -82,7 +82,7 @@ InputFiles::InputFiles() {
 InputFiles::InputFiles(std::shared_ptr<const KeptFiles> kept)
     : source_(std::move(kept)), working_folder_(source_->working_folder), model_path_(source_->model_path) {
   for (const std::string& folder : source_->folders) folders_.insert(key_of(folder));
-  // Recordings from before keys were normal have paths with "..". A path that is its own key comes first.
+  // Recordings from before keys were normalised have paths with "..". An exact match of the key has priority.
   for (const bool is_key : {true, false})
     for (const KeptFile& file : source_->files)
       if (std::string key = key_of(file.path); (key == file.path) == is_key) kept_.emplace(std::move(key), &file.bytes);
@@ -119,10 +119,10 @@ std::optional<std::string> InputFiles::why_unreadable(const fs::path& file) cons
   if (!source_) {
     if (auto reason = parsing::why_unreadable(key)) return reason;
     if (trusted_.contains(key)) return std::nullopt;
-    return "the file is in none of the folders that this may read; --allow-files " +
-           fs::path(key).parent_path().string() + " lets it";
+    return "the file is outside of all allowed folders; use --allow-files " + fs::path(key).parent_path().string() +
+           " to allow it";
   }
-  return folders_.contains(key) ? is_a_folder : "it is none of the files that the experiment was read from";
+  return folders_.contains(key) ? is_a_folder : "the file is not among those from which the experiment was read";
 }
 
 const std::string& InputFiles::read(const fs::path& file) {

@@ -18,7 +18,7 @@
 namespace cohort::parsing {
 namespace {
 
-// How a child ends that is not ended by a signal.
+// Exit codes of a child that is not ended by a signal.
 constexpr int has_finished = 0;
 constexpr int is_out_of_memory = 70;
 constexpr int cannot_be_limited = 71;
@@ -26,7 +26,7 @@ constexpr int has_thrown = 72;
 
 // ---- In the child ----
 
-// The address space of this process [bytes]; 0 if it is unknown.
+// Returns the size of the address space of this process [bytes]; 0 if it is unknown.
 std::uint64_t address_space() {
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   if (file < 0) return 0;
@@ -43,19 +43,19 @@ bool limit(int resource, rlim_t soft, rlim_t hard) {
   return setrlimit(static_cast<__rlimit_resource>(resource), &then) == 0;
 }
 
-// AddressSanitizer and ThreadSanitizer allocate within what they have reserved, so the limit of memory does not bind
-// there, and does no harm.
+// AddressSanitizer and ThreadSanitizer allocate within memory that they have reserved, so there the memory limit has no
+// effect.
 bool set_limits(const ChildLimits& limits) {
   const std::uint64_t shared = address_space();
   const auto seconds = static_cast<rlim_t>(limits.processor_time.count());
   alarm(static_cast<unsigned>(limits.wall_time.count()));
   std::set_new_handler([] { _exit(is_out_of_memory); });
   return shared > 0 && limit(RLIMIT_AS, shared + limits.memory, shared + limits.memory) &&
-         limit(RLIMIT_CPU, seconds, seconds + 1);  // at the hard limit the signal is SIGKILL, which says less
+         limit(RLIMIT_CPU, seconds, seconds + 1);  // at the hard limit the signal is SIGKILL, which is less specific
 }
 
-// A child that dies is no event for this process's handlers, and what ends a program from its terminal is for the
-// parent to answer.
+// Resets signals: handlers of the parent must not run for a crash of the child, and only the parent handles signals
+// from the terminal.
 void leave_signals_of_parent() {
   for (int number = 1; number < NSIG; ++number) std::signal(number, SIG_DFL);
   sigset_t none;
@@ -64,8 +64,8 @@ void leave_signals_of_parent() {
   setpgid(0, 0);
 }
 
-// Returns `socket` under another number; nothing else stays open. The C library tells the standard error of a heap that
-// is broken.
+// Moves `socket` to another number, which it returns, and closes all other files. Standard error stays, since the C
+// library reports heap corruption there.
 int leave_files_of_parent(int socket) {
   socket = fcntl(socket, F_DUPFD_CLOEXEC, 3);
   const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
@@ -111,7 +111,7 @@ std::string why_ended(int status, const ChildLimits& limits) {
   }
   const int code = WEXITSTATUS(status);
   if (code == is_out_of_memory) return "needed more than " + text_of(limits.memory) + " of memory";
-  if (code == cannot_be_limited) return "could not be limited in memory and time; is there a /proc?";
+  if (code == cannot_be_limited) return "could not be limited in memory and time; check that /proc is mounted";
   return "crashed (exit code " + std::to_string(code) + ")";
 }
 
@@ -165,7 +165,7 @@ LimitedChild::~LimitedChild() {
   if (process_ > 0) end();
 }
 
-// A process that has begun to end, which closes its stream, keeps its reason when it is killed.
+// If a process is already exiting, which closes its stream, killing it does not change its exit status.
 std::string LimitedChild::end() {
   kill(process_, SIGKILL);
   int status = 0;
@@ -173,7 +173,7 @@ std::string LimitedChild::end() {
   do ended = waitpid(process_, &status, 0);
   while (ended < 0 && errno == EINTR);
   process_ = -1;
-  // The parent of this process may have made it ignore the end of its children.
+  // The parent of this process may have set it to ignore the exit of its children.
   return ended < 0 ? "crashed" : why_ended(status, limits_);
 }
 

@@ -14,10 +14,10 @@
 
 namespace cohort::parsing {
 
-/// One end of a stream of bytes between a process and its child.
+/// One end of a byte stream between a process and its child.
 class ChildStream {
  public:
-  /// The process at the other end has ended, or has closed its end.
+  /// The process at the other end has exited or closed its end.
   struct Lost : std::runtime_error {
     Lost() : std::runtime_error("the process at the other end has ended") {}
   };
@@ -50,20 +50,20 @@ class ChildStream {
 };
 
 struct ChildLimits {
-  std::uint64_t memory = std::uint64_t{1} << 30;  ///< in addition to what it has when it starts [bytes]
+  std::uint64_t memory = std::uint64_t{1} << 30;  ///< in addition to its memory at the start [bytes]
   std::chrono::seconds processor_time{20};
-  std::chrono::seconds wall_time{60};  ///< for one that waits for something that never comes
+  std::chrono::seconds wall_time{60};  ///< for a child that would wait forever
 };
 
-/// A copy of this process that does work which may crash, never end, or fill the memory, without harm to this process.
-/// The copy has one thread, no open file but its stream, and this process's memory as it is now. Other threads may have
-/// held locks when it was copied: what it calls must not need any but those of malloc. It has the rights of this
-/// process, so the limits hold off accidents, not code that takes it over.
+/// A copy of this process for work that may crash, never end, or exhaust the memory, without effect on this process.
+/// The copy has one thread, no open file except its stream, and the memory of this process at the time of copying.
+/// Other threads may have held locks at that time, so the work must not need any locks except those of malloc. The copy
+/// has the rights of this process: the limits protect against accidents, not against malicious code.
 class LimitedChild {
  public:
   using Work = std::function<void(ChildStream&)>;
 
-  /// Throws std::system_error if the system has no process to give.
+  /// Throws std::system_error if no process can be created.
   LimitedChild(const ChildLimits& limits, const Work& work);
   LimitedChild(const LimitedChild&) = delete;
   LimitedChild& operator=(const LimitedChild&) = delete;
@@ -72,8 +72,8 @@ class LimitedChild {
 
   ChildStream& stream() { return stream_; }
 
-  /// Ends the child, and returns why it ended if it had already, such as "needed more than 1 GiB of memory". For one
-  /// that is called once, after `stream` has thrown Lost.
+  /// Ends the child, and returns why it had ended, such as "needed more than 1 GiB of memory". Call it at most once,
+  /// after `stream` has thrown Lost.
   std::string end();
 
  private:

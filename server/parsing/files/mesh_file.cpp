@@ -17,16 +17,15 @@
 namespace cohort::parsing {
 namespace {
 
-// What the importer, in its process, sends. A question is followed by the name of a file, and answered with a byte, or
-// with the content.
+// Messages of the importer process. A question is followed by the name of a file; the answer is a byte or the content.
 enum class Message : std::uint8_t { asks_whether_file, asks_for_content, mesh, error };
 
 constexpr std::uint64_t longest_text = 1u << 16;  // [bytes]
 constexpr std::uint64_t no_content = ~std::uint64_t{0};
 
-// What the importer sent is none of these messages: its memory is broken.
+// An invalid message of the importer, whose memory is corrupt.
 struct Garbled : std::runtime_error {
-  Garbled() : std::runtime_error("sent something that is no mesh") {}
+  Garbled() : std::runtime_error("sent invalid mesh data") {}
 };
 
 void send_text(ChildStream& stream, const std::string& text) {
@@ -60,7 +59,7 @@ std::vector<Item> receive_items(ChildStream& stream) {
 
 // ---- In the importer's process ----
 
-// The mesh's own file is in the memory that the two processes share; for all others, the parent is asked, which keeps
+// The file of the mesh is in the memory that both processes share. All other files come from the parent, which keeps
 // what it reads.
 class SourcesOfParent : public MeshSources {
  public:
@@ -108,7 +107,7 @@ void import_and_send(ChildStream& stream, MeshSources& sources, const std::files
   }
 }
 
-// ---- In ours ----
+// ---- In this process ----
 
 void check_format(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -116,7 +115,7 @@ void check_format(const std::filesystem::path& file) {
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
   for (const char* const known : {".stl", ".obj", ".dae"})
     if (extension == known) return;
-  throw std::runtime_error("'" + file.string() + "' is in no format that is read: expected .stl, .obj or .dae");
+  throw std::runtime_error("'" + file.string() + "' has an unsupported format; expected .stl, .obj or .dae");
 }
 
 TriangleMesh receive_mesh(ChildStream& stream) {
@@ -142,7 +141,7 @@ void send_content(ChildStream& stream, InputFiles& input, const std::string& fil
   stream.send(content.data(), content.size());
 }
 
-// Answers the importer until it has the mesh, or knows why there is none.
+// Answers the importer until it sends the mesh or an error.
 TriangleMesh answer_until_mesh(ChildStream& stream, InputFiles& input) {
   while (true) {
     switch (stream.receive<Message>()) {

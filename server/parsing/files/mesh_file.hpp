@@ -8,15 +8,15 @@
 
 namespace cohort::parsing {
 
-/// A mesh that crashed its importer, or for which that needed more memory or time than it may.
+/// The importer crashed on a mesh, or exceeded its limits of memory or time.
 struct ImporterFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads all triangles of an STL, OBJ or COLLADA file. Coordinates are as in the file, in metres, multiplied by
-/// `scale`; a unit that a COLLADA file gives is heeded, its up-axis is not. Vertices at the same place are one. Colours
-/// are those of materials (of an OBJ in its .mtl), where there are any. The importer is a process of its own
-/// (LimitedChild). Throws std::runtime_error that says what is wrong with the file, or ImporterFailed.
+/// Reads all triangles of an STL, OBJ or COLLADA file. Coordinates are those of the file, in metres, multiplied by
+/// `scale`; the unit of a COLLADA file is applied, its up-axis is not. Vertices at the same position are merged.
+/// Colours are those of materials (of an OBJ in its .mtl), if any. The importer is a separate process (LimitedChild).
+/// Throws std::runtime_error with the problem of the file, or ImporterFailed.
 TriangleMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale);
 
 }  // namespace cohort::parsing

@@ -29,7 +29,7 @@ Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
   return matrix;
 }
 
-// What assimp reads, of the mesh and of what the mesh names, such as the .mtl of an .obj.
+// A file for assimp: the mesh or a file that it names, such as the .mtl of an .obj.
 class AssimpStream : public Assimp::IOStream {
  public:
   explicit AssimpStream(const std::string& bytes) : bytes_(bytes) {}
@@ -81,8 +81,7 @@ std::uint8_t byte_of(float part) {
   return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(static_cast<double>(part), 0.0, 1.0)));
 }
 
-// The colour of a part by its material; nothing if the file gives it none. (assimp gives such a part a material of its
-// own.)
+// Returns the material colour of a part; nothing if the file has none. (assimp adds a material to such a part.)
 std::optional<Color> color_of(const aiScene& scene, const aiMesh& part) {
   if (part.mMaterialIndex >= scene.mNumMaterials) return std::nullopt;
   const aiMaterial& material = *scene.mMaterials[part.mMaterialIndex];
@@ -94,7 +93,7 @@ std::optional<Color> color_of(const aiScene& scene, const aiMesh& part) {
   return Color{byte_of(color.r), byte_of(color.g), byte_of(color.b)};
 }
 
-// Adds triangles to a mesh. Formats such as STL repeat a vertex for each triangle that has it.
+// Adds triangles to a mesh and merges equal vertices, which formats such as STL repeat for each triangle.
 class MeshBuilder {
  public:
   void add(const aiMesh& part, const Eigen::Matrix4d& transform, const std::optional<Color>& color) {
@@ -110,7 +109,8 @@ class MeshBuilder {
       if (face.mNumIndices != 3) continue;  // a point or a line
       std::array<std::uint32_t, 3> triangle{};
       for (unsigned corner = 0; corner < 3; ++corner) {
-        if (face.mIndices[corner] >= part.mNumVertices) throw std::runtime_error("a triangle has no such vertex");
+        if (face.mIndices[corner] >= part.mNumVertices)
+          throw std::runtime_error("a triangle refers to a vertex that does not exist");
         triangle[corner] = places[face.mIndices[corner]];
       }
       if (mirrors) std::swap(triangle[1], triangle[2]);
@@ -146,7 +146,7 @@ class MeshBuilder {
 TriangleMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale) {
   Assimp::Importer importer;
   importer.SetIOHandler(new AssimpFiles(sources));  // which it owns
-  // Otherwise a file whose z axis points upwards would be turned.
+  // Otherwise assimp would rotate a file whose z axis points upwards.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* const scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr)
@@ -172,7 +172,7 @@ TriangleMesh import_mesh(MeshSources& sources, const std::filesystem::path& file
       for (unsigned i = node->mNumChildren; i-- > 0;) waiting.push_back({node->mChildren[i], transform});
     }
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error("'" + file.string() + "' cannot be used: " + error.what());
+    throw std::runtime_error("'" + file.string() + "' is invalid: " + error.what());
   }
   TriangleMesh mesh = builder.take();
   if (mesh.triangles.empty()) throw std::runtime_error("'" + file.string() + "' has no triangles");

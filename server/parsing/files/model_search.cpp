@@ -21,8 +21,8 @@ constexpr std::string_view package_scheme = "package://";
 constexpr std::string_view file_scheme = "file://";
 constexpr int parent_levels = 4;
 
-// The file that a model.config names: of several, the one of the newest version that libsdformat reads, or else of the
-// oldest that is newer; of those that say no version, the first.
+// Returns the file that a model.config names. Among several, it is the one of the newest version that libsdformat
+// reads, or else the oldest newer one; without versions, the first.
 std::string best_file(const XmlNode& model) {
   const std::pair<int, int> own = version_of(sdf::SDF::Version());
   std::pair<int, int> best{-1, 0};
@@ -77,15 +77,15 @@ fs::path ModelSearch::sdf_file_of(const fs::path& folder) const {
                              outline.error->message);
   const XmlNode* const sdf = outline.root.child("sdf");
   if (outline.root.name != "model" || sdf == nullptr || sdf->text.empty())
-    throw std::runtime_error(config.string() + " needs <model> with <sdf version=\"1.9\">FILE</sdf>");
+    throw std::runtime_error(config.string() + " must contain <model> with <sdf version=\"1.9\">FILE</sdf>");
   const std::string file = best_file(outline.root);
-  if (file.empty()) throw std::runtime_error(config.string() + " names no SDF file of a version that is read");
+  if (file.empty()) throw std::runtime_error(config.string() + " does not name an SDF file of a supported version");
   if (!input_.is_file(folder / file))
     throw std::runtime_error("there is no '" + (folder / file).string() + "', which " + config.string() + " names");
   return folder / file;
 }
 
-// The first folder of this name that has `inside`, or else the first one.
+// Returns the first folder of this name that contains `inside`, or else the first one.
 std::optional<fs::path> ModelSearch::look_for(const std::string& name, const fs::path& folder,
                                               const fs::path& inside) const {
   if (name.empty()) return std::nullopt;
@@ -119,30 +119,32 @@ void ModelSearch::fail_to_find_file(const std::string& file, const fs::path& fol
   const std::string name = file.substr(0, file.find('/'));
   const std::string searched = searched_folders();
   throw std::runtime_error("there is no '" + file + "' in a folder above or beside " + folder.string() +
-                           (searched.empty() ? "" : ", nor in " + searched) + ", and no package.xml above names '" +
-                           name + "'; --allow-files DIR, where DIR has '" + name + "', makes it known");
+                           (searched.empty() ? "" : ", nor in " + searched) +
+                           ", and no package.xml above names the package '" + name +
+                           "'; use --allow-files DIR if DIR contains '" + name + "'");
 }
 
 void ModelSearch::fail_to_find(const std::string& name) const {
   const std::string searched = searched_folders();
   if (searched.empty())
     throw std::runtime_error("there is no model '" + name +
-                             "': no folder 'robots' or 'objects' is beside the world file or up to " +
-                             std::to_string(parent_levels) + " levels above it, and COHORT_MODEL_PATH names none");
-  throw std::runtime_error("there is no model '" + name + "' in " + searched + "; COHORT_MODEL_PATH may name more");
+                             "': there is no folder 'robots' or 'objects' beside the world file or up to " +
+                             std::to_string(parent_levels) + " levels above it, and COHORT_MODEL_PATH lists none");
+  throw std::runtime_error("there is no model '" + name + "' in " + searched +
+                           "; set COHORT_MODEL_PATH to search more folders");
 }
 
-// Whether a folder says that it is a model or a package.
+// Returns whether a folder is marked as a model or a package.
 bool ModelSearch::is_signed(const fs::path& folder) const {
   for (const char* const sign : {"model.config", "package.xml"}) {
     if (!input_.is_folder(folder) || !input_.is_file(folder / sign)) continue;
-    if (!input_.why_unreadable(folder / sign)) input_.read(folder / sign);  // so that it is among what is kept
+    if (!input_.why_unreadable(folder / sign)) input_.read(folder / sign);  // so that it is kept
     return true;
   }
   return false;
 }
 
-// A path without its package, as PyBullet takes it.
+// Finds a path without its package, like PyBullet.
 std::optional<fs::path> ModelSearch::find_file_above(const std::string& path, fs::path folder) const {
   for (; folder != folder.parent_path(); folder = folder.parent_path())
     if (input_.is_file(folder / path)) return folder / path;
@@ -157,8 +159,8 @@ bool ModelSearch::is_package(const fs::path& folder, const std::string& name) co
   return written != nullptr && written->text == name;
 }
 
-// `https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION/files/PATH` is SERVER/OWNER/models/NAME/VERSION/PATH in the
-// cache, in small letters; without a version, or with `tip`, it is the newest.
+// Finds `https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION/files/PATH` as SERVER/OWNER/models/NAME/VERSION/PATH
+// in the cache, in lower case; without a version, or with `tip`, it is the newest.
 fs::path ModelSearch::find_fetched(const std::string& uri) const {
   std::string address = uri.substr(uri.find("://") + 3);
   for (std::size_t at = address.find("%20"); at != std::string::npos; at = address.find("%20", at))
@@ -182,8 +184,8 @@ fs::path ModelSearch::find_fetched(const std::string& uri) const {
     return found;
   }
   throw std::runtime_error(
-      "'" + uri + "' cannot be fetched: expected model://NAME or a path" +
-      (is_model ? "; what `gz fuel download -u \"" + uri + "\"` has put into ~/.gz/fuel is found there" : ""));
+      "'" + uri + "' cannot be downloaded; expected model://NAME or a path" +
+      (is_model ? "; download it with `gz fuel download -u \"" + uri + "\"`; Cohort finds it in ~/.gz/fuel" : ""));
 }
 
 std::string ModelSearch::newest_version(const fs::path& model) const {

@@ -32,7 +32,7 @@ std::vector<std::string_view> split(std::string_view line) {
 
 std::string reading_name(std::size_t index) { return "reading_" + std::to_string(index); }
 
-// What stands in brackets behind the name, or nothing.
+// Returns the text in brackets after the name, or nothing.
 std::optional<std::string> unit_of(std::string_view field, std::string_view name) {
   if (!field.starts_with(name)) return std::nullopt;
   const std::string_view rest = trimmed(field.substr(name.size()));
@@ -85,7 +85,8 @@ class SampleReader {
       const std::string name = reading_name(i - 2);
       const auto unit = unit_of(names[i], name);
       if (!unit) {
-        add_problem(number, std::string(names[i]), "expected '" + name + " [UNIT]'; a number without unit is a [1]");
+        add_problem(number, std::string(names[i]),
+                    "expected '" + name + " [UNIT]'; write [1] for a dimensionless quantity");
         return;
       }
       units.push_back(*unit);
@@ -97,7 +98,7 @@ class SampleReader {
     const std::vector<std::string_view> fields = split(line);
     if (fields.size() != samples_.count() + 2) {
       add_problem(number, "",
-                  "expected " + std::to_string(samples_.count() + 2) + " values, as many as the header names; found " +
+                  "expected " + std::to_string(samples_.count() + 2) + " values, as in the header; found " +
                       std::to_string(fields.size()));
       return;
     }
@@ -111,7 +112,7 @@ class SampleReader {
       }
       values.push_back(*value);
     }
-    // What is not in the grid is said once: it puts everything behind it in doubt.
+    // Only the first error in the grid is reported, since it affects everything after it.
     if (!is_grid_broken_ && !add_place(values[0], values[1], number)) is_grid_broken_ = true;
     samples_.readings.insert(samples_.readings.end(), values.begin() + 2, values.end());
   }
@@ -123,26 +124,27 @@ class SampleReader {
       if (distance < 0.0) return refuse(number, "distance", "expected at least 0 m");
       if (!distances.empty() && distance < distances.back())
         return refuse(number, "distance",
-                      "expected at least " + shortest_text(distances.back()) + ", as in the line before");
+                      "expected at least " + shortest_text(distances.back()) + ", the distance of the line before");
       if (!distances.empty() && angles_here_ < angles.size())
         return refuse(number, "angle",
-                      "expected " + shortest_text(angles[angles_here_]) + " at the distance before this " +
-                          "one: every distance has the angles of the first");
+                      "expected " + shortest_text(angles[angles_here_]) + " at the previous distance; " +
+                          "every distance must have the angles of the first");
       distances.push_back(distance);
       angles_here_ = 0;
     }
     if (distances.size() == 1) {
       if (!angles.empty() && angle <= angles.back())
-        return refuse(number, "angle", "expected more than " + shortest_text(angles.back()) + ", as angles ascend");
-      if (!angles.empty() && angle - angles.front() >= 2.0 * std::numbers::pi)
         return refuse(number, "angle",
-                      "expected less than a full turn from the first, which is taken to follow the last");
+                      "expected more than " + shortest_text(angles.back()) + ", as angles must increase");
+      if (!angles.empty() && angle - angles.front() >= 2.0 * std::numbers::pi)
+        return refuse(number, "angle", "expected an angle less than a full turn from the first");
       angles.push_back(angle);
     } else if (angles_here_ >= angles.size()) {
-      return refuse(number, "angle", "expected the next distance: every distance has the angles of the first");
+      return refuse(number, "angle", "expected the next distance; every distance must have the angles of the first");
     } else if (angle != angles[angles_here_]) {
-      return refuse(number, "angle",
-                    "expected " + shortest_text(angles[angles_here_]) + ": every distance has the angles of the first");
+      return refuse(
+          number, "angle",
+          "expected " + shortest_text(angles[angles_here_]) + "; every distance must have the angles of the first");
     }
     ++angles_here_;
     return true;
@@ -159,7 +161,7 @@ class SampleReader {
     else if (angles_here_ < samples_.angles.size())
       add_problem(last_line, "angle",
                   "the file ends before the angle " + shortest_text(samples_.angles[angles_here_]) +
-                      ": every distance has the angles of the first");
+                      "; every distance must have the angles of the first");
   }
 
   InputFiles& input_;

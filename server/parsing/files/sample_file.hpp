@@ -16,12 +16,12 @@ namespace cohort::parsing {
 ///     0.01,-1.5708,0.9,0.2
 ///
 /// The first line that is neither empty nor a comment names the columns and their units; readings are numbered from 0.
-/// Then come the places, by distance and then by angle, with every angle at every distance. Throws InputError with all
-/// that is wrong, but for what follows from it.
+/// Then follow the positions, ordered by distance and then by angle, with every angle at every distance. Throws
+/// InputError with all problems except consequences of others.
 Samples read_samples(const std::filesystem::path& file);
 Samples read_samples(InputFiles& input, const std::filesystem::path& file);
 
-/// The same as text: read again, it gives the same bits.
+/// Returns the samples as text, from which they can be read again without loss.
 std::string samples_as_text(const Samples& samples);
 
 }  // namespace cohort::parsing

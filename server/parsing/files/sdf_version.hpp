@@ -7,10 +7,10 @@
 
 namespace cohort::parsing {
 
-/// "1.9" as {1, 9}; {0, 0} if it is anything else.
+/// Returns "1.9" as {1, 9}; {0, 0} for anything else.
 std::pair<int, int> version_of(std::string_view text);
 
-/// What is newer than libsdformat reads is made older, up to here.
+/// The newest version that libsdformat reads; newer files are converted down to it.
 inline constexpr std::pair<int, int> newest_version{1, 12};
 
 }  // namespace cohort::parsing

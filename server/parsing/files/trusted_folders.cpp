@@ -10,7 +10,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int levels_above = 4;
-// Where worlds and models keep what is theirs, here and in Gazebo and ROS.
+// Usual folders for files of worlds and models, in Cohort, Gazebo and ROS.
 constexpr const char* usual_names[] = {"arenas", "experiments", "launch",  "materials", "media",
                                        "meshes", "models",      "objects", "robots",    "samples",
                                        "sdf",    "urdf",        "worlds",  "xacro",     "description"};
@@ -25,7 +25,7 @@ bool is_package_or_repository(const fs::path& folder) {
                              [&](const char* sign) { return fs::exists(folder / sign, none); });
 }
 
-// The home folder and what it is in are nobody's package.
+// The home folder and its parents do not count as packages.
 bool holds_home(const fs::path& folder) {
   const char* const home = std::getenv("HOME");
   std::error_code none;

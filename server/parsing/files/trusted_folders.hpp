@@ -6,18 +6,21 @@
 
 namespace cohort::parsing {
 
-/// The folders below which files may be read that other files name. A world from a stranger may name whatever its
-/// reader has, and recordings keep what was read; so a world reads its own folders, and those that a person has named.
+/// Folders below which worlds and models may read files. An untrusted world could name any file of its reader, and
+/// recordings keep the files that were read. So a world may read only its own folders, and those that the user has
+/// named.
 class TrustedFolders {
  public:
-  /// With all that is below it. One that is not there is none.
+  /// Adds a folder with everything below it; ignores one that does not exist.
   void add(const std::filesystem::path& folder);
-  /// What belongs to a file that a person has named: its folder; the package, model or repository that this is in (the
-  /// nearest folder with `package.xml`, `model.config` or `.git`, below the home folder if there is one); and folders
-  /// such as `robots` and `meshes` (docs/worlds.md) beside it or beside one of the four above.
+  /// Adds the folders around a file that the user has named:
+  /// - its folder;
+  /// - the package, model or repository that contains it: the nearest folder with `package.xml`, `model.config` or
+  /// `.git`, below the home folder if there is one;
+  /// - folders such as `robots` and `meshes` (docs/model-files.md) beside it or beside one of the four above.
   void add_around(const std::filesystem::path& file);
 
-  /// Whether this is below one of them, where symbolic links lead.
+  /// Returns whether the file is below one of them, with symbolic links resolved.
   bool contains(const std::filesystem::path& file) const;
 
  private:

@@ -40,7 +40,7 @@ std::string xacro_program() {
   return environment != nullptr && access(own.c_str(), X_OK) == 0 ? own : "xacro";
 }
 
-/// A pipe whose ends close with it.
+/// A pipe that closes its ends when it is destroyed.
 struct Pipe {
   Pipe() {
     if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("xacro cannot be started");
@@ -56,7 +56,7 @@ struct Pipe {
   int ends[2] = {-1, -1};
 };
 
-// False at the end.
+// Returns false at the end.
 bool read_part(int descriptor, std::string& text) {
   std::array<char, 4096> part{};
   const ssize_t count = read(descriptor, part.data(), part.size());
@@ -66,7 +66,7 @@ bool read_part(int descriptor, std::string& text) {
   return true;
 }
 
-// Reads both at once, so that neither fills up. What is wrong stands at the end of the complaint, after warnings.
+// Reads both concurrently, so that neither pipe fills up. The error is at the end of the complaint, after warnings.
 void read_both(int output, int complaint, std::string& text, std::string& complaints) {
   std::array<pollfd, 2> open{{{output, POLLIN, 0}, {complaint, POLLIN, 0}}};
   while (open[0].fd >= 0 || open[1].fd >= 0) {
@@ -100,8 +100,8 @@ std::string expanded(const std::filesystem::path& file) {
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0)
     throw std::runtime_error(
-        "there is no program 'xacro' here: install it (`pip install xacro`), or name the URDF that `xacro " +
-        file.filename().string() + " > robot.urdf` makes elsewhere");
+        "the program 'xacro' was not found; install it (`pip install xacro`), or use the URDF that `xacro " +
+        file.filename().string() + " > robot.urdf` writes on another machine");
   output.close_writing_end();
   complaint.close_writing_end();
   std::string text;
@@ -111,7 +111,7 @@ std::string expanded(const std::filesystem::path& file) {
   if (is_too_long) kill(process, SIGKILL);
   int status = 0;
   while (waitpid(process, &status, 0) < 0 && errno == EINTR) continue;
-  if (is_too_long) throw std::runtime_error("xacro makes more than 64 MiB of this file");
+  if (is_too_long) throw std::runtime_error("the output of xacro for this file exceeds 64 MiB");
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     const std::string said = in_one_line(complaints);
     throw std::runtime_error("xacro cannot expand this file" + (said.empty() ? "" : ": " + said));
@@ -126,13 +126,12 @@ const XmlNode* find_macro(const XmlNode& root, const std::filesystem::path& file
 }
 
 std::string why_not_expanded(const std::filesystem::path& file) {
-  return "this is a xacro file, which only a program expands that runs what the file says: write `xacro " +
-         file.filename().string() +
-         " > robot.urdf` and name robot.urdf, or, for a file that you trust and name yourself, give --xacro";
+  return "this is a xacro file, which can contain code that its expansion runs; run `xacro " +
+         file.filename().string() + " > robot.urdf` and use robot.urdf, or use --xacro for a file that you trust";
 }
 
 void expand_named(InputFiles& input, const std::filesystem::path& file) {
-  if (input.why_unreadable(file)) return;  // which is said where it is read
+  if (input.why_unreadable(file)) return;  // reported where it is read
   const std::filesystem::path absolute = input.absolute(file);
   const XmlOutline outline = outline_xml(input.read(absolute));
   const XmlNode* const macro = find_macro(outline.root, file);
@@ -147,7 +146,7 @@ void expand_named(InputFiles& input, const std::filesystem::path& file) {
     fail(error.what());
   }
   if (const XmlOutline made = outline_xml(text); made.error)
-    fail("what xacro makes of it is not XML: line " + std::to_string(made.error->line) + ": " + made.error->message);
+    fail("the output of xacro is not XML: line " + std::to_string(made.error->line) + ": " + made.error->message);
   input.add_expanded(absolute, std::move(text));
 }
 

@@ -9,18 +9,20 @@
 
 namespace cohort::parsing {
 
-/// Whether the program `xacro` may expand the file that a person names. It evaluates Python that the file holds, so
-/// it runs only for the one file that a person names; what the file includes or names is never expanded.
+/// Permission for the program `xacro` to expand the file that the user names. It evaluates Python code in the file, so
+/// it runs only for that file; files that it includes or names are never expanded.
 enum class Xacro { refused, run };
 
-/// The first element that only `xacro` understands; nullptr if there is none. `file` is what the document stands in.
+/// Returns the first element that only `xacro` understands; nullptr if there is none. `file` is the file of the
+/// document.
 const XmlNode* find_macro(const XmlNode& root, const std::filesystem::path& file);
 
-/// What is said of a file with macros that may not be expanded.
+/// Returns the message for a file with macros that may not be expanded.
 std::string why_not_expanded(const std::filesystem::path& file);
 
-/// Lets `input` answer for `file`, which a person has named and trusts, with what `xacro` makes of it, of the virtual
-/// environment or else of the path. Does nothing to a file without macros. Throws InputError with what xacro says.
+/// Expands `file`, which the user has named and trusts: its content in `input` becomes the output of `xacro`, from the
+/// virtual environment or else from the path. Does nothing to a file without macros. Throws InputError with the message
+/// of xacro.
 void expand_named(InputFiles& input, const std::filesystem::path& file);
 
 }  // namespace cohort::parsing

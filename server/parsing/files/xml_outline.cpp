@@ -40,10 +40,10 @@ void write(const XmlNode& node, XmlText& written) {
   text += "</" + node.name + '>';
 }
 
-constexpr std::size_t most_elements_deep = 64;  // of XML elements; SDF itself needs a dozen
+constexpr std::size_t most_elements_deep = 64;  // nested XML elements; SDF needs a dozen
 
-/// Builds the tree from expat's events. What a file declares is not expanded in text and stays as it is written; in
-/// attributes expat's own limits hold. Nothing is fetched.
+/// Builds the tree from the events of expat. Entities that a file declares are not expanded in text; in attributes, the
+/// limits of expat apply. Nothing is downloaded.
 class OutlineBuilder {
  public:
   explicit OutlineBuilder(std::string_view text);
@@ -101,14 +101,14 @@ void OutlineBuilder::open(const char* name, const char** attributes) {
 }
 
 void OutlineBuilder::close() {
-  if (outline_.error) return;  // of a stopped parser, an empty element still ends
+  if (outline_.error) return;  // a stopped parser still ends an empty element
   XmlNode node = std::move(open_.back());
   open_.pop_back();
   node.text = trimmed(node.text);
   (open_.empty() ? outline_.root : open_.back().children.emplace_back()) = std::move(node);
 }
 
-// Where something other than white space and comments begins.
+// Returns the position of the first character that is neither white space nor in a comment.
 std::size_t after_comments(std::string_view text, std::size_t from) {
   for (;;) {
     from = std::min(text.find_first_not_of(" \t\r\n", from), text.size());
@@ -119,7 +119,7 @@ std::size_t after_comments(std::string_view text, std::size_t from) {
   }
 }
 
-// Where expat stopped, with what it knows and we do.
+// Returns the error at which expat stopped, with a message made from the context.
 XmlSyntaxError OutlineBuilder::error() const {
   const auto place = static_cast<std::size_t>(XML_GetCurrentByteIndex(parser_.get()));
   const std::string_view rest = text_.substr(std::min(place, text_.size()));
@@ -128,26 +128,26 @@ XmlSyntaxError OutlineBuilder::error() const {
   switch (code) {
     case XML_ERROR_NO_ELEMENTS:
       if (open_.empty()) return {0, "there is no XML element in this file"};
-      return {open_.back().line, "<" + open_.back().name + "> is never closed"};
+      return {open_.back().line, "<" + open_.back().name + "> is not closed"};
     case XML_ERROR_TAG_MISMATCH:
       return {line(), "</" + up_to(" \t\r\n>") + "> does not close <" + open_.back().name + "> of line " +
                           std::to_string(open_.back().line)};
     case XML_ERROR_DUPLICATE_ATTRIBUTE: return {line(), "the attribute '" + up_to(" \t\r\n=") + "' is given twice"};
     case XML_ERROR_UNDEFINED_ENTITY:
-      return {line(), "'" + up_to(";") + ";' stands for nothing; write '&amp;' for the character '&'"};
+      return {line(), "'" + up_to(";") + ";' is not defined; write '&amp;' for the character '&'"};
     case XML_ERROR_UNCLOSED_TOKEN:
-    case XML_ERROR_UNCLOSED_CDATA_SECTION: return {line(), "'" + up_to(" \t\r\n") + "' has no end"};
+    case XML_ERROR_UNCLOSED_CDATA_SECTION: return {line(), "'" + up_to(" \t\r\n") + "' is not terminated"};
     case XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
-      if (rest.starts_with('<')) return {line(), "there is a second root element; a file has one"};
+      if (rest.starts_with('<')) return {line(), "unexpected second root element"};
       [[fallthrough]];
     case XML_ERROR_SYNTAX:
     case XML_ERROR_INVALID_TOKEN:
       if (!open_.empty()) break;
-      return {line(), "there is text outside of the root element"};
+      return {line(), "unexpected text outside of the root element"};
     default: return {line(), std::string("not XML: ") + XML_ErrorString(code)};
   }
-  return {line(), "not XML from column " + std::to_string(XML_GetCurrentColumnNumber(parser_.get()) + 1) +
-                      " on: expected UTF-8, ATTRIBUTE=\"VALUE\" in tags, and '&lt;' and '&amp;' for the characters '<' "
+  return {line(), "invalid XML at column " + std::to_string(XML_GetCurrentColumnNumber(parser_.get()) + 1) +
+                      ": expected UTF-8, ATTRIBUTE=\"VALUE\" in tags, and '&lt;' and '&amp;' for the characters '<' "
                       "and '&'"};
 }
 
@@ -175,8 +175,8 @@ bool is_xml_name(std::string_view name) {
   });
 }
 
-// Blank lines and comments before the declaration are common, and no XML: then the declaration, which says nothing
-// here, is blank too. So is a byte order mark.
+// Blank lines and comments before the declaration are common but not valid XML. Then the declaration, which is not
+// needed here, is blanked too; so is a byte order mark.
 XmlOutline outline_xml(std::string_view text) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   const std::size_t first = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;

@@ -11,25 +11,25 @@
 
 namespace cohort::parsing {
 
-/// A file that elements are written in.
+/// A file that contains elements.
 struct SourceFile {
   std::filesystem::path path;   ///< absolute
   std::filesystem::path shown;  ///< as the user calls it
-  bool is_foreign = false;      ///< not written for Cohort: it does not declare our prefix, or is URDF
+  bool is_foreign = false;      ///< from another source: without the prefix of Cohort, or in URDF
 };
 
 /// An element of an XML file and the line where it starts.
 struct XmlNode {
   std::string name;
   int line = 0;
-  const SourceFile* file = nullptr;  ///< where it was written, in a tree that is put together from several
+  const SourceFile* file = nullptr;  ///< source file, in a tree that is made from several files
   std::vector<std::pair<std::string, std::string>> attributes;
   std::string text;  ///< all text directly inside, without white space at the ends
   std::vector<XmlNode> children;
 
-  /// nullptr if there is none.
+  /// Returns the child of this name; nullptr if there is none.
   const XmlNode* child(std::string_view child_name) const;
-  /// nullptr if there is none.
+  /// Returns the value of the attribute; nullptr if there is none.
   const std::string* attribute(std::string_view attribute_name) const;
 };
 
@@ -38,8 +38,8 @@ struct XmlSyntaxError {
   std::string message;
 };
 
-/// The elements of an XML text. libsdformat does not say where an XML file is broken, nor on which line an element
-/// stands that is not its own, nor what a file includes before it has gone to look for it; so these are read here.
+/// The elements of an XML text. It is parsed here because libsdformat reports neither where an XML file is invalid, nor
+/// on which line an unknown element is. It also does not list the includes of a file before it searches for them.
 struct XmlOutline {
   XmlNode root;
   std::optional<XmlSyntaxError> error;  ///< then `root` is not complete
@@ -47,10 +47,10 @@ struct XmlOutline {
 
 XmlOutline outline_xml(std::string_view text);
 
-/// The same of a text that others read though it is no XML: with "--" in comments, or text around the root.
+/// Does the same for invalid XML that other programs accept: with "--" in comments, or text around the root.
 XmlOutline outline_loose_xml(std::string_view text);
 
-/// Whether it can be the name of an element or an attribute.
+/// Returns whether the text can be the name of an element or an attribute.
 bool is_xml_name(std::string_view name);
 
 struct XmlText {
@@ -58,7 +58,7 @@ struct XmlText {
   std::vector<const XmlNode*> nodes;  ///< by line, from 1; in place 0 is nothing
 };
 
-/// An element as XML text, each element starting on a line of its own. `node` must outlive the result.
+/// Returns an element as XML text, with each element on a separate line. `node` must outlive the result.
 XmlText xml_text_of(const XmlNode& node);
 
 }  // namespace cohort::parsing

@@ -6,7 +6,7 @@
 #include "server/parsing/keys/key_table.hpp"
 #include "server/parsing/parsing.hpp"
 
-/// The tables of what models do: drives, motors, rotors, LEDs, loudspeakers.
+/// Tables of actuators: drives, motors, rotors, LEDs, loudspeakers.
 namespace cohort::parsing::keys {
 
 using enum ExtensionValue;
@@ -15,77 +15,80 @@ using enum Written;
 
 template <>
 inline constexpr auto table_of<TreelDrive> = KeyTable{
-    actuator("treel_drive", "Two tracks that share one rigid body, as of the s-bot."),
-    reference("link", &TreelDrive::link, root_link, "", "the body of the tracks; the root link"),
+    actuator("treel_drive", "Two tracks that share one rigid body, as on the s-bot."),
+    reference("link", &TreelDrive::link, root_link, "", "link to which the tracks belong; it must be the root link"),
     key("half_gauge", &TreelDrive::half_gauge, positive, "m", "",
-        "distance of the ground points from the x axis of the link"),
+        "distance of the ground points from the x axis of the link, which is half the track gauge"),
     key("half_contact_length", &TreelDrive::half_contact_length, positive, "m", "",
         "distance of the ground points from the y axis of the link"),
-    key("ground_height", &TreelDrive::ground_height, real, "m", "", "z of the ground points in the link"),
-    key("wheel_radius", &TreelDrive::wheel_radius, positive, "m", "", "from the torque of a motor to traction"),
-    key("max_torque", &TreelDrive::max_torque, positive, "N m", "", "of each side's motor"),
-    key("max_velocity", &TreelDrive::max_velocity, positive, "m/s", "", "of each track along the ground"),
+    key("ground_height", &TreelDrive::ground_height, real, "m", "",
+        "z coordinate of the ground points in the link frame"),
+    key("wheel_radius", &TreelDrive::wheel_radius, positive, "m", "",
+        "wheel radius, which converts motor torque to traction"),
+    key("max_torque", &TreelDrive::max_torque, positive, "N m", "", "maximum torque of the motor of each side"),
+    key("max_velocity", &TreelDrive::max_velocity, positive, "m/s", "",
+        "maximum velocity of each track along the ground"),
     key("friction", &TreelDrive::friction, non_negative, "1", "",
-        "Coulomb coefficient of the tracks; a pair of surfaces has the smaller one"),
+        "Coulomb friction coefficient of the tracks; a contact uses the smaller coefficient of its two surfaces"),
     reference("left_wheel", &TreelDrive::left_wheels, wheel_joint, no_value,
-              "joint of a wheel that the left track stands for; any number"),
+              "joint of a wheel that the left track replaces; may be repeated"),
     reference("right_wheel", &TreelDrive::right_wheels, wheel_joint, no_value,
-              "joint of a wheel that the right track stands for; any number"),
+              "joint of a wheel that the right track replaces; may be repeated"),
 };
 
 template <class Motor>
 constexpr auto velocity_motor(std::string_view element, std::string_view about) {
   return KeyTable{
       actuator(element, about),
-      reference("joint", &Motor::joint, driven_joint, "", "the joint that it turns or slides; at most one motor each"),
-      key("max_velocity", &Motor::max_velocity, positive, "rad/s or m/s", "", "greatest velocity"),
-      key("max_effort", &Motor::max_effort, positive, "N m or N", "", "greatest torque or force"),
+      reference("joint", &Motor::joint, driven_joint, "", "driven joint; a joint can have at most one motor"),
+      key("max_velocity", &Motor::max_velocity, positive, "rad/s or m/s", "", "maximum velocity"),
+      key("max_effort", &Motor::max_effort, positive, "N m or N", "", "maximum torque or force"),
       key("rotor_inertia", &Motor::rotor_inertia, non_negative, "kg m^2 or kg", "0",
-          "of what turns in the motor, as the joint feels it", unless_default),
+          "rotor inertia reflected to the joint", unless_default),
   };
 }
 template <>
 inline constexpr auto table_of<VelocityMotor> =
-    velocity_motor<VelocityMotor>("velocity_motor", "A motor with a velocity loop on one joint.");
+    velocity_motor<VelocityMotor>("velocity_motor", "A motor that controls the velocity of one joint.");
 
 template <>
 inline constexpr auto table_of<PositionMotor> =
-    velocity_motor<PositionMotor>("position_motor", "A motor that takes one joint to a position and holds it there.");
+    velocity_motor<PositionMotor>("position_motor", "A motor that moves one joint to a position and holds it there.");
 
 template <>
 inline constexpr auto table_of<EffortMotor> = KeyTable{
-    actuator("effort_motor", "A motor that gives a torque or a force on one joint."),
-    reference("joint", &EffortMotor::joint, driven_joint, "",
-              "the joint that it turns or slides; at most one motor each"),
-    key("max_effort", &EffortMotor::max_effort, positive, "N m or N", "", "greatest torque or force"),
+    actuator("effort_motor", "A motor that applies a torque or a force to one joint."),
+    reference("joint", &EffortMotor::joint, driven_joint, "", "driven joint; a joint can have at most one motor"),
+    key("max_effort", &EffortMotor::max_effort, positive, "N m or N", "", "maximum torque or force"),
     key("rotor_inertia", &EffortMotor::rotor_inertia, non_negative, "kg m^2 or kg", "0",
-        "of what turns in the motor, as the joint feels it", unless_default),
+        "rotor inertia reflected to the joint", unless_default),
 };
 
 template <class Drive>
 constexpr auto left_joint_key = reference("left_joint", &Drive::left_joints, driven_joint, no_value,
-                                          "joint of a wheel on the left that is driven; any number");
+                                          "joint of a driven wheel on the left; may be repeated");
 template <class Drive>
 constexpr auto right_joint_key = reference("right_joint", &Drive::right_joints, driven_joint, no_value,
-                                           "the same on the right");
+                                           "joint of a driven wheel on the right; may be repeated");
 template <class Drive>
 constexpr auto max_linear_key = key("max_linear", &Drive::max_linear, positive, "m/s", "",
-                                    "greatest velocity, both ways");
+                                    "maximum linear velocity, forwards and backwards");
 template <class Drive>
 constexpr auto max_angular_key = key("max_angular", &Drive::max_angular, positive, "rad/s", "",
-                                     "greatest velocity of turning, both ways");
+                                     "maximum angular velocity, in both directions");
 template <class Drive>
 constexpr auto wheel_separation_key = key("wheel_separation", &Drive::wheel_separation, positive, "m", "",
-                                          "between the left wheels and the right ones");
+                                          "distance between the left and the right wheels");
 template <class Drive>
-constexpr auto wheel_radius_key = key("wheel_radius", &Drive::wheel_radius, positive, "m", "", "of each wheel");
+constexpr auto wheel_radius_key = key("wheel_radius", &Drive::wheel_radius, positive, "m", "", "radius of each wheel");
 template <class Drive>
 constexpr auto max_torque_key = key("max_torque", &Drive::max_torque, positive, "N m", "",
-                                    "of the motor of each wheel");
+                                    "maximum torque of the motor of each wheel");
 
 template <>
 inline constexpr auto table_of<DifferentialDrive> = KeyTable{
-    actuator("differential_drive", "A motor on each wheel of a vehicle that turns by their difference."),
+    actuator("differential_drive",
+             "A drive with a motor on each wheel; the difference between the sides turns the vehicle."),
     left_joint_key<DifferentialDrive>,
     right_joint_key<DifferentialDrive>,
     wheel_separation_key<DifferentialDrive>,
@@ -97,61 +100,67 @@ inline constexpr auto table_of<DifferentialDrive> = KeyTable{
 
 template <>
 inline constexpr auto table_of<AckermannDrive> = KeyTable{
-    actuator("ackermann_drive", "A vehicle that steers two of its wheels, as a car does."),
+    actuator("ackermann_drive", "A drive that steers two wheels, like a car."),
     left_joint_key<AckermannDrive>,
     right_joint_key<AckermannDrive>,
     reference("left_steering_joint", &AckermannDrive::left_steering_joint, driven_joint, "",
-              "joint that steers the left wheel, counter-clockwise at a positive position"),
-    reference("right_steering_joint", &AckermannDrive::right_steering_joint, driven_joint, "", "the same on the right"),
+              "joint that steers the left wheel; a positive position turns it counter-clockwise"),
+    reference("right_steering_joint", &AckermannDrive::right_steering_joint, driven_joint, "",
+              "joint that steers the right wheel; a positive position turns it counter-clockwise"),
     wheel_separation_key<AckermannDrive>,
     wheel_radius_key<AckermannDrive>,
     max_torque_key<AckermannDrive>,
     key("wheel_base", &AckermannDrive::wheel_base, positive, "m", "",
-        "from the rear axle, which does not steer, to the steered wheels"),
-    key("kingpin_width", &AckermannDrive::kingpin_width, positive, "m", "", "between the axes of the steering joints"),
+        "distance from the rear axle, which does not steer, to the steered wheels"),
+    key("kingpin_width", &AckermannDrive::kingpin_width, positive, "m", "",
+        "distance between the axes of the steering joints"),
     key("steering_limit", &AckermannDrive::steering_limit, positive, "rad", "",
-        "greatest angle of a wheel in the middle of the two, less than a quarter turn"),
+        "maximum steering angle of a virtual wheel midway between the two, less than a quarter turn"),
     max_linear_key<AckermannDrive>,
     max_angular_key<AckermannDrive>,
     key("max_steering_velocity", &AckermannDrive::max_steering_velocity, positive, "rad/s", "",
-        "of each steering joint"),
-    key("max_steering_torque", &AckermannDrive::max_steering_torque, positive, "N m", "", "the same"),
+        "maximum velocity of each steering joint"),
+    key("max_steering_torque", &AckermannDrive::max_steering_torque, positive, "N m", "",
+        "maximum torque of each steering joint"),
 };
 
 template <>
 inline constexpr auto table_of<Belt> = KeyTable{
-    actuator("belt", "The surface of a link that runs round it: a conveyor, or the track of a vehicle."),
-    reference("link", &Belt::link, belt_link, "", "the link; at most one belt each"),
+    actuator("belt", "A moving surface around a link: a conveyor, or the track of a vehicle."),
+    reference("link", &Belt::link, belt_link, "", "link whose surface moves; a link can have at most one belt"),
     key("axis", &Belt::axis_L, vector, "1", "0 1 0",
-        "in the link: the surface runs as that of a wheel that turns about it, with y to the left forward on top"),
-    key("max_velocity", &Belt::max_velocity, positive, "m/s", "", "greatest velocity, both ways"),
-    key("velocity", &Belt::velocity, real, "m/s", "0", "while nobody commands it", unless_default),
+        "axis in the link frame about which the surface moves, like that of a wheel; if the axis points to the left, "
+        "the top moves forward"),
+    key("max_velocity", &Belt::max_velocity, positive, "m/s", "", "maximum velocity, in both directions"),
+    key("velocity", &Belt::velocity, real, "m/s", "0", "velocity without a command", unless_default),
 };
 
 template <>
 inline constexpr auto table_of<TrackedDrive> = KeyTable{
-    actuator("tracked_drive", "Belts on both sides of a vehicle that turns by their difference."),
+    actuator("tracked_drive", "A drive with belts on both sides; the difference between the sides turns the vehicle."),
     reference("left_link", &TrackedDrive::left_links, belt_link, no_value,
-              "a link on the left whose surface runs about its y axis; any number"),
-    reference("right_link", &TrackedDrive::right_links, belt_link, no_value, "the same on the right"),
+              "link on the left whose surface moves about its y axis; may be repeated"),
+    reference("right_link", &TrackedDrive::right_links, belt_link, no_value,
+              "link on the right whose surface moves about its y axis; may be repeated"),
     key("track_separation", &TrackedDrive::track_separation, positive, "m", "",
-        "between the middles of the left tracks and of the right ones"),
+        "distance between the centre lines of the left and the right tracks"),
     key("steering_efficiency", &TrackedDrive::steering_efficiency, positive, "1", "1",
-        "share of the difference of the tracks that turns it, at most 1; the rest slips"),
+        "fraction of the velocity difference between the tracks that turns the vehicle, at most 1; the rest is slip"),
     key("max_velocity", &TrackedDrive::max_velocity, positive, "m/s", no_value,
-        "of each track; a command that asks for more gets this; no limit if absent"),
+        "maximum velocity of each track, to which commands are clipped; no limit if absent"),
     max_linear_key<TrackedDrive>,
     max_angular_key<TrackedDrive>,
 };
 
 template <>
 inline constexpr auto table_of<DetachableJoint> = KeyTable{
-    actuator("detachable_joint", "Holds a link of another object fast, until it is told to let go."),
-    link_key(&DetachableJoint::link, "the link that holds"),
-    key("child", &DetachableJoint::child, object, "", "", "the object that is held, by its scoped name"),
-    key("child_link", &DetachableJoint::child_link, object, "", no_value, "of it; its root link if absent"),
+    actuator("detachable_joint", "A joint that fixes a link of another object until a command detaches it."),
+    link_key(&DetachableJoint::link, "link to which the object is attached"),
+    key("child", &DetachableJoint::child, object, "", "", "scoped name of the attached object"),
+    key("child_link", &DetachableJoint::child_link, object, "", no_value,
+        "link of the attached object; its root link if absent"),
     key("may_be_missing", &DetachableJoint::may_be_missing, flag, "", "false",
-        "if the world has no such object: nothing is held, without a warning", unless_default),
+        "accept a world without this object: then nothing is attached, and there is no warning", unless_default),
 };
 
 /// In the order of Rotor::Direction.
@@ -160,49 +169,51 @@ inline constexpr std::string_view rotor_directions[] = {"ccw", "cw"};
 template <>
 inline constexpr auto table_of<Rotor> = KeyTable{
     actuator("rotor", "A propeller in air or water, with its motor."),
-    link_key(&Rotor::link, "the link that feels its thrust and its reaction"),
-    pose_key(&Rotor::X_LR, "in the link; the thrust of a positive velocity is along its z axis"),
+    link_key(&Rotor::link, "link on which thrust and reaction torque act"),
+    pose_key(&Rotor::X_LR, "pose in the link frame; at a positive velocity, the thrust acts along the z axis"),
     choice_key("direction", &Rotor::direction, rotor_directions, "ccw",
-               "how it turns at a positive velocity, seen against the z axis: `ccw` or `cw`"),
-    key("max_velocity", &Rotor::max_velocity, positive, "rad/s", "", "greatest velocity"),
+               "direction of rotation at a positive velocity, seen from the positive z axis: `ccw` or `cw`"),
+    key("max_velocity", &Rotor::max_velocity, positive, "rad/s", "", "maximum velocity"),
     key("min_velocity", &Rotor::min_velocity, real, "rad/s", "0",
-        "least velocity, at most 0; below 0 it is reversible"),
-    key("motor_constant", &Rotor::motor_constant, positive, "N s^2/rad^2", "", "thrust for each square of velocity"),
-    key("moment_constant", &Rotor::moment_constant, non_negative, "m", "0",
-        "reaction torque for each newton of thrust"),
+        "minimum velocity, at most 0; a negative value makes the rotor reversible"),
+    key("motor_constant", &Rotor::motor_constant, positive, "N s^2/rad^2", "", "ratio of thrust to squared velocity"),
+    key("moment_constant", &Rotor::moment_constant, non_negative, "m", "0", "ratio of reaction torque to thrust"),
     key("drag_coefficient", &Rotor::drag_coefficient, non_negative, "N s^2/(rad m)", "0",
-        "force against what moves it across its axis, for each rad/s and m/s", unless_default),
+        "drag force per rad/s of rotor velocity and per m/s of motion perpendicular to the axis", unless_default),
     key("rolling_moment_coefficient", &Rotor::rolling_moment_coefficient, non_negative, "N s^2/rad", "0",
-        "torque for the same", unless_default),
+        "rolling moment per rad/s of rotor velocity and per m/s of motion perpendicular to the axis", unless_default),
     key("time_constant_up", &Rotor::time_constant_up, non_negative, "s", "0",
-        "of the motor, while its velocity rises; 0: at once"),
-    key("time_constant_down", &Rotor::time_constant_down, non_negative, "s", "0", "the same while it falls"),
+        "time constant of the motor while its velocity increases; 0 for no delay"),
+    key("time_constant_down", &Rotor::time_constant_down, non_negative, "s", "0",
+        "time constant of the motor while its velocity decreases; 0 for no delay"),
     key("density", &Rotor::density, positive, "kg/m^3", no_value,
-        "of the fluid that the coefficients are of: in another they act in proportion; the same in any if absent"),
+        "density of the fluid for which the coefficients hold, which scale with density in other fluids; the same in "
+        "every fluid if absent"),
 };
 
 template <>
 inline constexpr auto table_of<LedRing> = KeyTable{
-    actuator("led_ring", "LEDs of any colour around a link."),
-    link_key(&LedRing::link, "the link that carries it"),
-    pose_key(&LedRing::X_LS, "of the ring in the link; the LEDs stand in its xy plane"),
-    key("count", &LedRing::count, count, "1", "", "number of LEDs, numbered counter-clockwise"),
-    key("first_bearing", &LedRing::first_bearing, real, "rad", "0", "of LED 0, from the ring's x axis"),
-    key("spacing", &LedRing::spacing, real, "rad", "", "from one LED to the next"),
-    key("ring_radius", &LedRing::ring_radius, non_negative, "m", "", "where the LEDs are"),
+    actuator("led_ring", "A ring of LEDs of any colour around a link."),
+    link_key(&LedRing::link, "link that carries the device"),
+    pose_key(&LedRing::X_LS, "pose of the ring in the link frame; the LEDs lie in its xy plane"),
+    key("count", &LedRing::count, count, "1", "", "number of LEDs, which are numbered counter-clockwise"),
+    key("first_bearing", &LedRing::first_bearing, real, "rad", "0",
+        "bearing of LED 0, measured from the x axis of the ring"),
+    key("spacing", &LedRing::spacing, real, "rad", "", "angle between neighbouring LEDs"),
+    key("ring_radius", &LedRing::ring_radius, non_negative, "m", "",
+        "distance of the LEDs from the centre of the ring"),
     key("intensity", &LedRing::intensity, non_negative, "1", "0",
-        "what arrives of a white one at 1 m, for light sensors; 0: cameras alone see it"),
+        "intensity of a white LED at 1 m, for light sensors; with 0, only cameras see the LEDs"),
 };
 
 template <>
 inline constexpr auto table_of<Loudspeaker> = KeyTable{
-    actuator("loudspeaker", "A tone of any frequency and intensity."),
-    link_key(&Loudspeaker::link, "the link that carries it"),
-    pose_key(&Loudspeaker::X_LE, "in the link"),
-    key("max_frequency", &Loudspeaker::max_frequency, positive, "Hz", "20000",
-        "greatest frequency that can be commanded"),
+    actuator("loudspeaker", "A loudspeaker that emits a tone of any frequency and intensity."),
+    link_key(&Loudspeaker::link, "link that carries the device"),
+    pose_key(&Loudspeaker::X_LE, "pose in the link frame"),
+    key("max_frequency", &Loudspeaker::max_frequency, positive, "Hz", "20000", "maximum commanded frequency"),
     key("max_intensity", &Loudspeaker::max_intensity, positive, "1", "1",
-        "greatest intensity that can be commanded: what arrives at 1 m"),
+        "maximum commanded intensity, measured at 1 m"),
 };
 
 }  // namespace cohort::parsing::keys

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-/// The words that may be written for the values of an enum, in its order.
+/// Words for the values of enums, in the order of the values.
 namespace cohort::parsing {
 
 inline constexpr std::string_view fidelities[] = {"articulated", "treel", "planar"};
@@ -17,7 +17,11 @@ inline constexpr std::string_view late_policies[] = {"wait", "hold", "zero", "de
 inline constexpr std::string_view quantities[] = {"position", "pose",        "heading",     "velocity",
                                                   "count",    "quarantined", "joint_force", "joint_torque"};
 
-/// The value of a word that is one of `words`.
+inline constexpr std::string_view ros_syncs[] = {"free", "command", "idle"};
+inline constexpr std::string_view ros_silences[] = {"wait", "hold", "stand"};
+inline constexpr std::string_view ros_odometries[] = {"encoders", "truth"};
+
+/// Returns the value for a word that is one of `words`.
 template <class Enum>
 Enum choice_of(std::span<const std::string_view> words, std::string_view word) {
   const auto found = std::ranges::find(words, word);

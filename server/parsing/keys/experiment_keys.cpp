@@ -13,19 +13,20 @@ namespace of_experiments {
 using enum ExtensionValue;
 
 constexpr ExtensionKey experiment[] = {
-    {"world", uri, "", "", "the world's file, relative to this one"},
-    {"duration", positive, "s", "", "simulated time, at the most"},
-    {"seed", whole, "", "1", "whole number of at most 64 bits: placement and noise"},
+    {"world", uri, "", "", "path of the world file, relative to this file"},
+    {"duration", positive, "s", "", "maximum simulated time of the run"},
+    {"seed", whole, "", "1", "seed of placement and noise: a whole number of at most 64 bits"},
     {"step", positive, "s", "the world's", "simulated time of a tick"},
-    {"threads", count, "1", "the cores", "that step the world; results do not depend on it"},
+    {"threads", count, "1", "number of cores", "number of threads that step the world; results do not depend on it"},
     {"physics", group, "", "the world's",
-     "map with keys of [`<cohort:physics>`](#cohortphysics-in-world), each in place of the world's"},
-    {"teams", group, "", "", "list; every robot of the world is in exactly one team"},
-    {"events", group, "", no_value, "list of what happens at a time, or when a robot does something"},
-    {"stop", group, "", no_value, "list of conditions; the run ends when one of them holds"},
+     "map with keys of [`<cohort:physics>`](physics.md#cohortphysics-in-world), each of which overrides that of the world"},
+    {"teams", group, "", "", "list of teams; every robot of the world must be in exactly one team"},
+    {"events", group, "", no_value, "list of events, each at a given time or when a robot performs an action"},
+    {"stop", group, "", no_value, "list of conditions; the run ends when one of them is met"},
     {"print", group, "", no_value, "list of quantities that `cohort run` prints"},
-    {"history", group, "", no_value, "whose last poses are kept"},
-    {"record", group, "", "its defaults", "what a recording holds, if there is one"},
+    {"history", group, "", no_value, "objects whose most recent poses are kept"},
+    {"record", group, "", "defaults", "contents of a recording, if there is one"},
+    {"ros2", group, "", "defaults", "ROS 2 interface of the robots; used by bridges, ignored by the server"},
 };
 
 constexpr std::string_view modes[] = {"lockstep", "free"};
@@ -33,149 +34,207 @@ constexpr std::string_view restarts[] = {"on_failure", "never"};
 constexpr std::string_view losses[] = {"go_on", "rewind"};
 
 constexpr ExtensionKey team[] = {
-    {"name", name, "", "", "unique"},
-    {"robots", name, "", "", "a selector or a list of selectors", true},
+    {"name", name, "", "", "unique name of the team"},
+    {"robots", name, "", "", "robots of the team: a selector or a list of selectors", true},
     {"controller", name, "", "",
-     "the name of a controller, or a path to a plugin (`….so`) or to Python (`….py`), relative to this file"},
-    {"parameters", group, "", no_value, "what the controller is given; see below"},
-    {"period", count, "ticks", "1", "asked every so many ticks"},
-    {"phase", whole, "ticks", "0", "first asked at this tick; less than the period"},
-    {"delay", whole, "ticks", "0", "the answer to tick k acts at k + delay"},
-    {"mode", choice, "", "lockstep", "`lockstep`, or `free`: never waited for, for people and hardware; see below",
+     "name of a controller, or path to a plugin (`….so`) or Python file (`….py`), relative to this file"},
+    {"parameters", group, "", no_value, "map of parameters for the controller; see below"},
+    {"period", count, "ticks", "1", "number of ticks from one observation to the next"},
+    {"phase", whole, "ticks", "0", "tick of the first observation; less than the period"},
+    {"delay", whole, "ticks", "0",
+     "number of ticks by which commands are delayed: the answer to tick k acts at tick k + delay"},
+    {"mode", choice, "", "lockstep",
+     "whether the run can wait for answers (`lockstep`) or never waits (`free`, for hardware and people); see below",
      false, modes},
-    {"on_late", choice, "", "wait", "`wait`, `hold`, `zero`, `detach` or `stop`; `hold` by default if free", false,
+    {"on_late", choice, "", "wait",
+     "response to a late answer: `wait`, `hold`, `zero`, `detach` or `stop`; default `hold` with `mode: free`", false,
      late_policies},
     {"deadline", positive, "s", no_value,
-     "wall-clock patience per tick; required unless `wait`, under which it has no place. If free, since the last "
-     "answer"},
+     "wall time to wait for an answer (with `mode: free`, since the last one); required unless `on_late` is `wait`, "
+     "which does not allow it"},
     {"required", flag, "", "true",
-     "whether the run waits for a controller to begin, and for a new one when it is lost; `false` by default if free"},
+     "`true` if the run waits for a controller to attach, also after one is lost; default `false` with `mode: free`"},
     {"on_lost", choice, "", "go_on",
-     "when a new process takes over from a controller that is lost: the run goes on with a controller that starts "
-     "without state (`go_on`), or goes back to its last snapshot and has the bits of an undisturbed run (`rewind`, "
-     "with `--keep-snapshots`)",
+     "response when a new process replaces a lost controller: continue without its state (`go_on`), or return to the "
+     "last snapshot, with the results of an undisturbed run (`rewind`, with `--keep-snapshots`)",
      false, losses},
     {"restart", choice, "", "on_failure",
-     "a controller process of `cohort run` that dies is started again, up to three times (`on_failure`), or ends the "
-     "run (`never`)",
+     "response when a controller process of `cohort run` exits: restart it up to three times (`on_failure`), or end "
+     "the run (`never`)",
      false, restarts},
 };
 
 constexpr ExtensionKey add[] = {
-    {"model", uri, "", "", "`model://NAME`, or a path relative to the world's file"},
-    {"name", name, "", "", "of the object, unique; may be scoped, as in `team/late_1`"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the world"},
+    {"model", uri, "", "", "`model://NAME`, or a path relative to the world file"},
+    {"name", name, "", "", "unique name of the object; may be scoped, as in `team/late_1`"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "pose in the world frame"},
 };
 constexpr ExtensionKey spawn[] = {
-    {"model", uri, "", "", "`model://NAME`, or a path relative to the world's file"},
-    {"name", name, "", "", "what names begin with: `team/late` makes `team/late_1`, `team/late_2` …"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the world"},
-    {"area", point, "m", "0 0", "edges of a rectangle about the pose, in which the seed draws x and y of each"},
-    {"team", name, "", no_value, "whose controllers drive it; has to be there if there are several teams"},
-    {"every", positive, "s", no_value, "beside `at`: comes again and again, so much time apart"},
-    {"most", count, "1", "100", "how many may come in a run"},
+    {"model", uri, "", "", "`model://NAME`, or a path relative to the world file"},
+    {"name", name, "", "", "prefix of the names: `team/late` gives `team/late_1`, `team/late_2` …"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "pose in the world frame"},
+    {"area", point, "m", "0 0",
+     "size of a rectangle centred on the pose, in which x and y of each object are drawn with the seed"},
+    {"team", name, "", no_value, "team of the new robots; required if there are several teams"},
+    {"every", positive, "s", no_value, "interval of repetition, for an event with `at`; no repetition if absent"},
+    {"most", count, "1", "100", "maximum number of objects that the event creates in a run"},
 };
 constexpr ExtensionKey objects_only[] = {
-    {"objects", name, "", "", "names, in which `*` stands for any characters", true},
+    {"objects", name, "", "", "name or list of names of objects; `*` matches any characters", true},
 };
 constexpr ExtensionKey move[] = {
-    {"objects", name, "", "", "names, in which `*` stands for any characters", true},
-    {"pose", pose, "m, rad", "", "of the model in the world"},
+    {"objects", name, "", "", "name or list of names of objects; `*` matches any characters", true},
+    {"pose", pose, "m, rad", "", "new pose of the model in the world frame"},
 };
 constexpr ExtensionKey set_velocity[] = {
-    {"objects", name, "", "", "names, in which `*` stands for any characters", true},
-    {"linear", vector, "m/s", "0 0 0", "of the origin of the root link"},
-    {"angular", vector, "rad/s", "0 0 0", "of the root link"},
+    {"objects", name, "", "", "name or list of names of objects; `*` matches any characters", true},
+    {"linear", vector, "m/s", "0 0 0", "velocity of the origin of the root link, in the world frame"},
+    {"angular", vector, "rad/s", "0 0 0", "angular velocity of the root link, in the world frame"},
 };
 constexpr ExtensionKey apply_force[] = {
-    {"objects", name, "", "", "names, in which `*` stands for any characters", true},
-    {"link", name, "", no_value, "the root link if absent"},
-    {"force", vector, "N", "0 0 0", "at the centre of mass of the link, in the axes of the world"},
-    {"torque", vector, "N m", "0 0 0", "in the axes of the world"},
-    {"for", positive, "s", "", "how long it acts"},
+    {"objects", name, "", "", "name or list of names of objects; `*` matches any characters", true},
+    {"link", name, "", no_value, "name of the link; the root link if absent"},
+    {"force", vector, "N", "0 0 0", "force at the centre of mass of the link, in the world frame"},
+    {"torque", vector, "N m", "0 0 0", "torque in the world frame"},
+    {"for", positive, "s", "", "duration of the force and torque"},
 };
 
 constexpr ExtensionKey set_emitter[] = {
-    {"objects", name, "", "", "names, in which `*` stands for any characters", true},
-    {"emitter", name, "", "*", "names of their emitters, the same way", true},
-    {"on", flag, "", no_value, "whether it emits"},
-    {"intensity", non_negative, "1", no_value, "of a light or a sound: what arrives at 1 m"},
-    {"frequency", positive, "Hz", no_value, "of a sound"},
-    {"color", vector, "1", no_value, "of a light or a marker: red, green and blue, from 0 to 1"},
-    {"temperature", real, "K", no_value, "of a climate source: added in its middle"},
-    {"humidity", real, "1", no_value, "of a climate source: relative, added in its middle"},
+    {"objects", name, "", "", "name or list of names of objects; `*` matches any characters", true},
+    {"emitter", name, "", "*", "name or list of names of emitters of these objects; `*` matches any characters", true},
+    {"on", flag, "", no_value, "`true` switches the emitter on, `false` off"},
+    {"intensity", non_negative, "1", no_value, "intensity of a light or a sound at 1 m"},
+    {"frequency", positive, "Hz", no_value, "frequency of a sound"},
+    {"color", vector, "1", no_value, "colour of a light or a marker: red, green and blue, from 0 to 1"},
+    {"temperature", real, "K", no_value, "temperature added at the centre of a climate source"},
+    {"humidity", real, "1", no_value, "relative humidity added at the centre of a climate source"},
 };
 constexpr ExtensionKey on[] = {
-    {"action", name, "", "", "the name of a `cohort:action`"},
-    {"robots", name, "", "all", "a selector or a list of selectors: whose action it is", true},
+    {"action", name, "", "", "name of a `cohort:action`"},
+    {"robots", name, "", "all", "robots that can trigger the event: a selector or a list of selectors", true},
 };
 
 constexpr ExtensionKey inside[] = {
-    {"objects", name, "", "", "names, in which `*` stands for any characters", true},
-    {"min", point, "m", "", "corner of a rectangle with the least x and y"},
-    {"max", point, "m", "", "corner with the greatest x and y"},
-    {"for", non_negative, "s", "0", "how long it has to hold"},
+    {"objects", name, "", "", "name or list of names of objects; `*` matches any characters", true},
+    {"min", point, "m", "", "minimum x and y of the rectangle"},
+    {"max", point, "m", "", "maximum x and y of the rectangle"},
+    {"for", non_negative, "s", "0", "time for which the condition must hold"},
 };
 constexpr ExtensionKey beyond[] = {
-    {"objects", name, "", "", "names, in which `*` stands for any characters", true},
-    {"point", point, "m", "", "of the line"},
-    {"direction", point, "1", "", "in which the line is crossed, at right angles to it"},
-    {"for", non_negative, "s", "0", "how long it has to hold"},
+    {"objects", name, "", "", "name or list of names of objects; `*` matches any characters", true},
+    {"point", point, "m", "", "point on the line"},
+    {"direction", point, "1", "",
+     "direction perpendicular to the line; objects on this side of it are beyond the line"},
+    {"for", non_negative, "s", "0", "time for which the condition must hold"},
 };
 constexpr ExtensionKey at_rest[] = {
-    {"objects", name, "", "*", "names, in which `*` stands for any characters", true},
-    {"speed", positive, "m/s", "0.001", "what is slower is at rest"},
-    {"turn_rate", positive, "rad/s", "0.01", "the same of turning"},
-    {"for", non_negative, "s", "1", "how long it has to hold"},
+    {"objects", name, "", "*", "name or list of names of objects; `*` matches any characters", true},
+    {"speed", positive, "m/s", "0.001", "speed below which an object is at rest"},
+    {"turn_rate", positive, "rad/s", "0.01", "angular speed below which an object is at rest"},
+    {"for", non_negative, "s", "1", "time for which the condition must hold"},
 };
 constexpr ExtensionKey quarantined[] = {
-    {"objects", name, "", "*", "names, in which `*` stands for any characters", true},
+    {"objects", name, "", "*", "name or list of names of objects; `*` matches any characters", true},
 };
 
 constexpr ExtensionKey print[] = {
     {"quantity", choice, "", "",
-     "`position`, `pose`, `heading`, `velocity`, `count`, `quarantined`, `joint_force` or `joint_torque`", false,
-     quantities},
-    {"objects", name, "", "*", "names, in which `*` stands for any characters", true},
-    {"joints", name, "", "*", "of `joint_force` and `joint_torque`: names of breakable joints, the same way", true},
-    {"every", positive, "s", "1", "of simulated time, in whole ticks"},
+     "printed quantity: `position`, `pose`, `heading`, `velocity`, `count`, `quarantined`, `joint_force` or "
+     "`joint_torque`",
+     false, quantities},
+    {"objects", name, "", "*", "name or list of names of objects; `*` matches any characters", true},
+    {"joints", name, "", "*",
+     "name or list of names of breakable joints, for `joint_force` and `joint_torque`; `*` matches any characters",
+     true},
+    {"every", positive, "s", "1", "interval of simulated time, rounded to whole ticks"},
 };
 
 constexpr ExtensionKey history[] = {
-    {"objects", name, "", "*", "names, in which `*` stands for any characters", true},
-    {"length", count, "1", "", "how many poses are kept of each, the newest ones"},
-    {"every", positive, "s", no_value, "of simulated time, in whole ticks; a tick if absent"},
+    {"objects", name, "", "*", "name or list of names of objects; `*` matches any characters", true},
+    {"length", count, "1", "", "number of most recent poses that are kept of each object"},
+    {"every", positive, "s", no_value, "interval of simulated time, rounded to whole ticks; one tick if absent"},
 };
 
 constexpr ExtensionKey record[] = {
-    {"poses", non_negative, "Hz", "10", "how often the poses of all that moves"},
-    {"joints", non_negative, "Hz", "0", "how often the states of all joints, and the poses of all links"},
-    {"observations", non_negative, "Hz", "0", "how often what robots observe, at the most as often as they are asked"},
-    {"robots", name, "", "all", "a selector or a list of selectors: whose observations", true},
-    {"snapshots", non_negative, "s", "30", "from one snapshot of the world to the next; 0: none"},
+    {"poses", non_negative, "Hz", "10", "rate of the poses of everything that moves; 0 for none"},
+    {"joints", non_negative, "Hz", "0", "rate of the states of all joints and the poses of all links; 0 for none"},
+    {"observations", non_negative, "Hz", "0",
+     "maximum rate of the observations of robots, never more than their controllers receive; 0 for none"},
+    {"robots", name, "", "all", "robots whose observations are recorded: a selector or a list of selectors", true},
+    {"snapshots", non_negative, "s", "30", "interval between snapshots of the world; 0 for none"},
+};
+
+constexpr ExtensionKey ros2[] = {
+    {"domain", whole, "", no_value, "ROS domain, from 0 to 232; `ROS_DOMAIN_ID` if absent, or 0 without that variable"},
+    {"robots", name, "", "all", "robots that are visible in ROS: a selector or a list of selectors", true},
+    {"teams", group, "", no_value,
+     "map from names of teams to maps with the keys from `sync` on, each of which overrides the one for all robots"},
+    {"sync", choice, "", "free",
+     "when a frame is answered: immediately, with the newest command (`free`), after a command for it has arrived "
+     "(`command`), or once the nodes wait for the next clock time (`idle`)",
+     false, ros_syncs},
+    {"wait", positive, "s", no_value, "maximum wall time for the nodes to answer a frame; unlimited if absent"},
+    {"on_silence", choice, "", "wait",
+     "response after that time: keep waiting (`wait`), repeat the last command (`hold`) or stand still (`stand`); "
+     "`hold` and `stand` need the key `wait`",
+     false, ros_silences},
+    {"reply_to", name, "", no_value,
+     "topic that commands answer, such as `scan`; if absent, the least frequent topic to which the commanding node "
+     "subscribes"},
+    {"namespace", name, "", no_value,
+     "namespace of the topics of a single robot, such as `/`; if absent, `/` and the scoped name of the robot"},
+    {"frames", name, "", no_value, "prefix of the names of frames, such as `left/`; none if absent"},
+    {"odometry", choice, "", "encoders",
+     "source of `odom`: the wheel encoders (`encoders`), or the true pose of the robot (`truth`)", false,
+     ros_odometries},
+    {"base_frame", name, "", "base_link", "name of the frame of the root link"},
+    {"topics", group, "", no_value,
+     "map from names of topics, such as `scan`, to `false`, which omits the topic, or to a map; `*` matches any "
+     "characters, and the last matching name applies"},
+    {"drive", group, "", no_value, "how `cmd_vel` drives the wheels, if the devices of the model do not define it"},
+};
+constexpr std::span<const ExtensionKey> ros2_of_a_team = std::span(ros2).subspan(3);
+constexpr ExtensionKey topics[] = {
+    {"name", name, "", no_value,
+     "name in ROS, absolute, as in `/scan`, or relative to the namespace of the robot; unchanged if absent"},
+    {"rate", positive, "Hz", no_value, "maximum rate; at every new value if absent"},
+};
+constexpr ExtensionKey drive[] = {
+    {"left", name, "", "", "command channels of the angular velocities of the left wheels", true},
+    {"right", name, "", "", "command channels of the angular velocities of the right wheels", true},
+    {"wheel_radius", positive, "m", "", "radius of each wheel"},
+    {"wheel_separation", positive, "m", "", "distance between the left and the right wheels"},
 };
 
 constexpr Extension table[] = {
-    {"experiment", "", false, "A world, a seed, a duration, and who controls which robot.", experiment, "experiment"},
+    {"experiment", "", false, "A world, a seed, a duration, and teams of robots with their controllers.", experiment,
+     "experiment"},
     {"teams", "experiment", false, "Robots that share a controller.", team, "experiment"},
-    {"add", "events", false, "An object or a robot comes into the world.", add, "events"},
-    {"spawn", "events", false, "A new object or robot comes into the world, another one each time.", spawn, "events"},
-    {"remove", "events", false, "Objects leave the world for good.", objects_only, "events"},
-    {"disable", "events", false, "Objects leave the world and may come back as they were.", objects_only, "events"},
-    {"enable", "events", false, "Objects come back.", objects_only, "events"},
-    {"move", "events", false, "Objects are put somewhere else, at rest, with their joints as they are.", move,
+    {"add", "events", false, "Adds an object or a robot to the world.", add, "events"},
+    {"spawn", "events", false, "Adds a new object or robot to the world each time the event occurs.", spawn, "events"},
+    {"remove", "events", false, "Removes objects from the world permanently.", objects_only, "events"},
+    {"disable", "events", false, "Removes objects from the world temporarily; `enable` restores them unchanged.",
+     objects_only, "events"},
+    {"enable", "events", false, "Restores disabled objects.", objects_only, "events"},
+    {"move", "events", false, "Moves objects to another pose, at rest, with unchanged joint positions.", move,
      "events"},
-    {"set_velocity", "events", false, "Objects get a velocity.", set_velocity, "events"},
-    {"apply_force", "events", false, "A force and a torque act for some time.", apply_force, "events"},
-    {"set_emitter", "events", false, "Emitters of objects change.", set_emitter, "events"},
-    {"on", "an event", false, "What makes it happen in place of a time: a robot does something.", on, "events"},
-    {"inside", "stop", false, "All of the objects are within a rectangle.", inside, "stop"},
+    {"set_velocity", "events", false, "Sets the velocity of objects.", set_velocity, "events"},
+    {"apply_force", "events", false, "Applies a force and a torque to objects for a given time.", apply_force,
+     "events"},
+    {"set_emitter", "events", false, "Changes emitters of objects.", set_emitter, "events"},
+    {"on", "an event", false, "The action of a robot that triggers the event, instead of a time.", on, "events"},
+    {"inside", "stop", false, "All of the objects are inside a rectangle.", inside, "stop"},
     {"beyond", "stop", false, "One of the objects is beyond a line.", beyond, "stop"},
-    {"at_rest", "stop", false, "None of the objects moves.", at_rest, "stop"},
-    {"quarantined", "stop", false, "One of the objects broke or left the world.", quarantined, "stop"},
-    {"print", "experiment", false, "A quantity of some objects, printed at times.", print, "print"},
-    {"history", "experiment", false, "Poses of some objects that are kept.", history, "history"},
-    {"record", "experiment", false, "What a recording holds beside what replays the run.", record, "record"},
+    {"at_rest", "stop", false, "All of the objects are at rest.", at_rest, "stop"},
+    {"quarantined", "stop", false, "One of the objects has broken or left the world.", quarantined, "stop"},
+    {"print", "experiment", false, "A quantity of objects that is printed at regular intervals.", print, "print"},
+    {"history", "experiment", false, "Recent poses of objects that are kept.", history, "history"},
+    {"record", "experiment", false, "Contents of a recording in addition to the data that replays the run.", record,
+     "record"},
+    {"ros2", "experiment", false, "ROS 2 interface of the robots.", ros2, "ros2"},
+    {"teams", "ros2", false, "ROS 2 interface of the robots of one team.", ros2_of_a_team, "ros2"},
+    {"topics", "ros2", false, "Settings of a topic of the robots.", topics, "ros2"},
+    {"drive", "ros2", false, "Wheels that are driven by `cmd_vel`.", drive, "ros2"},
 };
 
 }  // namespace of_experiments

@@ -9,11 +9,11 @@
 /// manuals and help are made from it.
 namespace cohort::parsing {
 
-/// The maps that an experiment is made of. The whole is `experiment`, whose parent is empty; any other stands in its
-/// parent, alone or in a list.
+/// Returns the maps of which an experiment consists. The whole is `experiment`, whose parent is empty; any other is in
+/// its parent, directly or in a list.
 std::span<const Extension> experiment_parts();
 
-/// There has to be one.
+/// Returns the part of this name, which must exist.
 const Extension& experiment_part(std::string_view name, std::string_view parent);
 
 }  // namespace cohort::parsing

@@ -9,7 +9,7 @@
 namespace cohort::parsing {
 
 enum class ExtensionValue {
-  name,          ///< of a link, joint or device of the same model, or of a material
+  name,          ///< name of a link, joint or device of the same model, or of a material
   object,        ///< scoped name of an object of the world, or of a link of it
   uri,           ///< model://NAME or a path
   choice,        ///< one of ExtensionKey::choices
@@ -24,17 +24,17 @@ enum class ExtensionValue {
   vector,        ///< "x y z"
   place,         ///< "x y heading"
   pose,          ///< "x y z roll pitch yaw", rotated about the fixed axes x, then y, then z; or "x y z qx qy qz qw"
-  group          ///< an extension of its own, described by its own entry
+  group          ///< a separate extension with its own entry
 };
 
-/// The fallback of a key that may be absent and then has no value.
+/// The fallback of an optional key that has no value if it is absent.
 inline constexpr std::string_view no_value = "none";
 
 struct ExtensionKey {
   std::string_view name;  ///< without the prefix
   ExtensionValue value = ExtensionValue::real;
   std::string_view unit;      ///< `1` if dimensionless, empty if not a quantity
-  std::string_view fallback;  ///< what holds if the element is absent; empty if it must be there
+  std::string_view fallback;  ///< default if the element is absent; empty if it is required
   std::string_view doc;
   bool repeats = false;  ///< may be given any number of times
   std::span<const std::string_view> choices{};
@@ -44,20 +44,20 @@ struct ExtensionKey {
 
 struct Extension {
   std::string_view name;    ///< without the prefix
-  std::string_view parent;  ///< the element that it stands in: one of SDF's or another extension
+  std::string_view parent;  ///< the parent element: one of SDF or another extension
   bool has_name = false;    ///< carries the attribute `name`
   std::string_view doc;
   std::span<const ExtensionKey> keys;
   std::string_view topic;                        ///< under which help has it
-  ExtensionValue value = ExtensionValue::group;  ///< `group`: it holds keys; otherwise, a value itself
+  ExtensionValue value = ExtensionValue::group;  ///< `group` if it has keys; otherwise the kind of its value
 };
 
-/// Without the colon.
+/// The prefix of elements, without the colon.
 inline constexpr std::string_view extension_prefix = "cohort";
-/// With both.
+/// Returns the name with prefix and colon.
 inline std::string prefixed(std::string_view name) { return std::string(extension_prefix) + ":" + std::string(name); }
 inline bool has_prefix(std::string_view name) { return name.starts_with(prefixed("")); }
-/// As it is if it has none.
+/// Returns the name without the prefix; unchanged if it has none.
 inline std::string_view without_prefix(std::string_view name) {
   return has_prefix(name) ? name.substr(extension_prefix.size() + 1) : name;
 }

@@ -11,7 +11,10 @@ namespace cohort::parsing {
 
 std::span<const Extension> extensions();
 
-/// nullptr if there is none of this name in such a parent.
+/// Returns the keys that every sensor has beside its own. They come last among its keys.
+std::span<const ExtensionKey> sensor_keys();
+
+/// Returns the extension of this name in such a parent; nullptr if there is none.
 const Extension* find_extension(std::string_view name, std::string_view parent);
 
 }  // namespace cohort::parsing

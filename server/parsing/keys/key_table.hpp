@@ -9,23 +9,23 @@
 #include "server/description/readout.hpp"
 #include "server/parsing/keys/extension.hpp"
 
-/// How a struct of a description is spelled in files is said once, by its table in device_keys.hpp:
+/// The spelling of a struct of a description in files is defined once, by its table in device_keys.hpp:
 ///
 ///     template <>
 ///     inline constexpr auto table_of<GroundSensors> = KeyTable{
-///         sensor("ground_sensors", "Infrared sensors that look down."),
-///         link_key(&GroundSensors::link, "the link that carries them; the rays go along its -z axis"),
-///         key("place", &GroundSensors::places_L, vector, "m", "", "where a ray starts, in the link; any number"),
-///         key("range", &GroundSensors::range, positive, "m", "", "length of the rays"),
+///         sensor("ground_sensors", "Infrared sensors that point down."),
+///         link_key(&GroundSensors::link, "link that carries the sensors; the rays point along its -z axis"),
+///         key("place", &GroundSensors::places_L, vector, "m", "", "origin of a ray in the link frame; may be
+///         repeated"), key("range", &GroundSensors::range, positive, "m", "", "length of the rays"),
 ///     };
 ///
-/// Each row is a key, as files are checked against and manuals are made from (`extension_of`), and the member that has
-/// its value. Readers and writers go through the rows of a struct with `for_keys_of`. The type of a row says where the
-/// value is: in the file itself (MemberKey), in what the file names (ReferenceKey), or in the readout (NoiseKey); the
-/// type of the member says how it is read and written. Code is left for what no row can say: checks across keys.
+/// Each row is a key, which is used to check files and to make manuals (`extension_of`), and the member for its value.
+/// Readers and writers visit the rows of a struct with `for_keys_of`. The type of a row defines the source of the
+/// value: the file itself (MemberKey), an object that the file names (ReferenceKey), or the readout (NoiseKey). The
+/// type of the member defines how it is read and written. Only checks across keys need code.
 ///
-/// A table may hold keys of several structs, and each struct is read and written with its own: those of any sensor are
-/// joined by those of its Readout and of the Noise in it; a Sound has some of its Emitter.
+/// A table may hold keys of several structs, each of which is read and written with its own keys. Every sensor also has
+/// the keys of its Readout and of the Noise in it; a Sound has some of its Emitter.
 namespace cohort::parsing::keys {
 
 template <class Type>
@@ -37,11 +37,11 @@ concept Senses = requires(Kind kind) {
   kind.readout;
 };
 
-/// Whether a value is written that the struct has by default. One whose key has no fallback is not.
+/// Selects whether the default value of a member is written. It is never written if its key has no fallback.
 enum class Written { always, unless_default };
 
-/// Numbers, flags, vectors, poses, lists of these; an enum, whose values are the `choices` in their order; a time,
-/// written in seconds, or as its rate if the unit is Hz.
+/// A key for numbers, flags, vectors, poses and lists of these. Also for an enum, whose values are the `choices` in
+/// their order, or for a time, written in seconds, or as its rate if the unit is Hz.
 template <class Owner, class Member>
 struct MemberKey : ExtensionKey {
   using Struct = Owner;
@@ -56,15 +56,15 @@ struct MemberKey : ExtensionKey {
   }
 };
 
-/// What a name or a path in a file stands for.
+/// The target of a name or a path in a file.
 enum class Referent {
   link,
   root_link,
-  belt_link,  ///< one whose surface nothing else drives
+  belt_link,  ///< one whose surface no other device drives
   joint,
-  moving_joint,  ///< one that has an angle or a way: its first axis is meant
-  driven_joint,  ///< a moving one that has no other motor
-  wheel_joint,   ///< between the root link and a wheel that nothing else drives
+  moving_joint,  ///< one that moves; refers to its first axis
+  driven_joint,  ///< a moving one without another motor
+  wheel_joint,   ///< between the root link and a wheel without another drive
   drive,         ///< a device, a TreelDrive
   samples        ///< a file
 };
@@ -73,14 +73,14 @@ struct Reference : ExtensionKey {
   Referent to = Referent::link;
 };
 
-/// An index or several, or what a file holds.
+/// A key for an index, several indices, or the content of a file.
 template <class Owner, class Member>
 struct ReferenceKey : Reference {
   using Struct = Owner;
   Member Struct::*member;
 };
 
-/// The deviation of the noise on some quantities of a sensor.
+/// A key for the standard deviation of the noise on some quantities of a sensor.
 template <class Owner>
 struct NoiseKey : ExtensionKey {
   using Struct = Owner;
@@ -126,7 +126,7 @@ constexpr NoiseKey<Struct> noise_key(std::string_view name, Readout Struct::*,
   return {{name, ExtensionValue::non_negative, unit, "0", doc}, quantities};
 }
 
-/// What a table says of the element as a whole.
+/// The head of a table, which describes the element as a whole.
 constexpr Extension sensor(std::string_view name, std::string_view doc) {
   return {name, "model", true, doc, {}, "sensors"};
 }
@@ -145,7 +145,7 @@ struct KeyTable {
   constexpr KeyTable(const Extension& element, Keys... all) : head(element), keys(all...) {}
 };
 
-/// Of a struct that `cohort:` elements describe.
+/// The table of a struct that `cohort:` elements describe.
 template <class Kind>
 inline constexpr std::nullptr_t table_of{};
 template <class Kind>
@@ -153,7 +153,7 @@ concept HasTable = requires {
   table_of<Kind>.keys;
 };
 
-/// Calls `visit` with each key whose value `Struct` has.
+/// Calls `visit` with each key whose value is in `Struct`.
 template <class Struct, class Keys, class Visit>
 constexpr void for_keys_of(const Keys& keys, const Visit& visit) {
   const auto visit_own = [&]<class Key>(const Key& each) {

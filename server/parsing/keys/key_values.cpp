@@ -30,7 +30,7 @@ Pose pose_of(const std::array<double, 6>& v) {
                              about(v[3], Eigen::Vector3d::UnitX()))};
 }
 
-// Normalised only if it needs it, so that one that was normalised before is the same again.
+// Normalises the quaternion only if needed, so that a normalised one stays unchanged.
 std::optional<Pose> pose_of_quaternion(const std::array<double, 7>& v) {
   const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
   constexpr double no_direction = 1e-6;

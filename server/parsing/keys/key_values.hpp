@@ -13,12 +13,12 @@
 
 namespace cohort::parsing {
 
-/// The values of an extension's keys, whatever kind of file they were written in.
+/// The values of the keys of an extension, from a file of any kind.
 class KeyValues {
  public:
   using Value = std::variant<std::string, double, std::uint64_t, bool, Eigen::Vector2d, Eigen::Vector3d, Pose>;
 
-  /// Of a key that is given again, the values are kept in that order.
+  /// Adds a value; the values of a repeated key are kept in order.
   void add(std::string_view key, Value value) { values_[std::string(key)].push_back(std::move(value)); }
   bool has(std::string_view key) const { return values_.contains(key); }
 
@@ -34,10 +34,10 @@ class KeyValues {
     return std::get<Type>(first(key));
   }
 
-  /// Puts `prefix` before each text of the key.
+  /// Adds `prefix` to the front of each text of the key.
   void prefix_texts(std::string_view key, const std::string& prefix);
 
-  /// Of a key that repeats; none if it is absent.
+  /// Returns the texts of a repeated key; none if it is absent.
   std::vector<std::string> texts(std::string_view key) const { return all<std::string>(key); }
   std::vector<Eigen::Vector3d> vectors(std::string_view key) const { return all<Eigen::Vector3d>(key); }
   template <class Type>
@@ -54,13 +54,13 @@ class KeyValues {
   std::map<std::string, std::vector<Value>, std::less<>> values_;
 };
 
-/// Nothing if the text is no value of this key.
+/// Returns the value; nothing if the text is invalid for this key.
 std::optional<KeyValues::Value> parse_value(std::string_view text, const ExtensionKey& key);
 
-/// What values of this key look like, such as "a number > 0".
+/// Returns a description of valid values of this key, such as "a number > 0".
 std::string expected(const ExtensionKey& key);
 
-/// What to say of a text that is no value of this key.
+/// Returns the message for a text that is invalid for this key.
 std::string why_wrong(std::string_view text, const ExtensionKey& key);
 
 }  // namespace cohort::parsing

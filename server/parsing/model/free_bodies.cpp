@@ -23,7 +23,7 @@ bool any_word_below(const sdf::ElementPtr& element, const Visit& visit) {
 
 }  // namespace
 
-// Links that a joint connects have the number of the first of them; then the numbers in use are counted.
+// Links that joints connect get the number of the first of them; then the numbers in use are counted.
 FreeBodies::FreeBodies(const Model& model) : body_of_link_(model.links.size()) {
   for (std::size_t link = 0; link < model.links.size(); ++link) body_of_link_[link] = link;
   const auto join = [&](const Joint& joint) {
@@ -91,7 +91,8 @@ std::optional<std::size_t> FreeBodies::body_of_name(const Model& model, const st
   return std::nullopt;
 }
 
-// That of the first link or joint that it names; if it names none, that of the model that it stands in.
+// Returns the body of the first link or joint that the element names; if it names none, that of the model that contains
+// it.
 std::size_t FreeBodies::body_of_element(const Model& model, const sdf::ElementPtr& element,
                                         const std::string& prefix) const {
   std::optional<std::size_t> found;

@@ -10,18 +10,20 @@
 
 namespace cohort::parsing {
 
-/// The bodies of a model whose links and joints are read: each is what joints connect. Mostly there is one.
+/// The bodies of a model whose links and joints have been read; a body is a set of links that joints connect. Most
+/// models have one.
 class FreeBodies {
  public:
   explicit FreeBodies(const Model& model);
 
   std::size_t count() const { return count_; }
-  /// The parts of one body; all of the model if there is no other. Those after the first are called after their root.
+  /// Returns the parts of one body; the whole model if there is only one. Bodies after the first are named after their
+  /// root links.
   Model body(std::size_t number, const Model& model) const;
-  /// Where the devices of each body stand: what names a link or a joint of another one is left to that. A scope without
-  /// devices is one of the first body.
+  /// Returns the device scopes of each body. Elements that name a link or a joint of another body belong to that body.
+  /// A scope without devices belongs to the first body.
   std::vector<std::vector<DeviceScope>> scopes(const Model& model, const std::vector<DeviceScope>& scopes) const;
-  /// The sensors of one body.
+  /// Returns the sensors of one body.
   std::vector<SensorPlace> sensors_of(std::size_t number, const Model& model,
                                       const std::vector<SensorPlace>& sensors) const;
 

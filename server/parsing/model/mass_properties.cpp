@@ -13,7 +13,7 @@ MassProperties centred(double mass, const Eigen::Vector3d& moments) {
   return {mass, Eigen::Vector3d::Zero(), moments.asDiagonal()};
 }
 
-// Of a point mass at r, about the origin.
+// Returns the inertia of a point mass at r, about the origin.
 Eigen::Matrix3d point_inertia(double mass, const Eigen::Vector3d& r) {
   return mass * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
 }
@@ -43,7 +43,7 @@ MassProperties solid(const Cylinder& cylinder, double density) {
   return centred(mass, {across, across, mass * r2 / 2.0});
 }
 
-// The cylinder, and a sphere whose halves are moved apart: each centre of mass is 3/8 r from the flat side.
+// A cylinder, and a sphere whose halves are moved apart: the centre of mass of each half is 3/8 r from the flat side.
 MassProperties solid(const Capsule& capsule, double density) {
   const double r = capsule.radius;
   const double l = capsule.length;
@@ -53,7 +53,7 @@ MassProperties solid(const Capsule& capsule, double density) {
   return centred(middle.mass + ends, middle.inertia.diagonal() + Eigen::Vector3d(across, across, ends * 0.4 * r * r));
 }
 
-// Tetrahedra between a point amid the mesh and each triangle, negative where the triangle faces the point.
+// Sums tetrahedra between a point inside the mesh and each triangle, negative where the triangle faces the point.
 MassProperties solid(const Mesh& mesh, double density) {
   const TriangleMesh& surface = *mesh.triangles;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();

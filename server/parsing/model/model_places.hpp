@@ -5,25 +5,25 @@
 #include <set>
 #include <string>
 
-/// Where devices and sensors stand in the files of a model.
+/// Positions of devices and sensors in the files of a model.
 namespace cohort::parsing {
 
-/// Where `cohort:` devices stand: a model, or one inside of it.
+/// An element that contains `cohort:` devices: a model, or a nested model.
 struct DeviceScope {
   sdf::ElementPtr model_element;
-  std::string prefix;                     ///< of all names in it, such as `arm::`
+  std::string prefix;                     ///< prefix of all names in it, such as `arm::`
   std::set<sdf::ElementPtr> elsewhere{};  ///< children that belong to another body
 };
 
-/// Where one of SDF's own sensors stands.
+/// The position of a `<sensor>` of SDF.
 struct SensorPlace {
   const sdf::Sensor* sensor = nullptr;
   bool is_on_joint = false;
   std::string owner;   ///< scoped name of the link or joint
-  std::string prefix;  ///< of all names in its model
+  std::string prefix;  ///< prefix of all names in its model
 };
 
-/// Whether a <sensor> is of a type that is simulated where it stands.
+/// Returns whether a <sensor> has a type that is simulated at its position.
 bool is_sensor(const sdf::ElementPtr& element);
 
 }  // namespace cohort::parsing

@@ -18,13 +18,14 @@ struct Unsupported {
   const char* remark = "";
 };
 
-// Elements of SDF 1.9. One with a value is passed over where the value is SDF's default.
+// Elements of SDF 1.9 that are not supported. An entry with a value is ignored where it has that value, the default of
+// SDF.
 constexpr Unsupported unsupported[] = {
     {"world", "actor"},
     {"world", "state"},
     {"world", "population", "; use <cohort:population>"},
     {"model", "gripper"},
-    {"link", "self_collide", "; <self_collide> of the model is for all of its links"},
+    {"link", "self_collide", "; <self_collide> of the model applies to all of its links"},
     {"link", "velocity_decay"},
     {"link", "projector"},
     {"link", "battery"},
@@ -35,19 +36,19 @@ constexpr Unsupported unsupported[] = {
     {"ode", "slip1"},
     {"ode", "slip2"},
     {"contact", "collide_without_contact"},
-    {"ode", "soft_cfm", "; contacts are soft by <kp> and <kd>"},
-    {"ode", "soft_erp", "; contacts are soft by <kp> and <kd>"},
+    {"ode", "soft_cfm", "; <kp> and <kd> define soft contacts"},
+    {"ode", "soft_erp", "; <kp> and <kd> define soft contacts"},
     {"ode", "max_vel"},
     {"ode", "min_depth"},
-    {"bullet", "soft_cfm", "; contacts are soft by <kp> and <kd>"},
-    {"bullet", "soft_erp", "; contacts are soft by <kp> and <kd>"},
+    {"bullet", "soft_cfm", "; <kp> and <kd> define soft contacts"},
+    {"bullet", "soft_erp", "; <kp> and <kd> define soft contacts"},
     {"bullet", "split_impulse"},
     {"bullet", "split_impulse_penetration_threshold"},
     {"surface", "soft_contact"},
-    {"mesh", "submesh", "; all of the mesh is read"},
+    {"mesh", "submesh", "; the whole mesh is read"},
 };
 
-// What is looked into; all else is of no consequence or read elsewhere.
+// Elements whose children are checked; all others have no effect or are read elsewhere.
 constexpr std::string_view containers[] = {"link",      "joint",   "axis",     "axis2",    "dynamics", "limit",
                                            "collision", "surface", "bounce",   "friction", "ode",      "bullet",
                                            "torsional", "contact", "geometry", "mesh"};
@@ -68,8 +69,8 @@ bool has_default_value(const sdf::ElementPtr& element) {
   return number ? number == parse_real(by_default) : text == by_default;
 }
 
-// Without a direction friction is the same in every one: a second coefficient matters only where it differs from the
-// first.
+// Returns whether a second friction coefficient has no effect because there is no direction: then friction is the same
+// in every direction. It matters only if it differs from the first.
 bool is_second_friction_without_direction(const sdf::ElementPtr& element) {
   const bool is_ode = element->GetName() == "mu2";
   if ((!is_ode && element->GetName() != "friction2") || element->GetParent()->FindElement("fdir1")) return false;
@@ -77,7 +78,7 @@ bool is_second_friction_without_direction(const sdf::ElementPtr& element) {
   return element->Get<double>() != (first ? first->Get<double>() : 1.0);
 }
 
-// What <ode> beside it says instead.
+// Returns whether the element of <bullet> is replaced by one of <ode> beside it.
 bool is_bullets_beside_ode(const sdf::ElementPtr& element) {
   constexpr std::string_view names[] = {"friction", "friction2", "fdir1", "kp", "kd"};
   const sdf::ElementPtr parent = element->GetParent();
@@ -94,7 +95,7 @@ void warn_of_unsupported(const sdf::ElementPtr& element, const SdfReport& report
       report.warning(child, "a sensor of the type '" + child->Get<std::string>("type") + "' in a <" +
                                 element->GetName() + "> is not supported and is ignored");
     if (is_bullets_beside_ode(child))
-      report.warning(child, "<" + child->GetName() + "> is ignored; what <ode> says holds");
+      report.warning(child, "<" + child->GetName() + "> is ignored; the values of <ode> apply");
     else if (is_second_friction_without_direction(child))
       report.warning(child,
                      "<" + child->GetName() + "> is ignored; without <fdir1> friction is the same in every direction");

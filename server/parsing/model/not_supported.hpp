@@ -6,8 +6,8 @@
 
 namespace cohort::parsing {
 
-/// Warns of every element at or below `element` that would change motion or sensing in another simulator and is not
-/// simulated here. Models inside of a world are left out: they are looked at one by one.
+/// Warns of every element at or below `element` that would affect motion or sensing in other simulators but is not
+/// simulated here. Models inside a world are skipped, since each is checked separately.
 void warn_of_unsupported(const sdf::ElementPtr& element, const SdfReport& report);
 
 }  // namespace cohort::parsing

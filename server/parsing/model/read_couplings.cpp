@@ -9,7 +9,7 @@
 namespace cohort::parsing {
 namespace {
 
-// Nothing, and reported, if there is no joint of this name that has an axis.
+// Returns the joint; nothing, with a report, if no joint of this name has an axis.
 std::optional<std::size_t> find_joint(const Model& model, const std::string& name, const sdf::ElementPtr& where,
                                       const SdfReport& report) {
   std::vector<std::string> names;
@@ -18,12 +18,13 @@ std::optional<std::size_t> find_joint(const Model& model, const std::string& nam
     names.push_back(joint.name);
     if (joint.name != name) continue;
     if (joint.type != JointType::fixed && joint.type != JointType::ball) return i;
-    report.problem(where, "the joint '" + name + "' " +
-                              (joint.type == JointType::fixed ? "is fixed" : "is a ball: it has no single axis"));
+    report.problem(where,
+                   "the joint '" + name + "' " +
+                       (joint.type == JointType::fixed ? "is fixed" : "is a ball joint, which has no single axis"));
     return std::nullopt;
   }
   if (std::ranges::any_of(model.loop_joints, [&](const Joint& joint) { return joint.name == name; }))
-    report.problem(where, "the joint '" + name + "' closes a loop, and has no position of its own");
+    report.problem(where, "the joint '" + name + "' closes a loop and has no position of its own");
   else
     report.problem(where, "the model has no joint '" + name + "'" + suggestion(name, names));
   return std::nullopt;
@@ -39,7 +40,8 @@ std::optional<Coupling> read_mimic(const sdf::ElementPtr& element, const std::st
   return Coupling{*of_follower, *of_leader, values->real("multiplier"), values->real("offset")};
 }
 
-// The joint between a link and the reference body, and whether it turns the link about this axis as it turns: 1 or -1.
+// The joint between a link and the reference body. The sign is 1 if a positive rotation of the joint turns the link
+// positively about this axis, and -1 otherwise.
 struct Turn {
   std::size_t joint = 0;
   double sense = 1.0;
@@ -111,7 +113,7 @@ std::vector<Coupling> read_couplings(const sdf::Model& sdf_model, const Model& m
       reading.report.problem(where, "a joint cannot follow itself");
     else if (std::ranges::any_of(couplings, follows))
       reading.report.problem(where,
-                             "the joint '" + model.joints[coupling->follower].name + "' follows another one already");
+                             "the joint '" + model.joints[coupling->follower].name + "' already follows another joint");
     else
       couplings.push_back(*coupling);
   };

@@ -12,14 +12,14 @@ namespace {
 
 using keys::Referent;
 
-// Finds what devices refer to, and reports what is not there or is taken.
+// Finds the targets of references in devices, and reports those that are missing or already used.
 class References {
  public:
   /// `drives` are the treel drives of the model: name and index among the devices.
   References(const Model& model, std::map<std::string, std::size_t> drives, const SdfReport& report, ShapeFiles& files)
       : model_(model), drives_(std::move(drives)), report_(report), files_(files) {}
 
-  /// Whether each was found.
+  /// Returns whether each was found.
   template <class Kind>
   bool find_all(const ExtensionValues& values, Kind& device) {
     bool found = true;
@@ -103,7 +103,7 @@ std::optional<std::size_t> References::find_index(Referent to, const std::string
   if (to == Referent::belt_link) {
     const std::optional<std::size_t> link = find_named("link", model_.links, name, where);
     if (!link || belts_.insert(*link).second) return link;
-    report_.problem(where, "the link '" + name + "' has a belt already");
+    report_.problem(where, "the link '" + name + "' already has a belt");
     return std::nullopt;
   }
   const std::optional<std::size_t> joint = find_named("joint", model_.joints, name, where);
@@ -114,24 +114,24 @@ std::optional<std::size_t> References::find_index(Referent to, const std::string
   return std::nullopt;
 }
 
-// Empty if it can be what is asked for; then it is taken.
+// Returns why the joint cannot be the target; empty if it can, and then marks it as used.
 std::string References::flaw_of_joint(Referent to, std::size_t index) {
   const Joint& joint = model_.joints[index];
   if (to == Referent::wheel_joint) {
-    if (joint.type != JointType::revolute) return "is not revolute, as that of a wheel is";
+    if (joint.type != JointType::revolute) return "is not revolute; the joint of a wheel must be revolute";
     if (joint.parent != 0) return "is not between '" + model_.links[0].name + "' and a wheel";
-    if (motorised_.contains(index)) return "has a motor already";
-    return wheels_.insert(index).second ? "" : "is a wheel's already";
+    if (motorised_.contains(index)) return "already has a motor";
+    return wheels_.insert(index).second ? "" : "is already listed as the joint of a wheel";
   }
   if (to == Referent::joint) return "";
   if (joint.type == JointType::fixed) return "is fixed";
-  if (joint.type == JointType::ball) return "is a ball: it has no single axis";
+  if (joint.type == JointType::ball) return "is a ball joint, which has no single axis";
   if (to == Referent::moving_joint) return "";
-  if (wheels_.contains(index)) return "is a wheel's of a treel_drive, which moves it";
-  return motorised_.insert(index).second ? "" : "has a motor already";
+  if (wheels_.contains(index)) return "belongs to a wheel of a treel_drive, which moves it";
+  return motorised_.insert(index).second ? "" : "already has a motor";
 }
 
-// What keys must be together: an overload for each kind where there is anything.
+// Checks across keys: an overload for each kind that needs one.
 template <class Kind>
 void check(const Kind&, const ExtensionValues&, const SdfReport&) {}
 
@@ -139,7 +139,7 @@ void check_samples(const std::shared_ptr<const Samples>& samples, std::size_t co
                    const SdfReport& report) {
   if (samples && samples->count() != count)
     report.problem(values.where("samples"), "'" + values.text("samples") + "' has " + std::to_string(samples->count()) +
-                                                " readings at each place, the device has " + std::to_string(count));
+                                                " readings at each place, but the device has " + std::to_string(count));
 }
 
 void check(const ProximityRing& ring, const ExtensionValues& values, const SdfReport& report) {
@@ -149,7 +149,7 @@ void check(const ProximityRing& ring, const ExtensionValues& values, const SdfRe
   const bool takes_samples = ring.technique == ProximityTechnique::samples;
   if (takes_samples != values.has("samples"))
     report.problem(values.where("samples"), takes_samples ? "the technique 'samples' needs a file <cohort:samples>"
-                                                          : "only the technique 'samples' has a file");
+                                                          : "only the technique 'samples' uses a sample file");
 }
 
 void check(const LightSensors& sensors, const ExtensionValues& values, const SdfReport& report) {
@@ -159,7 +159,7 @@ void check(const LightSensors& sensors, const ExtensionValues& values, const Sdf
 void check(const Microphones& microphones, const ExtensionValues& values, const SdfReport& report) {
   for (std::size_t i = 0; i < microphones.bands.size(); ++i)
     if (microphones.bands[i].x() > microphones.bands[i].y())
-      report.problem(values.where("band", i), "the lowest frequency of the band exceeds the highest");
+      report.problem(values.where("band", i), "the minimum frequency of the band exceeds the maximum");
   check_samples(microphones.samples, microphones.places_L.size(), values, report);
 }
 
@@ -169,7 +169,7 @@ void check_elevations(const ExtensionValues& values, const SdfReport& report) {
     if (std::abs(values.real(key)) > quarter_turn)
       report.problem(values.where(key), "expected an elevation from -pi/2 to pi/2");
   if (!(values.real("min_elevation") < values.real("max_elevation")))
-    report.problem(values.where("max_elevation"), "expected more than the lowest elevation");
+    report.problem(values.where("max_elevation"), "expected a value greater than the minimum elevation");
 }
 
 void check(const OmnidirectionalCamera&, const ExtensionValues& values, const SdfReport& report) {
@@ -196,7 +196,7 @@ void check(const AckermannDrive& drive, const ExtensionValues& values, const Sdf
 }
 
 void check(const Belt& belt, const ExtensionValues& values, const SdfReport& report) {
-  if (belt.axis_L.isZero(0.0)) report.problem(values.where("axis"), "expected a direction, not 0 0 0");
+  if (belt.axis_L.isZero(0.0)) report.problem(values.where("axis"), "expected a direction other than 0 0 0");
   if (std::abs(belt.velocity) > belt.max_velocity)
     report.problem(values.where("velocity"), "exceeds <cohort:max_velocity>");
 }
@@ -209,7 +209,7 @@ void check(const Rotor& rotor, const ExtensionValues& values, const SdfReport& r
   if (rotor.min_velocity > 0.0) report.problem(values.where("min_velocity"), "expected at most 0 rad/s");
 }
 
-// The limits of the joint hold for its motor.
+// Warns if the motor exceeds the limits of its joint, which apply to it.
 template <class Kind>
 void bind_to_joint(Kind& device, const Model& model, const ExtensionValues& values, const SdfReport& report) {
   if constexpr (requires { device.rotor_inertia; }) {
@@ -217,7 +217,7 @@ void bind_to_joint(Kind& device, const Model& model, const ExtensionValues& valu
     const auto bind = [&](double& most, double limit, const std::string& quantity) {
       if (most <= limit) return;
       report.warning(values.where("max_" + quantity),
-                     "exceeds the <limit><" + quantity + "> of its joint, which holds");
+                     "exceeds the <limit><" + quantity + "> of its joint; the limit of the joint applies");
       most = limit;
     };
     bind(device.max_effort, axis.max_effort, "effort");
@@ -225,7 +225,7 @@ void bind_to_joint(Kind& device, const Model& model, const ExtensionValues& valu
   }
 }
 
-// The keys that every sensor has.
+// Reads the keys that every sensor has.
 template <class Kind>
 Readout read_readout(const ExtensionValues& values) {
   Noise noise;
@@ -240,7 +240,7 @@ template <class Kind>
 std::optional<Device> read_device(const ExtensionValues& values, References& references, const SdfReport& report) {
   Kind device;
   device.name = values.name();
-  // What is said of a single quantity holds before what is said of all: its noise comes later.
+  // Noise for a single quantity overrides noise for all, so it is added later.
   if constexpr (keys::Senses<Kind>) device.readout = read_readout<Kind>(values);
   read_values<Kind>(values, device);
   if constexpr (requires { device.child_place; }) device.child_place = report.place_of(values.where("child"));
@@ -257,7 +257,7 @@ struct DeviceKind {
   bool observes = false;  // its channels are observations
 };
 
-// By the name of its element.
+// Returns the kinds by the names of their elements.
 std::map<std::string_view, DeviceKind> device_kinds() {
   std::map<std::string_view, DeviceKind> kinds;
   keys::for_kinds_in(keys::devices, [&]<class Kind>(std::type_identity<Kind>) {
@@ -293,7 +293,7 @@ std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const s
   for (const DeviceScope& scope : scopes)
     for (const auto& [element, extension] : extensions_in(scope.model_element, report))
       if (!scope.elsewhere.contains(element)) found.push_back({element, extension, scope.prefix});
-  // An encoder may stand before the drive that it measures.
+  // An encoder may precede the drive that it measures.
   std::map<std::string, std::size_t> drives;
   for (std::size_t i = 0; i < found.size(); ++i)
     if (found[i].extension->name == "treel_drive" && found[i].element->HasAttribute("name"))
@@ -302,8 +302,8 @@ std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const s
   static const std::map<std::string_view, DeviceKind> kinds = device_kinds();
   References references(model, std::move(drives), report, files);
   std::vector<Device> devices;
-  // Commands and observations are named after their device: two devices that command, or two that observe, cannot
-  // share a name.
+  // Commands and observations are named after their device, so two devices with commands, or two with observations,
+  // cannot share a name.
   std::set<std::pair<bool, std::string>> names;
   const auto add = [&](const ExtensionValues& values, const Extension& extension) {
     const DeviceKind& kind = kinds.at(extension.name);

@@ -25,7 +25,7 @@ Light read_light_values(const sdf::Light& sdf_light, const SdfReport& report) {
   const ignition::math::Color color = sdf_light.Diffuse();
   light.color = {static_cast<double>(color.R()), static_cast<double>(color.G()), static_cast<double>(color.B())};
   light.intensity = number(find(element, {"intensity"}), 1.0, report);
-  // libsdformat keeps factors in ranges of its own.
+  // libsdformat clips the factors to ranges of its own.
   const sdf::ElementPtr attenuation = find(element, {"attenuation"});
   if (attenuation && (is_written(find(attenuation, {"range"})) || is_written(find(attenuation, {"constant"})) ||
                       is_written(find(attenuation, {"linear"})) || is_written(find(attenuation, {"quadratic"})))) {
@@ -36,7 +36,7 @@ Light read_light_values(const sdf::Light& sdf_light, const SdfReport& report) {
     const bool is_valid = light.constant >= 0.0 && light.linear >= 0.0 && light.quadratic >= 0.0 &&
                           light.constant + light.linear + light.quadratic > 0.0 && light.range >= 0.0;
     if (!is_valid && report.flaw(attenuation, "expected numbers >= 0, and one of the three factors > 0",
-                                 "the light weakens with its distance"))
+                                 "the light is attenuated with distance"))
       light.constant = 0.0, light.linear = 1.0, light.quadratic = 0.0, light.range = 10.0;
   }
   if (light.intensity < 0.0 || !std::isfinite(light.intensity))
@@ -50,13 +50,14 @@ Light read_light_values(const sdf::Light& sdf_light, const SdfReport& report) {
   else if (direction)
     report.problem(direction, "expected a direction that is not zero");
   if (light.kind == Light::Kind::spot) {
-    // The angles of the whole cones.
+    // SDF gives full cone angles.
     light.inner_angle = 0.5 * number(find(element, {"spot", "inner_angle"}), 0.0, report);
     light.outer_angle = 0.5 * number(find(element, {"spot", "outer_angle"}), 0.0, report);
     light.falloff = number(find(element, {"spot", "falloff"}), 0.0, report);
     const bool is_cone = light.inner_angle >= 0.0 && light.outer_angle >= light.inner_angle && light.falloff >= 0.0;
     if (!is_cone && report.flaw(find(element, {"spot"}) ? find(element, {"spot"}) : element,
-                                "expected 0 <= inner_angle <= outer_angle, and a falloff >= 0", "the cone is even"))
+                                "expected 0 <= inner_angle <= outer_angle, and a falloff >= 0",
+                                "the intensity is uniform within the cone"))
       light.inner_angle = light.outer_angle = std::max(0.0, light.outer_angle), light.falloff = 0.0;
   }
   return light;

@@ -7,7 +7,7 @@
 namespace cohort::parsing {
 namespace {
 
-// libsdformat takes 1e-6 for zero, and then the z axis for the direction.
+// libsdformat treats lengths below 1e-6 as zero, and then uses the z axis.
 constexpr double shortest_axis = 1e-5;
 
 // SDF writes "no limit" as a number this large.
@@ -42,7 +42,7 @@ void read_dynamics(const sdf::JointAxis& sdf_axis, const SdfReport& report, Join
   axis.friction = sdf_axis.Friction();
   axis.spring_stiffness = sdf_axis.SpringStiffness();
   axis.spring_reference = sdf_axis.SpringReference();
-  // NaN passes: check_numbers has reported it.
+  // NaN passes, since check_numbers has reported it.
   const auto check = [&](const char* name, bool is_wrong, const char* expected) {
     if (is_wrong) report.problem(find(sdf_axis.Element(), {"dynamics", name}), std::string("expected ") + expected);
   };
@@ -60,7 +60,7 @@ void read_limits(const sdf::JointAxis& sdf_axis, const SdfReport& report, JointA
     report.problem(sdf_axis.Element()->FindElement("limit"), "the lower limit exceeds the upper limit");
 }
 
-// SDF's default is as good as rigid, and rigid here.
+// Reads stiffness and dissipation of limits. The default of SDF is practically rigid, and is rigid here.
 void read_give_of_limits(const sdf::JointAxis& sdf_axis, const SdfReport& report, JointAxis& axis) {
   constexpr double rigid = 1e8;
   const sdf::ElementPtr dissipation = find(sdf_axis.Element(), {"limit", "dissipation"});
@@ -78,7 +78,7 @@ void read_give_of_limits(const sdf::JointAxis& sdf_axis, const SdfReport& report
   axis.limit_damping = sdf_axis.Dissipation();
 }
 
-// Negative, they do not count; nor where they are 0, as exporters write of what they do not know.
+// Reads the limits of motors. Negative values mean no limit; so does 0, which exporters write for unknown values.
 void read_motor_limits(const sdf::JointAxis& sdf_axis, JointAxis& axis) {
   const auto read = [](double limit, double& most) {
     if (limit > 0.0 && limit < no_limit) most = limit;
@@ -87,17 +87,17 @@ void read_motor_limits(const sdf::JointAxis& sdf_axis, JointAxis& axis) {
   read(sdf_axis.MaxVelocity(), axis.max_velocity);
 }
 
-// SDF has radians for each metre, of a left-handed thread; its default is 1.
+// Reads the thread pitch, which SDF gives in radians per metre for a left-handed thread; its default is 1.
 double read_thread_pitch(const sdf::Joint& sdf_joint, const SdfReport& report) {
   const double radians_a_metre = sdf_joint.ThreadPitch();
   if (radians_a_metre == 0.0 || !std::isfinite(radians_a_metre)) {
-    report.problem(find(sdf_joint.Element(), {"thread_pitch"}), "expected radians for each metre, other than 0");
+    report.problem(find(sdf_joint.Element(), {"thread_pitch"}), "expected a thread pitch in rad/m other than 0");
     return 1.0;
   }
   return -2.0 * M_PI / radians_a_metre;
 }
 
-// `place` is 0 for <axis>, 1 for <axis2>. Nothing if it has no direction; the report then has it.
+// Reads an axis; returns nothing, with a report, if it has no direction. `place` is 0 for <axis>, 1 for <axis2>.
 std::optional<JointAxis> read_axis(const sdf::Joint& sdf_joint, unsigned place, const SdfReport& report) {
   const sdf::JointAxis* const sdf_axis = sdf_joint.Axis(place);
   if (sdf_axis == nullptr) {
@@ -136,10 +136,10 @@ void read_universal(const sdf::Joint& sdf_joint, const SdfReport& report, Joint&
   joint.second_axis = *second;
   constexpr double parallel = 1e-6;  // sine of the angle between them
   if (first->direction.cross(second->direction).norm() < parallel)
-    report.problem(find(sdf_joint.Element(), {"axis2"}), "expected another direction than that of <axis>");
+    report.problem(find(sdf_joint.Element(), {"axis2"}), "expected a direction that is not parallel to <axis>");
 }
 
-// A ball turns about every axis: it has no direction, and an angle about one axis means nothing.
+// Reads a ball joint, which turns about every axis: it has no direction, and no angle about a single axis.
 void read_ball(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& joint) {
   const sdf::JointAxis* const sdf_axis = sdf_joint.Axis(0);
   if (sdf_axis == nullptr) return;
@@ -179,7 +179,7 @@ std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Li
     const std::optional<JointType> type = read_type(sdf_joint, reading.report);
     if (!type || !reading.frames_resolve) continue;
 
-    // Parent and child may be frames that are attached to links.
+    // Parent and child can be frames that are attached to links.
     std::string parent_name;
     std::string child_name;
     sdf::Errors errors = sdf_joint.ResolveParentLink(parent_name);
@@ -191,7 +191,7 @@ std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Li
     if (!errors.empty() || !parent || !child || parent == child) {
       reading.report.problem(
           element, errors.empty()
-                       ? "expected two different links of this model, or the world and one, as parent and child"
+                       ? "expected two different links of this model, or one link and the world, as parent and child"
                        : errors.front().Message());
       continue;
     }

@@ -19,8 +19,8 @@
 namespace cohort::parsing {
 namespace {
 
-// The nearest principal moments that a body of this mass can have, in ascending order. What has next to none is a
-// grain.
+// Returns the nearest physically possible principal moments for a body of this mass, in ascending order. If all are
+// nearly 0, the body is a small grain.
 Eigen::Vector3d nearest_moments(const Eigen::Vector3d& moments, double mass) {
   constexpr double radius_of_grain = 1e-3;  // [m]
   Eigen::Vector3d nearest = moments.cwiseMax(mass * radius_of_grain * radius_of_grain);
@@ -29,7 +29,8 @@ Eigen::Vector3d nearest_moments(const Eigen::Vector3d& moments, double mass) {
   return nearest;
 }
 
-// Those of the collisions, as if the mass were spread evenly in them; nothing if nothing of the link is solid.
+// Returns the inertia of the collisions with the mass distributed evenly in them; nothing if the link has no solid
+// collision.
 std::optional<Eigen::Matrix3d> inertia_of_collisions(const Link& link, double mass) {
   std::vector<MassProperties> parts;
   for (const Collision& collision : link.collisions)
@@ -39,7 +40,8 @@ std::optional<Eigen::Matrix3d> inertia_of_collisions(const Link& link, double ma
   return mass / whole.mass * whole.inertia;
 }
 
-// Planes and height maps have none; a mesh has that of its convex hull, since meshes that are only shown have gaps.
+// Returns the solid for mass properties: nothing for planes and height maps, and the convex hull of a mesh, since
+// meshes for display have gaps.
 std::optional<Shape> solid_of(const Shape& shape) {
   const Mesh* const mesh = std::get_if<Mesh>(&shape);
   if (mesh == nullptr || mesh->convex) return shape;
@@ -59,7 +61,7 @@ MassProperties mass_of_parts(const std::vector<Part>& parts, Pose Part::*X_LP, d
   return together(solids);
 }
 
-// Takes the mass of a link that has none from its shapes, as MuJoCo does.
+// Computes the mass of a link without one from its shapes, like MuJoCo.
 Inertial inertial_of_shapes(const Link& link) {
   constexpr double density = 1000.0;        // [kg/m^3]
   constexpr double mass_of_grain = 1e-3;    // [kg]
@@ -73,14 +75,14 @@ Inertial inertial_of_shapes(const Link& link) {
   return {whole.mass, {whole.centre, Eigen::Quaterniond::Identity()}, whole.inertia};
 }
 
-// Here and below, NaN passes: check_numbers has reported it.
+// NaN passes here and below, since check_numbers has reported it.
 Inertial read_written_inertial(const sdf::Link& sdf_link, const Link& link, const SdfReport& report) {
   const sdf::ElementPtr element = sdf_link.Element();
   const sdf::ElementPtr mass = find(element, {"inertial", "mass"});
   const sdf::ElementPtr inertia = find(element, {"inertial", "inertia"});
-  if (mass && mass->Get<double>() == 0.0 && report.is_foreign(mass)) return inertial_of_shapes(link);  // told already
-  if (!mass) report.warning(element, "has no mass; SDF's default acts, 1 kg");
-  if (!inertia) report.warning(element, "has no inertia; SDF's default acts, 1 kg m^2 about each axis");
+  if (mass && mass->Get<double>() == 0.0 && report.is_foreign(mass)) return inertial_of_shapes(link);  // already reported
+  if (!mass) report.warning(element, "has no mass; the default of SDF is used, 1 kg");
+  if (!inertia) report.warning(element, "has no inertia; the default of SDF is used, 1 kg m^2 about each axis");
 
   Inertial inertial;
   inertial.X_LI = written_pose(sdf_link.Inertial().Pose(), find(element, {"inertial"}));
@@ -98,7 +100,7 @@ Inertial read_written_inertial(const sdf::Link& sdf_link, const Link& link, cons
     return inertial;
   }
   if (const auto solid = inertial.inertia.isZero(0.0) ? inertia_of_collisions(link, inertial.mass) : std::nullopt) {
-    if (report.flaw(inertia, "the matrix is not positive definite", "that of the collisions stands in for it")) {
+    if (report.flaw(inertia, "the matrix is not positive definite", "the inertia of the collisions is used instead")) {
       inertial.X_LI.orientation.setIdentity();
       inertial.inertia = *solid;
     }
@@ -106,14 +108,14 @@ Inertial read_written_inertial(const sdf::Link& sdf_link, const Link& link, cons
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertial.inertia);
   const Eigen::Vector3d& moments = solver.eigenvalues();
-  // Solids made of mass somewhere obey the triangle inequality, thin ones with equality.
+  // Bodies of positive mass satisfy the triangle inequality, thin ones with equality.
   constexpr double rounding = 1e-6;
   const char* flaw = nullptr;
   if (!(moments[0] > 0.0))
     flaw = "the matrix is not positive definite";
   else if (moments[2] > (moments[0] + moments[1]) * (1.0 + rounding))
-    flaw = "no body is like this: one principal moment exceeds the sum of the other two";
-  if (flaw != nullptr && report.flaw(inertia, flaw, "the nearest that a body can have stands in for it")) {
+    flaw = "no physical body has this inertia: one principal moment exceeds the sum of the other two";
+  if (flaw != nullptr && report.flaw(inertia, flaw, "the nearest physically possible inertia is used instead")) {
     const Eigen::Matrix3d& axes = solver.eigenvectors();
     const Eigen::Matrix3d nearest = axes * nearest_moments(moments, inertial.mass).asDiagonal() * axes.transpose();
     inertial.inertia = 0.5 * (nearest + nearest.transpose());
@@ -121,7 +123,7 @@ Inertial read_written_inertial(const sdf::Link& sdf_link, const Link& link, cons
   return inertial;
 }
 
-// <cohort:density> of a link or a collision; nothing if it has none.
+// Returns <cohort:density> of a link or a collision; nothing if it has none.
 std::optional<double> read_density(const sdf::ElementPtr& parent, const SdfReport& report) {
   const sdf::ElementPtr element = parent->FindElement("cohort:density");
   if (!element) return std::nullopt;
@@ -131,7 +133,7 @@ std::optional<double> read_density(const sdf::ElementPtr& parent, const SdfRepor
   return values ? std::optional(values->real("density")) : std::nullopt;
 }
 
-// Nothing if neither the link nor any of its collisions has a density.
+// Returns nothing if neither the link nor any of its collisions has a density.
 std::optional<Inertial> read_inertial_from_density(const sdf::Link& sdf_link, const Link& link,
                                                    const SdfReport& report) {
   const std::optional<double> of_link = read_density(sdf_link.Element(), report);
@@ -161,14 +163,14 @@ double read_coefficient(const sdf::ElementPtr& element, double by_default, doubl
   const auto value = element->Get<double>();
   if (!(value < 0.0) && !(value > greatest)) return value;
   const double nearest = value < 0.0 ? 0.0 : greatest;
-  return report.flaw(element, expected, "the nearest stands in for it") ? nearest : value;
+  return report.flaw(element, expected, "the nearest valid value is used instead") ? nearest : value;
 }
 
-// Of friction. ODE takes a negative one for any friction that it takes.
+// Reads a friction coefficient. A negative one means unlimited friction in ODE.
 double read_friction_coefficient(const sdf::ElementPtr& element, const SdfReport& report) {
   constexpr double as_if_glued = 1e3;
   const char* const expected = "expected a coefficient >= 0";
-  if (element && element->Get<double>() < 0.0 && report.flaw(element, expected, "it holds whatever pulls"))
+  if (element && element->Get<double>() < 0.0 && report.flaw(element, expected, "friction without limit is used"))
     return as_if_glued;
   return read_coefficient(element, 1.0, std::numeric_limits<double>::max(), expected, report);
 }
@@ -194,12 +196,12 @@ bool read_grippable(const sdf::ElementPtr& collision, const SdfReport& report) {
   return values && values->flag("grippable");
 }
 
-// Of its 16 bits; SDF passes over those above.
+// Reads the 16 bits of a bitmask; SDF ignores higher bits.
 std::uint16_t read_bitmask(const sdf::ElementPtr& element, std::uint16_t by_default) {
   return is_written(element) ? static_cast<std::uint16_t>(element->Get<unsigned int>()) : by_default;
 }
 
-// As <ode> or, without it, <bullet> says.
+// Reads friction from <ode> or, without it, from <bullet>.
 void read_friction(const sdf::ElementPtr& friction, const SdfReport& report, Surface& surface) {
   const bool is_bullet = !find(friction, {"ode"}) && find(friction, {"bullet"});
   const sdf::ElementPtr element = find(friction, {is_bullet ? "bullet" : "ode"});
@@ -211,7 +213,7 @@ void read_friction(const sdf::ElementPtr& friction, const SdfReport& report, Sur
   surface.friction_direction = unit ? *unit : to_eigen(direction->Get<ignition::math::Vector3d>()).normalized();
 }
 
-// As <ode> or, without it, <bullet> says.
+// Reads softness from <ode> or, without it, from <bullet>.
 void read_softness(const sdf::ElementPtr& contact, const SdfReport& report, Surface& surface) {
   const sdf::ElementPtr element = find(contact, {find(contact, {"ode"}) ? "ode" : "bullet"});
   const sdf::ElementPtr stiffness = find(element, {"kp"});
@@ -223,8 +225,8 @@ void read_softness(const sdf::ElementPtr& contact, const SdfReport& report, Surf
                                      "expected a damping >= 0 N s/m", report);
 }
 
-// The torque against spinning for each newton: 3 pi / 16 times the radius of the patch of contact times the coefficient
-// ("Torsional friction", tutorial of Gazebo).
+// Reads the ratio of the torque against spinning to the normal force: 3 pi / 16 times the radius of the contact patch
+// times the coefficient ("Torsional friction", tutorial of Gazebo).
 double read_spinning_resistance(const sdf::ElementPtr& torsional, const SdfReport& report) {
   const char* const expected = "expected a radius >= 0 m";
   const double most = std::numeric_limits<double>::max();
@@ -234,7 +236,7 @@ double read_spinning_resistance(const sdf::ElementPtr& torsional, const SdfRepor
   read_coefficient(find(torsional, {"surface_radius"}), 0.0, most, expected, report);
   const sdf::ElementPtr by_patch = find(torsional, {"use_patch_radius"});
   if (!is_written(by_patch) || by_patch->Get<bool>()) return 3.0 * std::numbers::pi / 16.0 * radius * coefficient;
-  report.warning(by_patch, "a patch that grows with the depth of a contact is not supported; give a <patch_radius>");
+  report.warning(by_patch, "a contact patch that grows with depth is not supported; set <patch_radius>");
   return 0.0;
 }
 
@@ -262,7 +264,7 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
   return surface;
 }
 
-// The parts are floats in SDF: what is written with up to six digits comes out as written.
+// Converts a colour component, which is a float in SDF, so that values of up to six digits stay as written.
 double read_part(float part) {
   constexpr double digits = 1e6;
   return std::clamp(std::round(static_cast<double>(part) * digits) / digits, 0.0, 1.0);

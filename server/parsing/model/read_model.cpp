@@ -12,7 +12,7 @@
 namespace cohort::parsing {
 namespace {
 
-// The same joint with its ends exchanged: as far as before about an axis the other way round.
+// Returns the joint with parent and child exchanged, which has the same position about the opposite axis.
 Joint turned_round(const Joint& joint, const Model& model) {
   Joint turned = joint;
   turned.parent = joint.child;
@@ -22,11 +22,12 @@ Joint turned_round(const Joint& joint, const Model& model) {
   return turned;
 }
 
-// Joints in the order of the document make a tree as long as each connects a link that has no parent yet to one that
-// does not hang on it. The others close loops, but for those that tie a root to what hangs on another one.
+// Separates joints that close loops. In document order, a joint belongs to the tree if it connects a link without a
+// parent to a link that is not below it. All others close loops, except those that attach a root to a descendant of
+// another one.
 void set_loops_apart(Model& model) {
   const std::size_t none = model.links.size();
-  std::vector<std::size_t> parent(model.links.size(), none);  // of the world, the link itself
+  std::vector<std::size_t> parent(model.links.size(), none);  // for the world, the link itself
   const auto root_of = [&](std::size_t link) {
     while (link != Joint::world && parent[link] != none && parent[link] != link) link = parent[link];
     return link;
@@ -48,7 +49,7 @@ void set_loops_apart(Model& model) {
   model.joints = std::move(tree);
 }
 
-// What a joint that closes a loop says of how it moves.
+// Warns of properties of joints that close loops, which are ignored.
 void warn_of_loops(const sdf::Model& sdf_model, const Model& model, const SdfReport& report) {
   for (const Joint& joint : model.loop_joints) {
     const JointAxis& axis = joint.axis;
@@ -58,11 +59,12 @@ void warn_of_loops(const sdf::Model& sdf_model, const Model& model, const SdfRep
     const sdf::Joint* const sdf_joint = sdf_model.JointByName(joint.name);
     report.warning(sdf_joint != nullptr ? sdf_joint->Element() : sdf_model.Element(),
                    "the joint '" + joint.name +
-                       "' closes a loop: it holds, but has no limits, damping, friction, spring or thread");
+                       "' closes a loop: it constrains the links, but its limits, damping, friction, spring and thread "
+                       "are ignored");
   }
 }
 
-// Puts parents before children and otherwise keeps the order of the document. False if the links are not one tree.
+// Puts parents before children, and otherwise keeps the document order. Returns false if the links are not one tree.
 bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& report) {
   const std::size_t count = model.links.size();
   std::vector<std::size_t> parent(count, count);  // `count` is none
@@ -111,7 +113,7 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
   return true;
 }
 
-// What hangs on a joint moves with what holds it, and the world holds a link still.
+// Makes root links kinematic. A link on a joint moves with its parent, and the world holds links still.
 void take_kinematic_links(Model& model, const SdfReport& report, const sdf::ElementPtr& element) {
   const auto is_child = [&](std::size_t link) {
     return std::ranges::any_of(model.joints, [&](const Joint& joint) { return joint.child == link; });
@@ -120,29 +122,29 @@ void take_kinematic_links(Model& model, const SdfReport& report, const sdf::Elem
     if (!model.links[link].is_kinematic || !is_child(link)) continue;
     model.links[link].is_kinematic = false;
     report.warning(element, "<kinematic> of the link '" + model.links[link].name +
-                                "' is ignored: a joint holds it; only a root that is free can be kinematic");
+                                "' is ignored because a joint holds the link; only a free root link can be kinematic");
   }
 }
 
-// What <enable_wind> of a model or a link says; otherwise it is as what it stands in.
+// Returns <enable_wind> of a model or a link; without it, the value of the parent element.
 bool feels_wind(const sdf::ElementPtr& element, bool outer) {
   const sdf::ElementPtr written = element->FindElement("enable_wind");
   return is_written(written) && written->GetExplicitlySetInFile() ? written->Get<bool>() : outer;
 }
 
-// The parts of a model that stand in it and in the models inside of it, with scoped names.
+// Collects the parts of a model and of its nested models, with scoped names.
 class ModelFlattener {
  public:
   ModelFlattener(Model& model, const ModelReading& reading) : model_(model), reading_(reading) {}
 
-  /// The links come first, since joints of an outer model may name links of an inner one.
+  /// Links are added first, since joints of an outer model may name links of a nested one.
   void add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN, bool outer_feels_wind);
   void add_joints(const sdf::Model& sdf_model, const std::string& scope);
   void hold_links(const std::string& scope);
 
   const std::vector<DeviceScope>& scopes() const { return scopes_; }
   const std::vector<SensorPlace>& sensors() const { return sensors_; }
-  /// Also of those that could not be read.
+  /// Includes joints that could not be read.
   std::size_t joint_count() const { return joint_count_; }
 
  private:
@@ -208,7 +210,7 @@ void ModelFlattener::add_joints(const sdf::Model& sdf_model, const std::string& 
   }
 }
 
-// A static model inside of one that moves: the world holds each link of it.
+// Fixes each link of a static model to the world, for a static model nested in a moving one.
 void ModelFlattener::hold_links(const std::string& scope) {
   for (std::size_t link = 0; link < model_.links.size(); ++link) {
     const std::string& name = model_.links[link].name;
@@ -233,13 +235,13 @@ void warn_of_what_static_has(const ModelFlattener& parts, const SdfReport& repor
   }
 }
 
-// A name of an object; that of a link in a model inside of its own has colons.
+// Returns a valid name for an object; the name of a link in a nested model contains colons.
 std::string without_colons(std::string name) {
   for (std::size_t at = name.find("::"); at != std::string::npos; at = name.find("::", at)) name.replace(at, 2, ".");
   return name;
 }
 
-// The devices of one body, its links and joints read.
+// Adds the devices of one body, whose links and joints have been read.
 void add_devices(const std::vector<DeviceScope>& scopes, const std::vector<SensorPlace>& sensors,
                  const ModelReading& reading, Model& body) {
   std::vector<Counterpart> of_plugins;
@@ -266,7 +268,7 @@ std::vector<Model> read_model(const sdf::Model& sdf_model, const ModelReading& r
 
   ModelFlattener parts(model, reading);
   parts.add_links(sdf_model, "", {}, false);
-  if (model.links.empty() && reading.report.flaw(element, "expected at least one <link>", "nothing of it is there")) {
+  if (model.links.empty() && reading.report.flaw(element, "expected at least one <link>", "the model has no effect")) {
     model.is_static = true;
     model.links.push_back({"link", {}, {}, {}});
   }
@@ -275,7 +277,7 @@ std::vector<Model> read_model(const sdf::Model& sdf_model, const ModelReading& r
     return {std::move(model)};
   }
   parts.add_joints(sdf_model, "");
-  // Devices name links and joints: with some of those missing, each device would be reported for it.
+  // Devices name links and joints. If some of those are missing, every device would be reported.
   if (!reading.frames_resolve || model.joints.size() != parts.joint_count()) return {std::move(model)};
   set_loops_apart(model);
   model.couplings = read_couplings(sdf_model, model, "", reading);

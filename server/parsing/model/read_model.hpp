@@ -21,59 +21,61 @@
 
 namespace cohort::parsing {
 
-/// How a model is read.
+/// The context for reading a model.
 struct ModelReading {
   bool is_static = false;
-  bool frames_resolve = false;  ///< libsdformat found no fault with the file; if it did, it has said why
+  bool frames_resolve = false;  ///< libsdformat reported no error for the file
   const SdfReport& report;
   ShapeFiles& shape_files;
-  std::vector<std::string>& materials;  ///< of the world; a new name is added
+  std::vector<std::string>& materials;  ///< materials of the world; new names are added
 };
 
-/// A model, checked; what is wrong goes to the report, and the model is then not to be used. Of links that no joint
-/// connects, each is the root of a body of its own: the models after the first, which are called after their roots.
+/// Reads and checks a model; reports problems, and then the model must not be used. If joints do not connect all links,
+/// each group is a separate body: the models after the first, which are named after their root links.
 std::vector<Model> read_model(const sdf::Model& sdf_model, const ModelReading& reading);
 
-/// Nothing if there is no such shape; the report then has it.
+/// Reads a shape; returns nothing, with a report, if it is invalid.
 std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReading& reading);
 
-/// The same of a visual, whose mistakes are nobody's: nothing is simulated of it. Nothing for what is not shown.
+/// Reads the shape of a visual, whose errors are not reported, since visuals are not simulated. Returns nothing if it
+/// is not shown.
 std::optional<Shape> read_visual_shape(const sdf::Geometry& geometry, const ModelReading& reading);
 
-/// A link with its inertial, its visuals and its collisions.
+/// Reads a link with its inertial, visuals and collisions.
 Link read_link(const sdf::Link& sdf_link, const ModelReading& reading);
 
-/// Its lights, and its `cohort:` elements that emit; of link 0.
+/// Reads the lights of a link and its `cohort:` emitters, for link 0.
 std::vector<Emitter> read_emitters(const sdf::Link& sdf_link, const ModelReading& reading);
 Emitter read_light(const sdf::Light& sdf_light, const ModelReading& reading);
 
-/// Its `cohort:` elements that are GripRings, Fins or Drags; of link 0.
+/// Reads the `cohort:` elements of a link that are GripRings, Fins or Drags, for link 0.
 template <class Part>
 std::vector<Part> read_link_parts(const sdf::Link& sdf_link, const ModelReading& reading);
 
-/// Adds what plugins of a model whose links are read put into its links.
+/// Adds the link parts that plugins define, for a model whose links have been read.
 void add_link_parts(const std::vector<Counterpart>& of_plugins, Model& model, const SdfReport& report);
 
-/// The joints of a model between `links`, in document order. Of a model inside of the one that is read, `scope` is the
-/// prefix of all names in it, such as `arm::`.
+/// Reads the joints of a model between `links`, in document order. For a nested model, `scope` is the prefix of all its
+/// names, such as `arm::`.
 std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const std::string& scope,
                                const ModelReading& reading);
 
-/// How joints of the model follow others, by its gearboxes and mimic joints. `scope` as above; the model's links and
-/// joints are read.
+/// Reads the couplings of joints from gearboxes and mimic joints. `scope` as above; links and joints of the model have
+/// been read.
 std::vector<Coupling> read_couplings(const sdf::Model& sdf_model, const Model& model, const std::string& scope,
                                      const ModelReading& reading);
 
-/// The devices of a model whose links and joints are read: those of `cohort:` elements, then those of plugins.
+/// Reads the devices of a model whose links and joints have been read: those of `cohort:` elements, then those of
+/// plugins.
 std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const std::vector<Counterpart>& of_plugins,
                                  const Model& model, const SdfReport& report, ShapeFiles& files);
 
-/// Those that are simulated, of a model whose links, joints and other devices are read: in the order of the links, then
-/// of the joints.
+/// Reads the supported `<sensor>` elements of a model whose links, joints and other devices have been read, in the
+/// order of the links, then of the joints.
 std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, const Model& model,
                                      const ModelReading& reading);
 
-/// Whether the pose is given in the frame that it is to be in, and needs no resolving.
+/// Returns whether the pose is given in the requested frame and needs no resolving.
 inline bool is_in_frame_of_parent(const sdf::Model& model) {
   return model.PoseRelativeTo().empty() && model.PlacementFrameName().empty();
 }
@@ -82,7 +84,7 @@ bool is_in_frame_of_parent(const Posed& posed) {
   return posed.PoseRelativeTo().empty();
 }
 
-/// The pose of anything that has one, in the frame `in`; by default, in that of the element that it stands in.
+/// Returns the pose of an element in the frame `in`; by default, in that of its parent element.
 template <class Posed>
 Pose resolved_pose(const Posed& posed, const ModelReading& reading, const std::string& in = "") {
   if (!reading.frames_resolve) return {};

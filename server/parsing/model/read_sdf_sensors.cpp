@@ -14,7 +14,7 @@ namespace {
 
 using Path = std::initializer_list<const char*>;
 
-// One <sensor>. A number that has been reported is NaN from then on, which passes every check.
+// A <sensor>. A number that has been reported becomes NaN, which passes every check.
 class SensorElement {
  public:
   SensorElement(const SensorPlace& place, const Model& model, std::size_t owner, const ModelReading& reading)
@@ -27,7 +27,7 @@ class SensorElement {
   const SdfReport& report() const { return reading_.report; }
   const std::string& name() const { return name_; }
   void rename(std::string name) { name_ = std::move(name); }
-  /// Index of the link or joint.
+  /// Returns the index of the link or joint.
   std::size_t owner() const { return owner_; }
   const Link& link() const { return model_.links[owner_]; }
 
@@ -37,7 +37,7 @@ class SensorElement {
     report().problem(find(element(), {"pose"}), "expected a pose in the frame of the joint");
     return {};
   }
-  /// Of what is not there, the sensor.
+  /// Returns the element at a path; the sensor if there is none.
   sdf::ElementPtr where(Path path) const {
     const sdf::ElementPtr found = find(element(), path);
     return is_written(found) ? found : element();
@@ -55,10 +55,10 @@ class SensorElement {
   }
   void problem(Path path, std::string message) const { report().problem(where(path), std::move(message)); }
 
-  /// The noise of a quantity, or of one value of it, that stands at `path`.
+  /// Adds the noise at `path` of a quantity, or of one value of it.
   void add_noise(const sdf::ElementPtr& noise, const std::string& quantity, int value = -1);
   void add_noise(Path path, const std::string& quantity) { add_noise(find(element(), path), quantity); }
-  /// Below `parent`, one for each axis.
+  /// Adds the noises below `parent`, one for each axis.
   void add_noises(const sdf::ElementPtr& parent, const std::string& quantity) {
     int axis = 0;
     for (const char* const each : {"x", "y", "z"}) add_noise(find(parent, {each, "noise"}), quantity, axis++);
@@ -109,7 +109,7 @@ std::size_t SensorElement::count(Path path, std::size_t by_default) const {
 
 void SensorElement::add_noise(const sdf::ElementPtr& noise, const std::string& quantity, int value) {
   if (!noise) return;
-  // That of a lidar has its type in an element.
+  // The noise of a lidar has its type in an element.
   std::string type = "none";
   if (const sdf::ElementPtr child = noise->FindElement("type"))
     type = trimmed(child->GetValue()->GetAsString());
@@ -143,7 +143,7 @@ void SensorElement::set_precision(const std::string& quantity, double precision)
   readout_.noises.back().precision = precision;
 }
 
-// Of a sensor that has a place on a link, and what its kind adds to that.
+// Returns a sensor with a pose on a link; each kind adds its own values.
 template <class Sensor>
 Sensor posed(const SensorElement& element) {
   Sensor sensor;
@@ -153,10 +153,10 @@ Sensor posed(const SensorElement& element) {
   return sensor;
 }
 
-// Rays of which nothing more is made than this.
+// Maximum number of rays of a sensor.
 constexpr std::size_t most_rays = 100'000;
 
-// In one direction of a scan.
+// Reads the number of rays in one direction of a scan.
 std::size_t read_rays(const SensorElement& sensor, const char* kind, const char* direction, std::size_t by_default) {
   const std::size_t samples = sensor.count({kind, "scan", direction, "samples"}, by_default);
   const double resolution = sensor.real({kind, "scan", direction, "resolution"}, 1.0);
@@ -164,7 +164,7 @@ std::size_t read_rays(const SensorElement& sensor, const char* kind, const char*
   if (rays >= 1.0 && rays <= static_cast<double>(most_rays)) return static_cast<std::size_t>(rays);
   if (std::isnan(rays)) return 1;
   sensor.problem({kind, "scan", direction, "samples"},
-                 "expected 1 to " + std::to_string(most_rays) + " rays, as samples times resolution");
+                 "expected 1 to " + std::to_string(most_rays) + " rays (samples times resolution)");
   return 1;
 }
 
@@ -172,7 +172,7 @@ void read_angles(const SensorElement& sensor, const char* kind, const char* dire
                  double& greatest) {
   least = sensor.real({kind, "scan", direction, "min_angle"}, 0.0);
   greatest = sensor.real({kind, "scan", direction, "max_angle"}, 0.0);
-  if (least > greatest) sensor.problem({kind, "scan", direction, "min_angle"}, "the least angle exceeds the greatest");
+  if (least > greatest) sensor.problem({kind, "scan", direction, "min_angle"}, "the minimum angle exceeds the maximum");
 }
 
 std::optional<Device> read_lidar(SensorElement& sensor) {
@@ -196,7 +196,7 @@ std::optional<Device> read_lidar(SensorElement& sensor) {
 void read_reference(const SensorElement& sensor, Imu& imu) {
   const auto ignored = [&](Path path, const std::string& what) {
     sensor.report().warning(sensor.where(path),
-                            what + " is not supported; the orientation is relative to that at first");
+                            what + " is not supported; the orientation is relative to the initial orientation");
   };
   const std::string localization = sensor.text({"imu", "orientation_reference_frame", "localization"}, "CUSTOM");
   if (localization == "ENU") {  // SDF's world frame
@@ -292,13 +292,25 @@ std::optional<Device> read_air_pressure(SensorElement& sensor) {
   return result;
 }
 
+std::optional<Device> read_navsat(SensorElement& sensor) {
+  // As in SDF, both types `navsat` and `gps` can use either name for the child element.
+  const char* const element = find(sensor.element(), {"gps"}) ? "gps" : "navsat";
+  for (const auto& [sensing, quantity] :
+       {std::pair{"position_sensing", "position"}, std::pair{"velocity_sensing", "velocity"}}) {
+    const sdf::ElementPtr horizontal = find(sensor.element(), {element, sensing, "horizontal", "noise"});
+    for (const int axis : {0, 1}) sensor.add_noise(horizontal, quantity, axis);
+    sensor.add_noise(find(sensor.element(), {element, sensing, "vertical", "noise"}), quantity, 2);
+  }
+  return posed<NavSat>(sensor);
+}
+
 struct Kind {
   std::string_view type;
   std::string_view parent;
   std::optional<Device> (*read)(SensorElement& sensor);
 };
 
-// The register of SDF's sensors: a new kind is one more line here.
+// All supported types of SDF sensors: add a new type here.
 constexpr Kind kinds[] = {
     {"lidar", "link", &read_lidar},
     {"gpu_lidar", "link", &read_lidar},
@@ -311,6 +323,8 @@ constexpr Kind kinds[] = {
     {"magnetometer", "link", &read_magnetometer},
     {"logical_camera", "link", &read_logical_camera},
     {"air_pressure", "link", &read_air_pressure},
+    {"navsat", "link", &read_navsat},
+    {"gps", "link", &read_navsat},
 };
 
 const Kind* kind_of(const sdf::ElementPtr& element) {
@@ -342,7 +356,7 @@ std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, con
         {&place, place.is_on_joint ? place_of(model.joints, place.owner) : place_of(model.links, place.owner)});
   std::ranges::stable_sort(found, {}, [](const Found& each) { return std::pair(each.place->is_on_joint, each.owner); });
 
-  std::set<std::string> names;  // of what observes
+  std::set<std::string> names;  // names of devices with observations
   for (const Device& device : model.devices)
     if (readout_of(device) != nullptr) names.insert(name_of(device));
   std::vector<Device> sensors;
@@ -352,13 +366,13 @@ std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, con
     std::string plain = sensor.name();
     std::ranges::replace(plain, '/', '_');
     if (plain != sensor.name() &&
-        reading.report.flaw(sensor.element(), "expected a name without '/' in it", "it is called '" + plain + "'"))
+        reading.report.flaw(sensor.element(), "expected a name without '/' in it", "it is renamed to '" + plain + "'"))
       sensor.rename(plain);
     if (!names.insert(sensor.name()).second) {
       std::string other = place->owner + "_" + sensor.name();
       while (names.contains(other)) other += "_";
       if (reading.report.flaw(sensor.element(), "another device of the model has the name '" + sensor.name() + "'",
-                              "it is called '" + other + "'")) {
+                              "it is renamed to '" + other + "'")) {
         sensor.rename(other);
         names.insert(other);
       }

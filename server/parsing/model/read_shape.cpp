@@ -24,8 +24,8 @@ constexpr const char* geometries = "box, sphere, cylinder, capsule, ellipsoid, m
 
 constexpr const char* left_out = "the collision is left out";
 
-// A collision that cannot be read. What moves would go through others without it, so it is an error there, in files of
-// others too.
+// Reports a collision that cannot be read. Without it, a moving model would pass through others, so this is an error
+// for moving models, also in files from other sources.
 void report_lost(const sdf::ElementPtr& element, const std::string& message, const ModelReading& reading) {
   if (reading.is_static)
     reading.report.flaw(element, message, left_out);
@@ -33,7 +33,7 @@ void report_lost(const sdf::ElementPtr& element, const std::string& message, con
     reading.report.problem(element, message);
 }
 
-// NaN passes: check_numbers has reported it. False if the shape is left out.
+// Returns false if the shape is omitted. NaN passes, since check_numbers has reported it.
 bool check_size(const sdf::ElementPtr& geometry, std::initializer_list<const char*> path, double least,
                 const SdfReport& report) {
   const sdf::ElementPtr element = find(geometry, path);
@@ -94,7 +94,7 @@ std::optional<Shape> read_terrain(const sdf::ElementPtr& element, const Eigen::V
 std::optional<Shape> read_heightmap(const sdf::Heightmap& map, const ModelReading& reading) {
   const sdf::ElementPtr element = map.Element();
   const Eigen::Vector3d size = to_eigen(map.Size());
-  if (!reading.is_static) report_lost(element, "a heightmap needs <static>true</static> in its model", reading);
+  if (!reading.is_static) report_lost(element, "a heightmap requires <static>true</static> in its model", reading);
   if (!check_size(element, {"size"}, size.minCoeff(), reading.report)) return std::nullopt;
   const sdf::ElementPtr terrain = find(element, {"cohort:terrain"});
   if (terrain && size.minCoeff() > 0.0 && size.allFinite()) return read_terrain(terrain, size, reading.report);
@@ -141,7 +141,7 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
   }
   if (const sdf::Plane* const plane = geometry.PlaneShape()) {
     const Eigen::Vector3d normal = to_eigen(plane->Normal());
-    if (!reading.is_static) report_lost(element, "a plane needs <static>true</static> in its model", reading);
+    if (!reading.is_static) report_lost(element, "a plane requires <static>true</static> in its model", reading);
     if (normal.isZero()) report.problem(element, "expected a normal that is not zero");
     return Plane{written_unit_vector(find(element, {"plane", "normal"})).value_or(normal.normalized())};
   }

@@ -8,16 +8,16 @@
 #include "server/parsing/keys/device_keys.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
 
-/// From the values of an element to the members that they are for.
+/// Functions that assign the values of an element to members.
 namespace cohort::parsing {
 
-/// To the nearest nanosecond; what is too long for those is 285 years.
+/// Rounds to the nearest nanosecond, and clips at 285 years.
 std::chrono::nanoseconds to_time(double seconds);
 
 /// Reports a colour that is not red, green and blue from 0 to 1.
 void check_color(const ExtensionValues& values, std::string_view key, const SdfReport& report);
 
-/// A member stays as it is if its key has no value.
+/// Reads a member, which stays unchanged if its key has no value.
 template <class Struct, class Member>
 void read_value(const KeyValues& values, const keys::MemberKey<Struct, Member>& key, Struct& into) {
   if (!values.has(key.name)) return;
@@ -43,11 +43,11 @@ void read_value(const KeyValues& values, const keys::NoiseKey<Struct>& key, Stru
   }
 }
 
-/// What a reference names is found by who knows the model.
+/// References are resolved by code that knows the model.
 template <class Struct, class Member>
 void read_value(const KeyValues&, const keys::ReferenceKey<Struct, Member>&, Struct&) {}
 
-/// Fills what a struct has of the keys of a kind.
+/// Reads the members of a struct from the keys of a kind.
 template <class Kind, class Struct>
 void read_values(const KeyValues& values, Struct& into) {
   keys::for_keys_of<Struct>(keys::keys_of<Kind>, [&]<class Key>(const Key& key) {
@@ -55,7 +55,7 @@ void read_values(const KeyValues& values, Struct& into) {
   });
 }
 
-/// Of a child of a link; nothing if it is of another kind, or if anything is wrong, and reported then.
+/// Reads a child of a link; returns nothing if it is of another kind, or, with a report, if it is invalid.
 template <class Kind>
 std::optional<ExtensionValues> read_as(const sdf::ElementPtr& child, const SdfReport& report) {
   const Extension& extension = keys::extension_of<Kind>;

@@ -12,7 +12,7 @@
 namespace cohort::parsing {
 namespace {
 
-// Points that have a volume: a plate or a rod is as thick as others take it at least.
+// Thickens points to a volume: a plate or a rod gets a minimum thickness.
 std::vector<Eigen::Vector3d> thickened(const std::vector<Eigen::Vector3d>& points) {
   constexpr double thickness = 1e-3;  // [m]
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -41,7 +41,7 @@ TriangleMesh hull_of(const TriangleMesh& mesh, const std::filesystem::path& file
   } catch (const std::invalid_argument&) {
     if (may_be_flat && !mesh.vertices.empty()) return geometry::convex_hull(thickened(mesh.vertices));
     throw std::runtime_error("the mesh of '" + file.string() +
-                             "' is flat; in a model that moves, its convex hull is solid, and needs a volume");
+                             "' is flat; the convex hull of a mesh in a moving model must have a volume");
   }
 }
 

@@ -20,7 +20,7 @@ std::size_t intervals(double length, double spacing) {
 
 double smooth(double t) { return t * t * (3.0 - 2.0 * t); }
 
-// Random heights on a lattice, with smooth ground between them: value noise.
+// Returns value noise: random heights on a lattice, smoothly interpolated.
 double hills(const RandomStream& random, double u, double v) {
   const double column = std::floor(u), row = std::floor(v);
   const auto at = [&](double i, double j) {

@@ -5,11 +5,11 @@
 
 namespace cohort::parsing {
 
-/// The most heights that a terrain may have along x or y.
+/// Maximum number of heights of a terrain along x or y.
 inline constexpr double most_terrain_heights = 4097;
 
-/// The same heights on every machine. Throws std::runtime_error if there are more than `most_terrain_heights` along a
-/// side.
+/// Returns the heights, which are identical on every machine. Throws std::runtime_error if there are more than
+/// `most_terrain_heights` along a side.
 HeightGrid terrain_heights(const Terrain& terrain);
 
 }  // namespace cohort::parsing

@@ -7,17 +7,17 @@
 #include "server/core/infinity.hpp"
 #include "server/core/text.hpp"
 
-// What the parameters mean, and their defaults, is documented at the classes of the namespace gz::sim::systems of
-// https://gazebosim.org/api/sim, and for classic ones in the headers of
+// The parameters and their defaults are documented at the classes of the namespace gz::sim::systems of
+// https://gazebosim.org/api/sim, and for classic plugins in the headers of
 // https://github.com/ros-simulation/gazebo_ros_pkgs/tree/ros2/gazebo_plugins/include/gazebo_plugins.
 namespace cohort::parsing {
 
 namespace {
 
-// Where neither a plugin nor the limits of a joint say: docs/gazebo.md.
+// Defaults for values that neither a plugin nor the limits of a joint give (docs/gazebo.md).
 constexpr double usual_effort = 1000.0;           // [N m] or [N], as the greatest command of Gazebo's own controllers
 constexpr double usual_velocity = 100.0;          // [rad/s] or [m/s]
-constexpr double usual_position_velocity = 10.0;  // of what goes to a position
+constexpr double usual_position_velocity = 10.0;  // for position control
 
 double mass_of(const Model& model) {
   double mass = 0.0;
@@ -27,7 +27,7 @@ double mass_of(const Model& model) {
 
 using JointParameters = std::vector<std::pair<const Joint*, sdf::ElementPtr>>;
 
-// The least that <limit> says of one of them, or else `fallback`.
+// Returns the smallest of these limits in <limit> of the joints, or else `fallback`.
 double least_limit(const JointParameters& joints, double JointAxis::*limit, double fallback) {
   double least = infinity;
   for (const auto& [joint, parameter] : joints) least = std::min(least, joint->axis.*limit);
@@ -37,7 +37,7 @@ double least_limit(const JointParameters& joints, double JointAxis::*limit, doub
 constexpr ParameterNames left_names = {"left_joint", "leftJoint"};
 constexpr ParameterNames right_names = {"right_joint", "rightJoint"};
 
-// What a drive on wheels has in common: its wheels, their motors, the greatest velocities.
+// Reads what all wheeled drives have: wheels, motors and maximum velocities.
 void take_wheels(ModelPlugin& plugin, ModelPlugin::Values& values) {
   JointParameters wheels = plugin.joints(left_names);
   const JointParameters right = plugin.joints(right_names);
@@ -49,14 +49,14 @@ void take_wheels(ModelPlugin& plugin, ModelPlugin::Values& values) {
   const double separation = plugin.number_or(1.0, {"wheel_separation", "wheelSeparation"});
   const auto diameter = plugin.number({"wheel_diameter", "wheelDiameter"});
   const double radius = plugin.number_or(diameter.value_or(0.4) / 2.0, {"wheel_radius"});
-  // Enough for each wheel to lift the whole vehicle: Gazebo's wheels have any torque.
+  // Enough for each wheel to lift the whole vehicle, since wheels in Gazebo have unlimited torque.
   const double strong = std::max(mass_of(plugin.model()) * 9.8 * radius, 1e-6);
   const double torque = plugin.number_or(least_limit(wheels, &JointAxis::max_effort, strong),
                                          {"max_wheel_torque", "wheelTorque", "torque"});
   const double spin = least_limit(wheels, &JointAxis::max_velocity, usual_velocity);
   const double linear = plugin.number_or(spin * radius, {"max_linear_velocity", "max_velocity"});
   const double angular = plugin.number_or(2.0 * spin * radius / separation, {"max_angular_velocity", "max_velocity"});
-  // Backwards it goes as fast; limits that say so are read.
+  // The limits backwards equal those forwards, so a minimum is read if it is the opposite of the maximum.
   const auto is_opposite = [&](const char* name, double greatest) {
     const sdf::ElementPtr least = plugin.element()->FindElement(name);
     return least && parse_real(text_of_parameter(least)) == -greatest;
@@ -93,7 +93,7 @@ void ackermann_steering(ModelPlugin& plugin) {
       .take("right_steering_joint", {"right_steering_joint"})
       .take("wheel_base", {"wheel_base"}, "1")
       .take("kingpin_width", {"kingpin_width"}, "0.8")
-      // Gazebo's limit is that of the sine: asin(wheel base / radius of the turn).
+      // The limit of Gazebo applies to the sine: asin(wheel base / turning radius).
       .set("steering_limit", std::atan(std::sin(std::min(limit, 0.5 * std::numbers::pi))))
       .set("max_steering_velocity", least_limit(steering, &JointAxis::max_velocity, usual_position_velocity))
       .set("max_steering_torque", least_limit(steering, &JointAxis::max_effort, usual_effort))
@@ -102,7 +102,7 @@ void ackermann_steering(ModelPlugin& plugin) {
 
 namespace {
 
-// Of a motor that a controller of one joint is.
+// Completes a motor that represents the controller of one joint.
 void finish_motor(ModelPlugin::Values values, const Joint& joint, const sdf::ElementPtr& parameter, double velocity,
                   double effort) {
   values.set("joint", text_of_parameter(parameter), parameter)
@@ -131,7 +131,7 @@ void joint_controller(ModelPlugin& plugin) {
 
 void joint_position_controller(ModelPlugin& plugin) {
   need_joint(plugin);
-  // The greatest output of its controller is a velocity or an effort.
+  // The maximum output of the controller is a velocity or an effort.
   const bool gives_velocity = plugin.text_or("false", {"use_velocity_commands"}) == "true";
   const auto greatest = plugin.number({"cmd_max"});
   const double velocity = gives_velocity ? greatest.value_or(usual_position_velocity) : usual_position_velocity;
@@ -155,7 +155,7 @@ void joint_state_publisher(ModelPlugin& plugin) {
 
 namespace {
 
-// The body that carries a propeller, whose joint is `joint`, and where the child of the joint is in it.
+// The body that carries a propeller on the joint `joint`, and the pose of the child of the joint in it.
 struct Carrier {
   std::string link;
   Pose X_LC;
@@ -175,7 +175,7 @@ void multicopter_motor_model(ModelPlugin& plugin) {
   need_joint(plugin);
   plugin.all({"linkName"});  // it is that of the joint
   if (const sdf::ElementPtr type = plugin.first({"motorType"}); type && text_of_parameter(type) != "velocity")
-    plugin.report().warning(type, "is not read: the command of a motor is a velocity");
+    plugin.report().warning(type, "is not supported: the command of a motor is a velocity");
   for (const auto& [joint, parameter] : plugin.joints(joint_names))
     if (const auto carrier = carrier_of(plugin, *joint, parameter))
       plugin.as<Rotor>()
@@ -192,8 +192,8 @@ void multicopter_motor_model(ModelPlugin& plugin) {
           .finish(text_of_parameter(parameter));
 }
 
-// The smallest rotation that takes the z axis to `axis`, of length 1. (Eigen's own would decompose a matrix, with a
-// third of this file's time to compile.)
+// Returns the smallest rotation from the z axis to `axis`, of length 1. (That of Eigen would decompose a matrix, which
+// takes a third of the compile time of this file.)
 Eigen::Quaterniond from_z_to(const Eigen::Vector3d& axis) {
   constexpr double nearly_opposite = 1e-12;
   if (1.0 + axis.z() < nearly_opposite) return {0.0, 1.0, 0.0, 0.0};
@@ -227,7 +227,7 @@ void thruster(ModelPlugin& plugin) {
 
 namespace {
 
-// The link that a plugin acts on; nothing, and reported, if it says none.
+// Returns the link on which a plugin acts; nothing, with a report, if it names none.
 std::optional<std::string> link_of(ModelPlugin& plugin) {
   const sdf::ElementPtr parameter = plugin.first({"link_name"});
   if (!parameter) {
@@ -269,19 +269,21 @@ void lift_drag(ModelPlugin& plugin) {
       .take("cda", {"cda"}, "0.01")
       .take("cla_stall", {"cla_stall"}, "0")
       .take("cda_stall", {"cda_stall"}, "1")
-      // Beyond a quarter turn the flow comes from behind.
+      // Beyond a quarter turn, the flow comes from behind.
       .set("alpha_stall", std::min(plugin.number_or(0.5 * std::numbers::pi, {"alpha_stall"}), 0.5 * std::numbers::pi));
   if (link) values.finish("lift_drag", *link);
 }
 
-// Gazebo has damping as derivatives of the force: less than 0 where it damps.
+// Gazebo gives damping as derivatives of the force, which are negative for damping.
 void hydrodynamics(ModelPlugin& plugin) {
   const std::optional<std::string> link = link_of(plugin);
   const auto damping = [&](const std::initializer_list<ParameterNames>& axes) {
     std::string text;
     for (const ParameterNames& names : axes) {
       const double value = plugin.number_or(0.0, names, ExtensionValue::real);
-      if (value > 0.0) plugin.report().problem(plugin.first(names), "expected at most 0: more would push it on");
+      if (value > 0.0)
+        plugin.report().problem(plugin.first(names),
+                                "expected a value of at most 0; a positive value would accelerate the link");
       text += shortest_text(std::abs(value)) + " ";
     }
     return text;
@@ -291,7 +293,7 @@ void hydrodynamics(ModelPlugin& plugin) {
       .set("quadratic_damping", damping({{"xUU", "xUabsU"}, {"yVV", "yVabsV"}, {"zWW", "zWabsW"}}))
       .set("angular_damping", damping({{"kP"}, {"mQ"}, {"nR"}}))
       .set("quadratic_angular_damping", damping({{"kPP", "kPabsP"}, {"mQQ", "mQabsQ"}, {"nRR", "nRabsR"}}));
-  plugin.all({"water_density", "waterDensity"});  // it says nothing of damping
+  plugin.all({"water_density", "waterDensity"});  // it defines no damping
   if (link) values.finish("hydrodynamics", *link);
 }
 
@@ -323,7 +325,7 @@ void linear_battery(ModelPlugin& plugin) {
       .finish(name);
 }
 
-// Water up to where another layer begins; of what is thinner than this, air.
+// Sets water up to the next layer; layers below this density are air.
 void buoyancy(Plugin& plugin, World& world) {
   constexpr double lightest_water = 100.0;  // [kg/m^3]
   constexpr double above_all = 1e6;         // [m]
@@ -339,7 +341,7 @@ void buoyancy(Plugin& plugin, World& world) {
       world.air.density = change.number_or(world.air.density, {"density"}, ExtensionValue::non_negative);
       change.warn_of_unread();
     }
-    if (changes.size() > 1) plugin.report().warning(changes[1], "is not read: there are water and air, no more layers");
+    if (changes.size() > 1) plugin.report().warning(changes[1], "is not supported: the only fluids are water and air");
     graded.warn_of_unread();
   }
   if (density < lightest_water)

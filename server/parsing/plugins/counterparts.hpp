@@ -4,7 +4,7 @@
 #include "server/parsing/keys/device_keys.hpp"
 #include "server/parsing/plugins/plugin.hpp"
 
-/// What each plugin of Gazebo that has a counterpart becomes, by the name of its class: docs/gazebo.md has the table.
+/// Conversion of the supported plugins of Gazebo, by the names of their classes; docs/gazebo.md has the table.
 namespace cohort::parsing {
 
 template <class Kind>

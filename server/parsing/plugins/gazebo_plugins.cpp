@@ -8,7 +8,7 @@
 namespace cohort::parsing {
 namespace {
 
-// By their order in docs/gazebo.md.
+// In the order of docs/gazebo.md.
 constexpr PluginKind known_plugins[] = {
     {"DiffDrive", diff_drive},
     {"AckermannSteering", ackermann_steering},
@@ -25,7 +25,7 @@ constexpr PluginKind known_plugins[] = {
     {"LinearBatteryPlugin", linear_battery},
     {"Buoyancy", nullptr, buoyancy},
     {"WindEffects", nullptr, wind_effects},
-    // Of Gazebo:
+    // Plugins of Gazebo:
     {"Physics"},
     {"UserCommands"},
     {"SceneBroadcaster"},
@@ -41,7 +41,7 @@ constexpr PluginKind known_plugins[] = {
     {"PosePublisher"},
     {"OdometryPublisher"},
     {"LogRecord"},
-    // Of gazebo_ros and classic Gazebo, by their files:
+    // Plugins of gazebo_ros and classic Gazebo, by their files:
     {"gazebo_ros_init"},
     {"gazebo_ros_factory"},
     {"gazebo_ros_state"},
@@ -62,8 +62,8 @@ constexpr PluginKind known_plugins[] = {
 
 constexpr const char* plugin_is_ignored = "the plugin is ignored";
 
-// What all spellings of a name have in common: `libignition-gazebo6-diff-drive-system.so`, `gz-sim-diff-drive-system`,
-// `libgazebo_ros_diff_drive.so` and `DiffDrive` are "diffdrive".
+// Returns the common part of all spellings of a name: `libignition-gazebo6-diff-drive-system.so`,
+// `gz-sim-diff-drive-system`, `libgazebo_ros_diff_drive.so` and `DiffDrive` give "diffdrive".
 std::string plain(std::string_view name) {
   if (const std::size_t end = name.find(".so"); end != std::string_view::npos) name = name.substr(0, end);
   if (const std::size_t slash = name.rfind('/'); slash != std::string_view::npos) name = name.substr(slash + 1);
@@ -100,12 +100,12 @@ void for_plugins(const sdf::ElementPtr& element, const Visit& visit) {
       if (const PluginKind* const kind = plugin_kind_of(child)) visit(child, *kind);
 }
 
-// Whether what a key names is driven by the device: a link mostly carries it.
+// Returns whether the device drives the object that a key names; a link usually only carries the device.
 bool names_what_is_driven(const Extension& extension, std::string_view key) {
   return (key != "link" && key != "child_link") || extension.name == "belt";
 }
 
-// What stands in `cohort:` elements of a model that command something: the names of joints and links among it.
+// Returns the texts in `cohort:` actuators of a model, which include the names of joints and links.
 std::set<std::string> words_of_actuators(const sdf::ElementPtr& model_element) {
   std::set<std::string> words;
   for (sdf::ElementPtr child = model_element->GetFirstElement(); child; child = child->GetNextElement()) {
@@ -144,14 +144,15 @@ const PluginKind* plugin_kind_of(const sdf::ElementPtr& plugin) {
 void warn_of_unknown_plugin(const sdf::ElementPtr& plugin, const SdfReport& report) {
   if (plugin_kind_of(plugin) == nullptr)
     report.warning_once(plugin,
-                        "the plugin '" + attribute_of(plugin, "filename") + "' has no counterpart here and is ignored");
+                        "the plugin '" + attribute_of(plugin, "filename") + "' is not supported and is ignored");
 }
 
 void warn_of_static_belts(const sdf::ElementPtr& model_element, const SdfReport& report) {
   for_plugins(model_element, [&](const sdf::ElementPtr& element, const PluginKind& kind) {
     if (kind.in_model == track_controller)
-      report.warning(element,
-                     "is ignored: the model is static. With a fixed joint to the world in its place it is a belt");
+      report.warning(
+          element,
+          "is ignored because the model is static; for a belt, replace <static> with a fixed joint to the world");
   });
 }
 

@@ -10,7 +10,7 @@
 namespace cohort::parsing {
 namespace {
 
-// Where a plugin listens and what it publishes: nothing that moves or is measured depends on it.
+// Parameters for topics, which have no effect on motion or measurement.
 constexpr std::string_view of_no_consequence[] = {"ros",
                                                   "topic",
                                                   "sub_topic",
@@ -105,7 +105,7 @@ void Plugin::warn_of_unread() const {
       continue;
     unread += (unread.empty() ? "" : ", ") + name;
   }
-  if (!unread.empty()) report_.warning_once(element_, "of this plugin nothing is made of " + unread);
+  if (!unread.empty()) report_.warning_once(element_, "this plugin does not support " + unread);
 }
 
 ModelPlugin::Values& ModelPlugin::Values::take(std::string_view key, ParameterNames names,

@@ -14,10 +14,10 @@
 
 namespace cohort::parsing {
 
-/// Names that a parameter has had in the generations of a simulator.
+/// Names of a parameter in the generations of a simulator.
 using ParameterNames = std::initializer_list<const char*>;
 
-/// A <plugin> of Gazebo. It keeps which of its parameters were asked for.
+/// A <plugin> of Gazebo. It records which of its parameters were read.
 class Plugin {
  public:
   Plugin(const sdf::ElementPtr& element, const SdfReport& report) : element_(element), report_(report) {}
@@ -25,11 +25,11 @@ class Plugin {
   const sdf::ElementPtr& element() const { return element_; }
   const SdfReport& report() const { return report_; }
 
-  /// The parameters with one of these names, in the order of the document.
+  /// Returns the parameters with one of these names, in document order.
   std::vector<sdf::ElementPtr> all(ParameterNames names);
-  /// The first of them; nullptr if there is none.
+  /// Returns the first of them; nullptr if there is none.
   sdf::ElementPtr first(ParameterNames names);
-  /// Of the first of them; what is no such value is reported.
+  /// Returns the value of the first of them; reports an invalid value.
   std::optional<double> number(ParameterNames names, ExtensionValue kind = ExtensionValue::positive);
   double number_or(double fallback, ParameterNames names, ExtensionValue kind = ExtensionValue::positive) {
     return number(names, kind).value_or(fallback);
@@ -37,7 +37,7 @@ class Plugin {
   std::optional<Eigen::Vector3d> vector(ParameterNames names);
   std::string text_or(const std::string& fallback, ParameterNames names);
 
-  /// Warns of parameters that nobody asked for.
+  /// Warns of parameters that were not read.
   void warn_of_unread() const;
 
  private:
@@ -49,21 +49,20 @@ class Plugin {
   std::set<std::string, std::less<>> asked_;
 };
 
-/// Its value; empty if it has none.
+/// Returns the value of a parameter; empty if it has none.
 std::string text_of_parameter(const sdf::ElementPtr& parameter);
 
-/// What a plugin of a model is here: an element of ours.
+/// The equivalent of a plugin of a model: a `cohort:` element.
 struct Counterpart {
   const Extension* extension = nullptr;
   ExtensionValues values;
   std::string link;  ///< in which the element stands, if not in the model
 };
 
-/// A plugin of a model whose links and joints are read, while it is turned into what it is here.
+/// A plugin of a model whose links and joints have been read, during its conversion.
 class ModelPlugin : public Plugin {
  public:
-  /// Of a model, or of one inside of it: `prefix` is that of all names there. `names` are those that plugins have given
-  /// away.
+  /// `prefix` is the prefix of all names in the model, which may be nested. `names` are those that plugins have used.
   ModelPlugin(const sdf::ElementPtr& element, const std::string& prefix, const Model& model,
               std::set<std::string>& names, const SdfReport& report)
       : Plugin(element, report), prefix_(prefix), model_(model), names_(names) {}
@@ -72,13 +71,14 @@ class ModelPlugin : public Plugin {
   class Values {
    public:
     Values(ModelPlugin& plugin, const Extension& extension) : plugin_(plugin), extension_(extension) {}
-    /// Those of the parameters with one of these names, and if there are none `fallback`; if that is empty, and the key
-    /// is required, it is missing.
+    /// Sets the key from the parameters with one of these names, or else to `fallback`; reports a required key if both
+    /// are missing.
     Values& take(std::string_view key, ParameterNames names, const std::string& fallback = "");
     Values& set(std::string_view key, const std::string& text, const sdf::ElementPtr& where = nullptr);
     Values& set(std::string_view key, double value, const sdf::ElementPtr& where = nullptr);
     Values& set(std::string_view key, const Pose& X);
-    /// As a device of this name, or nearly, since no other one of a plugin has it. In `link`, or else in the model.
+    /// Adds a device of this name, or a similar one if another device of a plugin has it, in `link`, or else in the
+    /// model.
     void finish(std::string name, const std::string& link = "");
 
    private:
@@ -89,19 +89,19 @@ class ModelPlugin : public Plugin {
   template <class Kind>
   Values as();
 
-  /// Nullptr, and reported, if the model has none of the name that the parameter says.
+  /// Returns the joint that the parameter names; nullptr, with a report, if the model has none.
   const Joint* joint(const sdf::ElementPtr& parameter) const;
-  /// Every joint that the parameters of these names say, with where.
+  /// Returns every joint that the parameters of these names name, with the parameter.
   std::vector<std::pair<const Joint*, sdf::ElementPtr>> joints(ParameterNames names);
   const Model& model() const { return model_; }
-  /// Whether a joint is one of this model, and not of one inside of it or around it.
+  /// Returns whether a joint belongs to this model, and not to a nested or an outer one.
   bool has_joint(const Joint& joint) const {
     return joint.name.starts_with(prefix_) && joint.name.find("::", prefix_.size()) == std::string::npos;
   }
   bool has_link(const Link& link, const std::string& name) const { return link.name == prefix_ + name; }
   std::string without_scope(const std::string& name) const { return name.substr(prefix_.size()); }
 
-  /// What it became.
+  /// Returns the equivalents of the plugin.
   std::vector<Counterpart>& counterparts() { return counterparts_; }
 
  private:

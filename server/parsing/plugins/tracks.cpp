@@ -6,12 +6,12 @@
 #include "server/parsing/plugins/gazebo_plugins.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
 
-// What the parameters mean, and their defaults, is documented at TrackedVehicle and TrackController of the namespace
+// The parameters and their defaults are documented at TrackedVehicle and TrackController of the namespace
 // gz::sim::systems of https://gazebosim.org/api/sim.
 namespace cohort::parsing {
 namespace {
 
-constexpr double usual_belt_velocity = 10.0;  // of a belt where nothing says: docs/gazebo.md [m/s]
+constexpr double usual_belt_velocity = 10.0;  // default for a belt (docs/gazebo.md) [m/s]
 constexpr ParameterNames of_topics = {"velocity_topic",
                                       "center_of_rotation_topic",
                                       "odometry_topic",
@@ -28,7 +28,7 @@ void for_siblings(const ModelPlugin& plugin, std::string_view name, const Visit&
   }
 }
 
-// Of a plugin, or of a track in one; empty if it says none.
+// Returns the link of a plugin, or of a track in one; empty if it names none.
 std::string link_said_by(const sdf::ElementPtr& element) {
   const sdf::ElementPtr link = element->FindElement("link");
   return link ? text_of_parameter(link) : std::string();
@@ -41,7 +41,7 @@ bool is_track_of(const sdf::ElementPtr& vehicle, const std::string& link) {
   return false;
 }
 
-// The greatest velocity, both ways: a least one that is its opposite is read with it.
+// Returns the maximum velocity in both directions; a minimum is also read if it is the opposite.
 std::optional<double> greatest_velocity(Plugin& plugin) {
   const auto most = plugin.number({"max_velocity"});
   const sdf::ElementPtr least = plugin.element()->FindElement("min_velocity");
@@ -58,7 +58,7 @@ double limit_or(double fallback, ModelPlugin& plugin, const char* name) {
   return limit;
 }
 
-// The tracks of one side; returns the least of what their controllers say is the greatest velocity.
+// Reads the tracks of one side; returns the smallest maximum velocity of their controllers.
 double take_tracks(ModelPlugin& plugin, ModelPlugin::Values& values, const char* side, std::string_view key) {
   const std::vector<sdf::ElementPtr> tracks = plugin.all({side});
   if (tracks.empty()) plugin.report().problem(plugin.element(), "missing: a track", side);
@@ -66,7 +66,7 @@ double take_tracks(ModelPlugin& plugin, ModelPlugin::Values& values, const char*
   for (const sdf::ElementPtr& track : tracks) {
     const std::string link = link_said_by(track);
     if (link.empty()) {
-      plugin.report().problem(track, "missing: the link that is the track", "link");
+      plugin.report().problem(track, "missing: the link of the track", "link");
       continue;
     }
     values.set(key, link, track->FindElement("link"));
@@ -83,7 +83,7 @@ double take_tracks(ModelPlugin& plugin, ModelPlugin::Values& values, const char*
 
 void tracked_vehicle(ModelPlugin& plugin) {
   plugin.all(of_topics);
-  plugin.all({"body_link", "tracks_height", "track_height"});  // of a centre and an odometry that nobody needs
+  plugin.all({"body_link", "tracks_height", "track_height"});  // unused centre and odometry
   ModelPlugin::Values values = plugin.as<TrackedDrive>();
   const double left = take_tracks(plugin, values, "left_track", "left_link");
   const double right = take_tracks(plugin, values, "right_track", "right_link");

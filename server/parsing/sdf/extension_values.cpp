@@ -19,7 +19,7 @@ std::string value_text(const sdf::ElementPtr& element) {
   return element->GetValue() ? std::string(trimmed(element->GetValue()->GetAsString())) : std::string();
 }
 
-// The names that an element of this parent may have, with their prefix.
+// Returns the names that an element in this parent can have, with their prefix.
 std::vector<std::string> names_in(std::string_view parent) {
   std::vector<std::string> names;
   for (const Extension& extension : extensions())
@@ -37,7 +37,7 @@ void report_misplaced(const sdf::ElementPtr& element, std::string_view parent, c
     if (has_prefix(element->GetName()) && extension.name == without_prefix(element->GetName())) {
       const std::string home =
           is_extension(extension.parent) ? prefixed(extension.parent) : std::string(extension.parent);
-      report.problem(element, "<" + element->GetName() + "> belongs in <" + home + ">");
+      report.problem(element, "<" + element->GetName() + "> must be in <" + home + ">");
       return;
     }
   report.problem(element, "unknown element" + suggestion(element->GetName(), names_in(parent)));

@@ -14,36 +14,36 @@
 
 namespace cohort::parsing {
 
-/// What an element of another simulator says of a key of ours.
+/// The value of a `cohort:` key from an element of another simulator.
 struct ForeignValue {
   std::string_view key;
   std::string text;
-  sdf::ElementPtr where;  ///< it stands
+  sdf::ElementPtr where;  ///< position of the value
 };
 
-/// A `cohort:` element that holds all that its table entry asks for. A key that is absent and has no fallback has no
-/// value; an extension without keys has its value under its own name.
+/// A `cohort:` element with all that its table entry requires. An absent key without a fallback has no value; an
+/// extension without keys has its value under its own name.
 class ExtensionValues : public KeyValues {
  public:
-  /// Nothing if anything is wrong with the element; the report then has it.
+  /// Reads an element; returns nothing, with a report, if it is invalid.
   static std::optional<ExtensionValues> read(const sdf::ElementPtr& element, const Extension& extension,
                                              const SdfReport& report);
 
-  /// The same of an element of another simulator, of which `values` are known. A required key without a value is
-  /// nothing; whoever found no value has reported it.
+  /// Makes the same from an element of another simulator with known `values`. Returns nothing if a required key has no
+  /// value; the caller must have reported it.
   static std::optional<ExtensionValues> from_foreign(const sdf::ElementPtr& element, const std::string& name,
                                                      const Extension& extension,
                                                      const std::vector<ForeignValue>& values, const SdfReport& report);
 
   const sdf::ElementPtr& element() const { return element_; }
-  /// The attribute `name`.
+  /// Returns the attribute `name`.
   const std::string& name() const { return name_; }
 
-  /// Puts `prefix` before its name and before every name that it refers to.
+  /// Adds `prefix` to the front of its name and of every name that it refers to.
   void put_in_scope(const std::string& prefix, const Extension& extension);
 
-  /// The child element of this key, the `place`-th of them if it repeats, or the element itself if it is left to its
-  /// fallback: where a problem with the value is.
+  /// Returns the element for problems with a value: the child element of this key, the `place`-th one if it repeats, or
+  /// the element itself if the key is absent.
   sdf::ElementPtr where(std::string_view key, std::size_t place = 0) const;
 
  private:
@@ -57,8 +57,8 @@ class ExtensionValues : public KeyValues {
   std::vector<ForeignValue> foreign_;
 };
 
-/// Extensions among the children of `element`, in document order, each with its entry. A `cohort:` child that is none,
-/// and any below the other children that does not belong there, is reported.
+/// Returns the extensions among the children of `element`, in document order, each with its entry. Reports unknown
+/// `cohort:` children, and those below other children where they are not allowed.
 std::vector<std::pair<sdf::ElementPtr, const Extension*>> extensions_in(const sdf::ElementPtr& element,
                                                                         const SdfReport& report);
 

@@ -11,7 +11,7 @@
 namespace cohort::parsing {
 namespace {
 
-// Of an element in an <include>: what is wrong with it, or nothing.
+// Returns the problem of an element in an <include>, or nothing.
 std::optional<std::string> flaw_of_part(const XmlNode& part, const XmlNode& include) {
   static const std::map<std::string, std::vector<std::string>> attributes_of = {
       {"uri", {}},
@@ -52,7 +52,7 @@ std::optional<std::pair<const XmlNode*, std::string>> flaw_of_include(const XmlN
     if (const std::optional<std::string> flaw = flaw_of_part(part, include)) return std::pair{&part, *flaw};
   }
   if (include.child("placement_frame") != nullptr && include.child("pose") == nullptr)
-    return std::pair{&include, "a <placement_frame> needs a <pose>, which it is placed at"};
+    return std::pair{&include, "a <placement_frame> requires a <pose>"};
   return std::nullopt;
 }
 

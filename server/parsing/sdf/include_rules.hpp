@@ -8,10 +8,10 @@
 
 namespace cohort::parsing {
 
-/// Returns the element of an <include> that cannot be, and what is wrong with it; nothing if all is right.
+/// Returns the invalid element of an <include> and its problem; nothing if all are valid.
 std::optional<std::pair<const XmlNode*, std::string>> flaw_of_include(const XmlNode& include);
 
-/// Returns whether its model becomes a part of the model that includes it.
+/// Returns whether the model becomes a part of the model that includes it.
 bool is_merged(const XmlNode& include);
 
 }  // namespace cohort::parsing

@@ -39,7 +39,7 @@ std::string pose_text(const ignition::math::Pose3d& X) {
   return text.str();
 }
 
-// Whatever refers to the merged model's own frame refers to `proxy` from now on.
+// Makes all references to the frame of the merged model refer to `proxy`.
 void refer_to_proxy(XmlNode& node, const std::string& proxy) {
   const auto redirect = [&](XmlNode* where, const std::string& attribute, bool also_if_absent) {
     if (where == nullptr) return;

@@ -10,7 +10,7 @@ namespace {
 std::vector<Problem> try_to_load(SdfFile& file, ElementBuilder& builder, const sdf::ParserConfig& config) {
   sdf::Errors errors;
   const auto failure = libsdformat_failure([&] {
-    // What an old version allowed stays allowed.
+    // Features of an old version remain allowed.
     const sdf::SDFPtr sdf = builder.build(file.tree, file.version, file.path, file.nodes, errors);
     file.loaded = sdf != nullptr;
     if (!sdf) return;

@@ -9,9 +9,9 @@
 
 namespace cohort::parsing {
 
-/// Makes libsdformat's elements and objects of the tree of a file, which is without includes: sets `root`, `nodes`,
-/// `loaded` and `sound`. Returns what is wrong with the file. A value that cannot be read is reported and replaced by
-/// its default in the tree, so that what else is wrong is found too.
+/// Makes the elements and objects of libsdformat from the tree of a file, which has no includes: sets `root`, `nodes`,
+/// `loaded` and `sound`. Returns the problems of the file. An invalid value is reported and replaced by its default in
+/// the tree, so that further problems are found.
 std::vector<Problem> load_elements(SdfFile& file, ElementBuilder& builder, const sdf::ParserConfig& config);
 
 }  // namespace cohort::parsing

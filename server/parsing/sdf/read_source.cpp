@@ -29,7 +29,7 @@ void set_file(XmlNode& node, const SourceFile* file) {
   for (XmlNode& child : node.children) set_file(child, file);
 }
 
-// SDF asks every <heightmap> for the <uri> of an image, also one that is a function.
+// SDF requires the <uri> of an image in every <heightmap>, even if it is defined by a function.
 void name_terrains(XmlNode& node) {
   for (XmlNode& child : node.children) name_terrains(child);
   if (node.name == "heightmap" && node.child("cohort:terrain") != nullptr && node.child("uri") == nullptr)
@@ -69,11 +69,11 @@ void SourceReader::make_readable(SdfFile& file, bool is_included) {
   const auto is_of_world = [](const XmlNode& child) {
     return child.name == "include" || child.name == "light" || child.name == "actor";
   };
-  // Of a file that others include as a light, nothing is met.
+  // A file that others include for its light has nothing to collide with.
   if (std::ranges::none_of(file.tree.children, is_of_world) || file.tree.child("world") != nullptr ||
       file.tree.child("model") != nullptr || is_included)
     return;
-  // Of a file with nothing else they are those of a world.
+  // In a file with nothing else, they belong to a world.
   XmlNode world = element_at(file.tree, "world");
   set_attribute(world, "name", file.shown.stem().string());
   std::ranges::copy_if(file.tree.children, std::back_inserter(world.children), is_of_world);
@@ -111,14 +111,14 @@ std::optional<XmlNode> SourceReader::read_xml(const std::string& text, SdfFile& 
     return sdf;
   }
 
-  if (root.name == "gazebo" && file.is_foreign) outline.root.name = "sdf";  // what it was called up to SDF 1.2
+  if (root.name == "gazebo" && file.is_foreign) outline.root.name = "sdf";  // its name up to SDF 1.2
   const std::string* const version = root.attribute("version");
   if (root.name != "sdf" || version == nullptr)
     return fail(root.line,
                 "expected <sdf version=\"" + sdf::SDF::Version() + "\"> as the root element, not <" + root.name + ">");
-  // libsdformat would read a newer file as if it were of its own version.
+  // libsdformat would read a newer file as if it had its own version.
   if (version_of(*version) > newest_version || version_of(*version) == std::pair{0, 0})
-    return fail(root.line, "SDF version '" + *version + "' cannot be read, only versions up to 1.12");
+    return fail(root.line, "SDF version '" + *version + "' is not supported; expected a version up to 1.12");
   if (version_of(*version) > version_of(sdf::SDF::Version())) make_older(outline.root, file.shown, warnings_);
   if (file.is_foreign) mend_sdf(outline.root, file.shown, warnings_);
   return std::move(outline.root);
@@ -140,8 +140,9 @@ bool SourceReader::names_are_simple(const XmlNode& node, const std::string& path
     const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
     if (const std::string* const name = child.attribute("name");
         name != nullptr && name->find("::") != std::string::npos) {
-      problems_.push_back({child.file->shown, child.line, child_path,
-                           "a name cannot have '::' in it, which is between the name of a model and that of its part"});
+      problems_.push_back(
+          {child.file->shown, child.line, child_path,
+           "a name cannot contain '::', which separates the name of a model from the names of its parts"});
       are_simple = false;
     }
     are_simple = names_are_simple(child, child_path) && are_simple;
@@ -155,7 +156,7 @@ void SourceReader::warn_of_repeated(const XmlNode& node, const ElementSchema& sc
     if (of_child.is_free() || of_child.is_extension()) continue;
     const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
     if (of_child.is_single() && node.child(child.name) != &child)
-      warnings_.push_back({child.file->shown, child.line, child_path, "is given twice; only the first counts"});
+      warnings_.push_back({child.file->shown, child.line, child_path, "is given twice; only the first is used"});
     warn_of_repeated(child, of_child, child_path);
   }
 }

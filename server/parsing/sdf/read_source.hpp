@@ -12,32 +12,32 @@
 
 namespace cohort::parsing {
 
-/// Reads files in SDF of any version, URDF or YAML as trees of SDF of libsdformat's own version. All that is changed in
-/// a file is changed here, in its tree, but for its includes.
+/// Reads files in SDF of any version, URDF or YAML as trees of SDF in the version of libsdformat. All changes to a file
+/// except its includes are made here, in its tree.
 class SourceReader {
  public:
-  /// What is wrong with a file goes to `problems`, what is ignored in it to `warnings`.
+  /// Adds problems of a file to `problems`, and ignored features to `warnings`.
   SourceReader(InputFiles& input, const sdf::ParserConfig& config, std::vector<Problem>& problems,
                std::vector<Problem>& warnings)
       : input_(input), config_(config), problems_(problems), warnings_(warnings) {}
 
-  /// Sets `tree`, `version` and `is_foreign` of a file by its `path`. Returns false after a problem. `is_included`: by
-  /// another file.
+  /// Sets `tree`, `version` and `is_foreign` of a file from its `path`. Returns false after a problem. `is_included`:
+  /// whether another file includes it.
   bool read(SdfFile& file, bool is_included);
 
  private:
-  /// Null, and reported, if it cannot be read.
+  /// Returns the text; null, with a report, if it cannot be read.
   const std::string* read_text(const SdfFile& file);
-  /// The <sdf> element of a file; nothing after a problem.
+  /// Returns the <sdf> element of a file; nothing after a problem.
   std::optional<XmlNode> read_xml(const std::string& text, SdfFile& file);
   std::optional<XmlNode> read_yaml(const std::string& text, const SdfFile& file);
-  /// Makes an older version of SDF the newest. Returns false after a problem.
+  /// Converts an older version of SDF to the newest. Returns false after a problem.
   bool convert(SdfFile& file);
-  /// Whether no name has '::' in it, as is the rule from SDF 1.8 on.
+  /// Returns whether no name contains '::', as required from SDF 1.8 on.
   bool names_are_simple(const XmlNode& node, const std::string& path);
-  /// Takes out of a file that was not written for Cohort what would only stop it.
+  /// Removes the parts of a file from another source that would only prevent reading it.
   void make_readable(SdfFile& file, bool is_included);
-  /// Of an element that SDF has once, the first counts.
+  /// Warns of repeated elements that SDF allows only once; the first is used.
   void warn_of_repeated(const XmlNode& node, const ElementSchema& schema, const std::string& path);
 
   InputFiles& input_;

@@ -16,7 +16,7 @@
 namespace cohort::parsing {
 namespace {
 
-// `/sdf/world[@name="w"]/model[@name="m"]/link` as `world/model[m]/link`.
+// Returns `/sdf/world[@name="w"]/model[@name="m"]/link` as `world/model[m]/link`.
 std::string readable_path(std::string_view xpath) {
   std::string path;
   if (xpath.starts_with("/sdf/")) xpath.remove_prefix(5);
@@ -38,27 +38,27 @@ std::string readable_path(std::string_view xpath) {
   return path;
 }
 
-// What libsdformat says of names, in words that say what is to be done.
+// A message of libsdformat about names, and a replacement that says what would be right.
 struct Saying {
-  std::string_view part;    // of what libsdformat says
-  std::string_view before;  // what the name stands after there; empty if none is needed
-  std::string_view ours;    // with '*' where the name comes
+  std::string_view part;    // message of libsdformat
+  std::string_view before;  // text before the name in it; empty if no name is needed
+  std::string_view ours;    // with '*' in place of the name
 };
 constexpr Saying sayings[] = {
     {"causing a graph cycle", "name[", "'*' refers to itself; expected another frame"},
     {"must not specify its own name", "name[", "the joint '*' names itself; expected a link or another frame"},
     {"cycle detected", "", "frames refer to each other in a circle"},
     {"not found in model", "name[", "there is no link or frame '*' in the model"},
-    {"relative_to name[", "name[", "there is no frame '*' that it could be relative to"},
-    {"attached_to name[", "name[", "there is no frame '*' that it could be attached to"},
-    {"is reserved.", "name [", "the name '*' is reserved; give it another one"},
-    {"already exists.", "name[", "another one has the name '*'; names are unique in what they stand in"},
-    {"non-unique name", "name [", "something else in the model has the name '*'; names are unique there"},
+    {"relative_to name[", "name[", "there is no frame '*' for relative_to"},
+    {"attached_to name[", "name[", "there is no frame '*' for attached_to"},
+    {"is reserved.", "name [", "the name '*' is reserved; choose another name"},
+    {"already exists.", "name[", "the name '*' is already used; names must be unique within their parent element"},
+    {"non-unique name", "name [", "another element of the model has the name '*'; names must be unique within a model"},
     {"must have at least one link", "", "expected at least one <link>"},
     {"must specify different frame names", "", "expected two different links as parent and child"},
     {"Root object can only contain one", "", "expected one <model>, <light> or <actor> in a file without a <world>"},
     {"unable to find unique frame", "name [", "there is no frame '*' here"},
-    {"invalid child link", "name[", "the child of the joint '*' has to be a link of the model"},
+    {"invalid child link", "name[", "the child of the joint '*' must be a link of the model"},
 };
 
 std::optional<std::string> in_our_words(const std::string& message) {
@@ -86,7 +86,7 @@ bool is_cannot_read_element(const sdf::Error& error) {
   return error.Code() == sdf::ErrorCode::ELEMENT_INVALID && error.Message().starts_with("Error reading element");
 }
 
-// Our own checks or the search for models say it with a place.
+// Returns whether a check of Cohort or the search for models reports the error with a position.
 bool is_said_by_us(const sdf::Error& error) {
   switch (error.Code()) {
     case sdf::ErrorCode::LINK_INERTIA_INVALID:
@@ -99,7 +99,7 @@ bool is_said_by_us(const sdf::Error& error) {
   }
 }
 
-// Follows from an error before it: a whole that has a bad part, a graph that has a bad edge.
+// Returns whether the error follows from one before it: a whole with an invalid part, or a graph with an invalid edge.
 bool is_consequence(const sdf::Error& error, const std::string& path, const std::string& last_path) {
   switch (error.Code()) {
     case sdf::ErrorCode::ELEMENT_INVALID:
@@ -118,8 +118,8 @@ struct Place {
   std::string path;
 };
 
-// The last element of this kind and name under `from`: of two of the same name, the second is the one too many. An
-// include is a model.
+// Returns the last element of this kind and name under `from`, since the second of two equal names is the error. An
+// include counts as a model.
 std::optional<Place> find_named(const XmlNode& from, const std::string& path, std::string_view kind,
                                 std::string_view name) {
   std::optional<Place> found;
@@ -132,7 +132,7 @@ std::optional<Place> find_named(const XmlNode& from, const std::string& path, st
   return found;
 }
 
-// The name in the first `KIND with name[NAME]` of a message, or in the first `name[NAME]` if the kind is empty.
+// Returns the name in the first `KIND with name[NAME]` of a message, or in the first `name[NAME]` if the kind is empty.
 std::optional<std::string> name_in(std::string_view message, std::string_view kind, std::size_t start = 0) {
   const std::string before = kind.empty() ? "name[" : std::string(kind) + " with name[";
   const std::size_t found = message.find(before, start);
@@ -141,8 +141,8 @@ std::optional<std::string> name_in(std::string_view message, std::string_view ki
   return std::string(message.substr(begin, message.find(']', begin) - begin));
 }
 
-// Errors of libsdformat's second stage carry no place, but names of what they are about: "... specified by joint with
-// name[j] ... in model with name[m]".
+// Errors of the second stage of libsdformat have no position, but names of the elements concerned: "... specified by
+// joint with name[j] ... in model with name[m]".
 std::optional<Place> place_named_in(std::string message, const XmlNode& xml) {
   for (const char* const kind : {"Model", "Link", "Joint", "Frame", "Collision"})
     for (std::size_t at = message.find(kind); at != std::string::npos; at = message.find(kind, at))
@@ -160,14 +160,15 @@ std::optional<Place> place_named_in(std::string message, const XmlNode& xml) {
   return scope;
 }
 
-// What SDFormat knows of the element at a readable path, from the root's child on; nullptr if it knows none.
+// Returns the definition in SDFormat of the element at a readable path, which starts below the root; nullptr if there
+// is none.
 sdf::ElementPtr definition_of(std::string_view path) {
   sdf::ElementPtr element = sdf_definition();
   while (element && !path.empty()) {
     const std::string step(path.substr(0, path.find('/')));
     const std::string name = step.substr(0, step.find('['));
     path.remove_prefix(std::min(path.size(), step.size() + 1));
-    // A model may hold models, and so on: those are described by the outer one.
+    // Models can be nested; nested models have the definition of the outer one.
     if (name != element->GetName()) element = element->GetElementDescription(name);
   }
   return element;
@@ -177,13 +178,13 @@ sdf::ElementPtr definition_of(std::string_view path) {
 bool is_unknown(const sdf::Error& error) { return error.Message().find("not defined in SDF") != std::string::npos; }
 bool is_missing_attribute(const sdf::Error& error) { return error.Message().starts_with("Required attribute["); }
 
-// The text in the first brackets of a message.
+// Returns the text in the first brackets of a message.
 std::string in_brackets(const std::string& message) {
   const std::size_t begin = std::min(message.find('['), message.size() - 1) + 1;
   return message.substr(begin, message.find(']', begin) - begin);
 }
 
-// SDFormat's path of an element or an attribute that it does not know, without its last step.
+// Returns the path of an unknown element or attribute in SDFormat, without its last step.
 std::string_view parent_of(std::string_view path) {
   const std::size_t slash = path.rfind('/');
   return path.substr(0, slash == std::string_view::npos ? 0 : slash);
@@ -203,7 +204,7 @@ std::vector<std::string> known_names(const sdf::Error& error, std::string_view p
 
 std::string cannot_have(const XmlNode& node) { return "<" + node.name + "> cannot have the value '" + node.text + "'"; }
 
-// For `Error reading element <NAME>`: what the value is that libsdformat says nothing about.
+// Returns a message with the value for `Error reading element <NAME>`, in which libsdformat omits it.
 std::string message_with_value(const sdf::Error& error, const XmlNode* node) {
   std::string name = error.Message().substr(error.Message().find('<') + 1);
   name.resize(std::min(name.find('>'), name.size()));
@@ -211,7 +212,7 @@ std::string message_with_value(const sdf::Error& error, const XmlNode* node) {
   return cannot_have(*node);
 }
 
-// A <frame> stands for an <include>.
+// Replaces a <frame> in the path by the <include> that it represents.
 void name_include(std::string& path, const SdfFile& file) {
   constexpr std::string_view frame = "world/frame[";
   if (!path.starts_with(frame)) return;
@@ -219,10 +220,10 @@ void name_include(std::string& path, const SdfFile& file) {
   if (file.is_include(path.substr(frame.size(), end - frame.size()))) path.replace(0, frame.size(), "world/include[");
 }
 
-// Names, each after the readable path of the element that it stands in.
+// Names, each after the readable path of its parent element.
 using PlacedNames = std::set<std::pair<std::string, std::string>>;
 
-// Says what may have been meant. If that is an attribute, it is one of `misspelt` from here on.
+// Adds a suggestion. If it is an attribute, it is added to `misspelt`.
 void explain_unknown(const sdf::Error& error, Problem& problem, PlacedNames& misspelt) {
   const std::string parent(parent_of(problem.element));
   const std::string name = in_brackets(error.Message());
@@ -238,7 +239,7 @@ void replace_bad_values_below(XmlNode& node, const ElementSchema& schema, const 
     const ElementSchema of_child = schema.child(child.name);
     if (of_child.is_free() || of_child.is_extension()) continue;
     const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
-    // A pose may be written in several ways, by its attributes.
+    // A pose can be written in several ways, depending on its attributes.
     const bool is_as_usual = child.attribute("rotation_format") == nullptr && child.attribute("degrees") == nullptr;
     if (!child.text.empty() && is_as_usual && !of_child.can_have(child.text)) {
       std::string shown_path = child_path;
@@ -261,8 +262,8 @@ std::vector<Problem> replace_bad_values(SdfFile& file) {
 std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file) {
   const XmlNode& tree = file.tree;
   std::vector<Problem> problems;
-  PlacedNames named;     // those that are wrong
-  PlacedNames misspelt;  // attributes that others were taken for
+  PlacedNames named;     // the invalid ones
+  PlacedNames misspelt;  // attributes that misspelt ones were taken for
   std::string last_path;
   for (const sdf::Error& error : errors) {
     if (is_said_by_us(error)) continue;
@@ -287,7 +288,7 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file)
         node = model;
         problem.element = step_of(*model);
       }
-      // One unknown name is reported as a frame, as a link and as what a pose is relative to.
+      // One unknown name is reported three times: as a frame, as a link and as the reference of a pose.
       const std::string name = name_in(error.Message(), "").value_or(error.Message());
       if (!named.emplace(problem.element, name).second) continue;
     } else if (is_cannot_read_element(error)) {

@@ -8,12 +8,11 @@
 
 namespace cohort::parsing {
 
-/// What libsdformat found wrong in a file, as problems of ours: without the trail of consequences that it reports after
-/// a cause, without what our own checks say better, and with a place wherever one can be found.
+/// Returns the errors of libsdformat for a file as problems, without consequences of other errors and without those
+/// that checks of Cohort report better, and with a position wherever possible.
 std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file);
 
-/// Returns a problem for each value in the tree of a file that libsdformat cannot read. Puts the default into the place
-/// of each.
+/// Returns a problem for each value in the tree of a file that libsdformat cannot read, and replaces it by its default.
 std::vector<Problem> replace_bad_values(SdfFile& file);
 
 }  // namespace cohort::parsing

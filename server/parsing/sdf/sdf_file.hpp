@@ -15,34 +15,34 @@ namespace cohort::parsing {
 
 struct SdfFile;
 
-/// An <include> of a world, or a <model> in it that nothing else there refers to, which is a part by itself. Where
-/// others refer to it, or it to them, a <frame> of the same name stands for it in SdfFile::tree, or, where frames
-/// inside of the model are named, a <model> with nothing but its frames.
+/// An <include> of a world, or an independent <model> in it, to which nothing else there refers. If there are
+/// references, SdfFile::tree has a <frame> of the same name in its place, or, if they name frames inside the model, a
+/// <model> with only its frames.
 struct Include {
   std::string name;
   const SdfFile* file = nullptr;
   bool is_static = false;
   std::size_t place = 0;                       ///< models and frames before it in the <world> of the tree
-  std::optional<ignition::math::Pose3d> X_WM;  ///< if nothing stands for it
+  std::optional<ignition::math::Pose3d> X_WM;  ///< if it has no replacement
   bool is_part = false;                        ///< then `file` is loaded by SdfFiles::load_part; alike ones share it
-  bool is_quaternion = false;                  ///< of a part: how the rotation of `X_WM` is written
+  bool is_quaternion = false;                  ///< for an independent model: notation of the rotation of `X_WM`
 };
 
-/// A file, in SDF, URDF or YAML, as a tree of SDF and as libsdformat's elements made of it.
+/// A file in SDF, URDF or YAML, as a tree of SDF and as elements of libsdformat made from it.
 struct SdfFile : SourceFile {
-  std::string version;                ///< of SDF, that it is written in
-  XmlNode tree;                       ///< as SDF of libsdformat's own version, with what stands for includes
+  std::string version;                ///< version of SDF in which it is written
+  XmlNode tree;                       ///< SDF in the version of libsdformat, with replacements of includes
   std::size_t size = 0;               ///< elements of `tree`
-  std::vector<const XmlNode*> nodes;  ///< of `tree`, by the line numbers of the elements made of them
+  std::vector<const XmlNode*> nodes;  ///< nodes of `tree`, by the line numbers of their elements
   std::vector<Include> includes;      ///< directly in <world>, in document order
   sdf::Root root;
   bool loaded = false;                          ///< `root` has the elements of the file
-  bool sound = false;                           ///< libsdformat has nothing to say against them, so that frames resolve
+  bool sound = false;                           ///< libsdformat reported no error, so frames can be resolved
   bool complete = true;                         ///< every include was found
-  std::string within;                           ///< of a part: the path of what it stands in, with a slash
+  std::string within;                           ///< for an independent model: path of its parent, with a slash
   std::map<std::string, const SdfFile*> parts;  ///< by their content
 
-  /// nullptr if there is none.
+  /// Returns the node; nullptr if there is none.
   const XmlNode* node_at(int line) const {
     const auto place = static_cast<std::size_t>(line);
     return place < nodes.size() ? nodes[place] : nullptr;

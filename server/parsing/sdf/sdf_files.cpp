@@ -89,7 +89,7 @@ bool SdfFiles::is_foreign(const sdf::ElementPtr& element) const {
 const XmlNode* SdfFiles::node_of(const sdf::ElementPtr& element) const {
   const SdfFile* const file = find(element->FilePath());
   if (file == nullptr) return nullptr;
-  // What libsdformat has added, for its default value, has no line.
+  // Elements that libsdformat has added for default values have no line.
   sdf::ElementPtr written = element;
   while (!written->LineNumber() && written->GetParent()) written = written->GetParent();
   return file->node_at(written->LineNumber().value_or(0));

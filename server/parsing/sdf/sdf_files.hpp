@@ -21,65 +21,65 @@
 
 namespace cohort::parsing {
 
-/// Where an element stands, for messages.
+/// The position of an element, for messages.
 struct Location {
   std::filesystem::path file;
   int line = 0;
   std::string element;
 };
 
-/// The files that one world is made of. Each is read once, by itself, and an <include> takes what was read.
+/// The files of one world. Each is read once, separately, and used for every <include> of it.
 class SdfFiles {
  public:
-  /// What is wrong with a file goes to `problems`, what is ignored in it to `warnings`. All three must outlive this.
+  /// Adds problems of a file to `problems`, and ignored features to `warnings`. All three must outlive this.
   SdfFiles(InputFiles& input, const std::filesystem::path& world_file,
            const std::vector<std::filesystem::path>& last_model_folders, std::vector<Problem>& problems,
            std::vector<Problem>& warnings);
 
   const SdfFile& world() { return open(world_file_, world_file_); }
 
-  /// The file of a model that the world file names. Throws std::runtime_error if there is none.
+  /// Returns the file of a model that the world file names. Throws std::runtime_error if there is none.
   const SdfFile& model(const std::string& uri) {
     const FoundModel found = search_.find(uri, world_folder_);
     return open(found.file, found.file);
   }
 
-  /// Makes elements of a model that is a part by itself. They take far more memory than its tree: so one after the
-  /// other, and each is let go when its description is made.
+  /// Makes the elements of an independent model. They need far more memory than its tree, so models are loaded one
+  /// after the other and released when their descriptions are made.
   const SdfFile& load_part(const SdfFile& part);
   void let_go(const SdfFile& part);
 
-  /// The file that the URI in `element` names, such as a mesh; a path is relative to the file that the element stands
-  /// in. Throws std::runtime_error if there is none.
+  /// Returns the file that the URI in `element` names, such as a mesh; a path is relative to the file of the element.
+  /// Throws std::runtime_error if there is none.
   std::filesystem::path find_file(const sdf::ElementPtr& element) const;
 
   Location locate(const sdf::ElementPtr& element) const;
-  /// Whether it stands in a file that was not written for Cohort.
+  /// Returns whether the element is in a file that was not written for Cohort.
   bool is_foreign(const sdf::ElementPtr& element) const;
   InputFiles& input() const { return input_; }
 
  private:
   SdfFile& open(const std::filesystem::path& path, const std::filesystem::path& shown);
-  /// Makes elements of the tree of a file; what is wrong with it is reported.
+  /// Makes elements from the tree of a file; reports problems.
   void load(SdfFile& file);
   const SdfFile* find(const std::string& path) const;
   const XmlNode* node_of(const sdf::ElementPtr& element) const;
 
-  // In sdf_includes.cpp.
+  // Defined in sdf_includes.cpp.
   struct Found;
   struct Named;
-  /// Puts into the place of each include what stands for it. False if libsdformat would stumble over the rest.
+  /// Replaces each include. Returns false if libsdformat would fail on the rest.
   bool replace_includes(XmlNode& node, const std::string& path, SdfFile& file);
-  /// Nothing if there is nothing to be put into its place.
+  /// Returns the replacement of an include; nothing if there is none.
   std::optional<Found> follow(const XmlNode& include, const std::string& path, SdfFile& file);
-  /// In a world of others, where another model has its name.
+  /// Renames an include in a world from another source if another model has its name.
   void rename_include(XmlNode& include, const std::string& path, const std::set<std::string>& taken, Found& found);
   static void replace_in_model(const XmlNode& include, const Found& found, bool merges, std::vector<XmlNode>& children);
-  /// False as `fits`.
+  /// Returns false in the same cases as `fits`.
   bool replace_in_world(const XmlNode& include, const std::string& path, const Found& found, const Named& named,
                         std::vector<XmlNode>& children, SdfFile& file);
   bool fits(const XmlNode& include, const std::string& path, const SdfFile& included, SdfFile& file);
-  /// False if others refer to the model.
+  /// Returns false if other elements refer to the model.
   bool set_apart(XmlNode& model, const Named& named, std::size_t place, SdfFile& file);
 
   LibsdformatScope libsdformat_;

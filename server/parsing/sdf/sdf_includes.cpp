@@ -11,12 +11,12 @@
 namespace cohort::parsing {
 namespace {
 
-// An element takes some 3 kB, and its tree is copied into each model that includes it.
+// An element takes about 3 kB, and its tree is copied into each model that includes it.
 constexpr std::size_t most_elements = 50'000;
 
 bool is_true(const XmlNode* flag) { return flag != nullptr && (flag->text == "true" || flag->text == "1"); }
 
-// Of models and frames.
+// Returns the names of models and frames.
 std::set<std::string> names_in(const XmlNode& world) {
   std::set<std::string> names;
   for (const XmlNode& child : world.children)
@@ -33,7 +33,7 @@ std::set<std::string> repeated_names_in(const XmlNode& world) {
   return repeated;
 }
 
-// How many models and frames there are before what comes next.
+// Returns the number of models and frames before the next child.
 std::size_t place_after(const std::vector<XmlNode>& children) {
   return static_cast<std::size_t>(std::ranges::count_if(
       children, [](const XmlNode& child) { return child.name == "model" || child.name == "frame"; }));
@@ -41,10 +41,10 @@ std::size_t place_after(const std::vector<XmlNode>& children) {
 
 }  // namespace
 
-/// What of a world is named by something else in it.
+/// The elements of a world to which others in it refer by name.
 struct SdfFiles::Named {
   std::set<std::string> frames;
-  std::set<std::string> scopes;    ///< of `robot::link`, `robot`
+  std::set<std::string> scopes;    ///< `robot` for `robot::link`
   std::set<std::string> repeated;  ///< names of several models and frames
 
   void add(const std::string& text, bool is_frame) {
@@ -60,7 +60,7 @@ struct SdfFiles::Named {
   }
 };
 
-/// What an <include> leads to.
+/// The target of an <include>.
 struct SdfFiles::Found {
   const SdfFile& file;
   const XmlNode& model;  ///< in its tree
@@ -72,7 +72,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
   Named named;
   if (is_world) named.collect(node);
   if (is_world) named.repeated = repeated_names_in(node);
-  std::set<std::string> names = is_world ? names_in(node) : std::set<std::string>{};  // those of includes too
+  std::set<std::string> names = is_world ? names_in(node) : std::set<std::string>{};  // including those of includes
   bool usable = true;
   std::vector<XmlNode> children;
   children.reserve(node.children.size());
@@ -89,7 +89,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
     if (is_world && file.is_foreign && names.contains(found->name)) rename_include(child, child_path, names, *found);
     const bool merges = is_merged(child);
     if (is_world && merges) {
-      problems_.push_back({file.shown, child.line, child_path, "merge=\"true\" has a meaning in a <model> only"});
+      problems_.push_back({file.shown, child.line, child_path, "merge=\"true\" is allowed only in a <model>"});
     } else if (is_world && !names.insert(found->name).second) {
       problems_.push_back({file.shown, child.line, "world/include[" + found->name + "]",
                            "another model has the name '" + found->name + "'"});
@@ -110,7 +110,7 @@ void SdfFiles::rename_include(XmlNode& include, const std::string& path, const s
   const std::string before = found.name;
   for (int number = 1; taken.contains(found.name); ++number) found.name = before + "_" + std::to_string(number);
   warnings_.push_back({include.file->shown, include.line, path,
-                       "another model has the name '" + before + "'; this one is called '" + found.name + "'"});
+                       "another model has the name '" + before + "'; this one is renamed to '" + found.name + "'"});
   set_child(include, element_at(include, "name", found.name));
 }
 
@@ -126,8 +126,9 @@ void SdfFiles::replace_in_model(const XmlNode& include, const Found& found, bool
 bool SdfFiles::fits(const XmlNode& include, const std::string& path, const SdfFile& included, SdfFile& file) {
   file.size += included.size;
   if (file.size <= most_elements) return true;
-  problems_.push_back({include.file->shown, include.line, path,
-                       "with this, models in models have more than " + std::to_string(most_elements) + " elements"});
+  problems_.push_back(
+      {include.file->shown, include.line, path,
+       "this include increases the size of nested models to more than " + std::to_string(most_elements) + " elements"});
   return false;
 }
 
@@ -204,12 +205,12 @@ std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const st
     return problem(*uri, "'" + found.file.string() + "' includes itself");
   const SdfFile& included = open(found.file, found.file);
   if (!included.sound) {
-    file.complete = false;  // its own problems have been said
+    file.complete = false;  // its own problems have been reported
     return std::nullopt;
   }
   const XmlNode* const model = included.tree.child("model");
   if (included.root.Model() == nullptr || model == nullptr) {
-    for (const char* const nothing : {"light", "actor"})  // of no consequence here, as in a world
+    for (const char* const nothing : {"light", "actor"})  // without effect here, as in a world
       if (included.tree.child(nothing) != nullptr) return std::nullopt;
     return problem(*uri, "'" + included.shown.string() + "' has no <model>");
   }
@@ -236,7 +237,7 @@ bool SdfFiles::replace_in_world(const XmlNode& include, const std::string& path,
   }
   if (!named.frames.contains(found.name)) file.includes.back().X_WM = pose_in_world(pose);
   if (file.includes.back().X_WM) return true;
-  // A frame costs libsdformat a hundredth of what a model does.
+  // In libsdformat, a frame needs a hundredth of the memory of a model.
   XmlNode frame{"frame", include.line, include.file, {{"name", found.name}}, "", {}};
   if (pose != nullptr) frame.children.push_back(*pose);
   children.push_back(std::move(frame));

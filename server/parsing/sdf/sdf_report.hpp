@@ -10,30 +10,30 @@
 
 namespace cohort::parsing {
 
-/// Where checks of SDF elements put what they find.
+/// Collects problems and warnings of checks of SDF elements.
 class SdfReport {
  public:
   SdfReport(const SdfFiles& files, std::vector<Problem>& problems, std::vector<Problem>& warnings)
       : files_(files), problems_(problems), warnings_(warnings) {}
 
-  /// `child` is added to the path of the element, for a child that is not there.
+  /// `child` is added to the path of the element, for a missing child.
   void problem(const sdf::ElementPtr& element, std::string message, std::string_view child = {}) const;
-  /// As `problem`, and throws InputError with all problems so far: for what costs too much to go on after.
+  /// Does the same as `problem`, and throws InputError with all problems so far, if continuing would cost too much.
   [[noreturn]] void stop(const sdf::ElementPtr& element, std::string message) const;
   void warning(const sdf::ElementPtr& element, std::string message) const;
-  /// Only the first time that it is said of a file.
+  /// Adds a warning once for each file.
   void warning_once(const sdf::ElementPtr& element, const std::string& message) const;
   /// Returns whether the file of the element was not written for Cohort.
   bool is_foreign(const sdf::ElementPtr& element) const { return files_.is_foreign(element); }
-  /// What is wrong in a file of ours, and only told of one that was not written for Cohort, where `remedy` says what is
-  /// done instead. True if it is to be remedied.
+  /// Reports a problem of a file written for Cohort. In a file from another source it is a warning, in which `remedy`
+  /// is the repair. Returns true if the caller should repair it.
   bool flaw(const sdf::ElementPtr& element, const std::string& message, const std::string& remedy) const;
-  /// How many problems there are so far.
+  /// Returns the number of problems so far.
   std::size_t count() const { return problems_.size(); }
-  /// What is wrong from `count` on is only told, as it is in a file that was not written for Cohort; `remedy` says what
-  /// is done instead. True if there is any.
+  /// Turns problems from `count` on into warnings, as in a file from another source; `remedy` is the repair. Returns
+  /// true if there are any.
   bool forgive(const sdf::ElementPtr& element, std::size_t count, const std::string& remedy) const;
-  /// Where it is, without a message.
+  /// Returns the position of an element, without a message.
   Problem place_of(const sdf::ElementPtr& element) const;
   void problem(Problem problem) const { problems_.push_back(std::move(problem)); }
 

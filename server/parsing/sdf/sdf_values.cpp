@@ -11,8 +11,8 @@
 namespace cohort::parsing {
 namespace {
 
-// How many numbers a value of this type has; 0 for types that are not numbers. libsdformat itself counts those of a
-// pose, whose number depends on its attributes.
+// Returns the number of numbers in a value of this type; 0 for types that are not numeric. libsdformat counts those of
+// a pose, which depend on its attributes.
 std::size_t numbers_in(std::string_view type) {
   if (type == "double" || type == "float" || type == "int" || type == "unsigned int") return 1;
   if (type == "vector2d") return 2;
@@ -39,7 +39,7 @@ void check_value(const sdf::ElementPtr& element, const SdfReport& report) {
   const std::size_t count = numbers_in(type);
   if (count == 0 && type != "pose") return;
   if (!value->GetSet()) {
-    // A pose may be there for its attributes alone.
+    // A pose may have only attributes.
     if (type != "pose") report.problem(element, "expected a number");
     return;
   }
@@ -59,7 +59,7 @@ void check_value(const sdf::ElementPtr& element, const SdfReport& report) {
     report.problem(element, "expected " + std::to_string(count) + " numbers, not '" + text + "'");
 }
 
-// What normalising leaves behind is never further from 1.
+// Tolerance for the rounding errors of normalisation.
 bool is_unit(double squared_norm) { return std::abs(squared_norm - 1.0) < 1e-14; }
 
 }  // namespace

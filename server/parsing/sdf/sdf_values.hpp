@@ -15,28 +15,28 @@ namespace cohort::parsing {
 Eigen::Vector3d to_eigen(const ignition::math::Vector3d& v);
 Pose to_pose(const ignition::math::Pose3d& X);
 
-/// The pose that an element has, as it is written there: `X` without what resolving frames would do to its last bits. A
-/// quaternion is normalised only if it needs it, so that one that was written by us is the same again.
+/// Returns the pose of an element exactly as written: `X` without rounding errors from resolving frames. A quaternion
+/// is normalised only if needed, so that one written by Cohort stays unchanged.
 Pose written_pose(const ignition::math::Pose3d& X, const sdf::ElementPtr& posed);
-/// The same, if its rotation is written as a quaternion or not.
+/// Does the same; `is_quaternion` tells whether the rotation is written as a quaternion.
 Pose written_pose(const ignition::math::Pose3d& X, bool is_quaternion);
 
-/// A direction as it is written in an element, if that is a unit vector to the last bits but a few.
+/// Returns a direction as it is written in an element, if that is a unit vector except for rounding errors.
 std::optional<Eigen::Vector3d> written_unit_vector(const sdf::ElementPtr& element);
 
-/// The descendant at this path, nullptr if it is not there. (Element::GetElement would add it.)
+/// Returns the descendant at this path; nullptr if there is none. (Element::GetElement would add it.)
 sdf::ElementPtr find(sdf::ElementPtr element, std::initializer_list<const char*> path);
 
-/// Whether the element is there with a value: what is not written has none, even where libsdformat has added the
-/// element.
+/// Returns whether the element is written with a value. An element that libsdformat has added for a default does not
+/// count.
 bool is_written(const sdf::ElementPtr& element);
 
-/// The value of an element as text, or nothing. Below <plugin>, and where SDF does not know the element, libsdformat
-/// has what is written as the default of the value.
+/// Returns the value of an element as text, or nothing. Below <plugin>, and in elements unknown to SDF, libsdformat
+/// keeps the text as the default of the value.
 std::string written_text(const sdf::ElementPtr& element);
 
-/// Checks that every number below `element`, except in what is not simulated, is a number and
-/// nothing else: libsdformat reads "1,5" as 1, "3 m" as 3 and an empty element as its default.
+/// Checks that every number below `element`, except in unsupported elements, is nothing but a number. (libsdformat
+/// reads "1,5" as 1, "3 m" as 3 and an empty element as its default.)
 void check_numbers(const sdf::ElementPtr& element, const SdfReport& report);
 
 }  // namespace cohort::parsing

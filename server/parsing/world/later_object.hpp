@@ -8,13 +8,13 @@
 
 namespace cohort::parsing {
 
-/// An object that an event of an experiment brings into the world.
+/// An object that an event of an experiment adds to the world.
 struct LaterObject {
-  std::string uri;  ///< of its model
+  std::string uri;  ///< URI of its model
   std::string name;
   Pose X_WM;
-  Problem where;               ///< of the event, without a message
-  bool is_model_only = false;  ///< the event makes new objects of the model; there is none in the description
+  Problem where;               ///< position of the event, without a message
+  bool is_model_only = false;  ///< the event creates new objects of the model; the description has none
 };
 
 }  // namespace cohort::parsing

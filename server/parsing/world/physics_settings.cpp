@@ -24,13 +24,13 @@ std::optional<std::chrono::nanoseconds> read_step(const sdf::Physics* physics, c
   const sdf::ParamPtr type = physics->Element()->GetAttribute("type");
   if (const std::string engine = type && type->GetSet() ? type->GetAsString() : "ignored";
       engine != "bullet" && engine != "ignored" && physics->Element()->GetExplicitlySetInFile())
-    report.warning(physics->Element(),
-                   "the engine '" + engine + "' is not here; Bullet's bodies are, with solvers of our own");
-  // SDF's default would be 1 ms, which libsdformat fills in where there is none.
+    report.warning(physics->Element(), "the engine '" + engine +
+                                           "' is not supported; Cohort uses the bodies of Bullet with its own solvers");
+  // The default of SDF is 1 ms, which libsdformat adds if there is no value.
   const sdf::ElementPtr step = physics->Element()->FindElement("max_step_size");
   if (!step || !step->GetExplicitlySetInFile()) return std::nullopt;
   constexpr double nanoseconds = 1e9;
-  constexpr double rounding = 1e-3;  // of a nanosecond: 1/100 s has no exact binary number
+  constexpr double rounding = 1e-3;  // in ns: 1/100 s has no exact binary representation
   constexpr double longest = 1.0;
   const auto seconds = step->Get<double>();
   if (!(seconds > 0.0 && seconds <= longest)) {

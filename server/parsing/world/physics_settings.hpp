@@ -12,13 +12,13 @@
 
 namespace cohort::parsing {
 
-/// The step that SDF's <physics> says, or nothing. Another engine than Bullet is named by a warning.
+/// Returns the step in <physics> of SDF, or nothing. Warns of an engine other than Bullet.
 std::optional<std::chrono::nanoseconds> read_step(const sdf::Physics* physics, const SdfReport& report);
 
-/// Settings of which the keys of `cohort:physics` that are given replace those of `settings`.
+/// Returns `settings` with the given keys of `cohort:physics` replaced.
 PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values);
 
-/// The keys of `cohort:physics` in YAML, only those that are there. What is wrong with them is reported.
+/// Reads the given keys of `cohort:physics` in YAML; reports problems.
 KeyValues read_physics_map(const YamlNode& node, const std::string& path, const YamlReport& report);
 
 }  // namespace cohort::parsing

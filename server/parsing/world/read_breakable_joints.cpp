@@ -9,7 +9,8 @@
 namespace cohort::parsing {
 namespace {
 
-// The place among `things` of the one that a key names; reported, beginning with `otherwise`, if there is none.
+// Returns the index in `things` of the one that a key names; reports a missing one with a message that begins with
+// `otherwise`.
 template <class Things>
 std::optional<std::size_t> find_named(const ExtensionValues& values, const char* key, const Things& things,
                                       const std::string& otherwise, const SdfReport& report) {
@@ -24,7 +25,7 @@ std::optional<std::size_t> find_named(const ExtensionValues& values, const char*
 
 std::optional<std::size_t> find_object(const ExtensionValues& values, const char* key, const World& world,
                                        const SdfReport& report) {
-  return find_named(values, key, world.instances, "no object is called", report);
+  return find_named(values, key, world.instances, "there is no object", report);
 }
 
 std::optional<std::size_t> find_link(const ExtensionValues& values, const char* key, const Instance& object,
@@ -49,8 +50,8 @@ std::optional<BreakableJoint> read_breakable_joint(const ExtensionValues& values
     return std::nullopt;
   }
   if (model(*first).is_static && model(*second).is_static) {
-    report.problem(values.element(),
-                   "neither '" + values.text("first") + "' nor '" + values.text("second") + "' moves: both are static");
+    report.problem(values.element(), "neither '" + values.text("first") + "' nor '" + values.text("second") +
+                                         "' can move, because both are static");
     return std::nullopt;
   }
   BreakableJoint joint{values.name(), *first, *first_link, *second, *second_link};

@@ -7,7 +7,8 @@
 
 namespace cohort::parsing {
 
-/// A `cohort:breakable_joint` of a world whose objects are all there. Nothing if it cannot be; the report then has it.
+/// Reads a `cohort:breakable_joint` of a world whose objects are complete. Returns nothing, with a report, if it is
+/// invalid.
 std::optional<BreakableJoint> read_breakable_joint(const ExtensionValues& values, const World& world,
                                                    const SdfReport& report);
 

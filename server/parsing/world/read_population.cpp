@@ -39,12 +39,12 @@ std::optional<Layout> read_line(const ExtensionValues& values, std::uint64_t, co
   return LineLayout{values.point("from"), values.point("to")};
 }
 
-// The places of a pattern, in units of its spacing: the first member in front, the others behind or beside it.
+// Returns a position in a pattern, in units of its spacing: the first member in front, the others behind or beside it.
 Vector3d place_in(std::string_view pattern, std::uint64_t member, std::uint64_t count) {
   const auto number = static_cast<double>(member);
   if (pattern == "column") return {-number, 0.0, 0.0};
   if (pattern == "row") return {0.0, 0.5 * static_cast<double>(count - 1) - number, 0.0};
-  // A wedge: by turns to the left and to the right of the one in front.
+  // A wedge: alternately to the left and to the right of the first member.
   const std::uint64_t side_by_side = (member + 1) / 2;
   const auto rank = static_cast<double>(side_by_side);
   return {-rank, member % 2 == 1 ? rank : -rank, 0.0};
@@ -58,7 +58,7 @@ std::optional<Layout> read_formation(const ExtensionValues& values, std::uint64_
   }
   if (values.has("pattern")) {
     if (!values.has("spacing")) {
-      report.problem(values.element(), "missing: distance of the members of a pattern", "cohort:spacing");
+      report.problem(values.element(), "missing: distance between the members of a pattern", "cohort:spacing");
       return std::nullopt;
     }
     for (std::uint64_t i = 0; i < count; ++i)
@@ -86,7 +86,7 @@ std::optional<Layout> read_layout(const ExtensionValues& placement, std::uint64_
     known += (known.empty() ? "<cohort:" : ", <cohort:") + std::string(name) + ">";
     if (element == placement.element()) continue;
     if (++given > 1) {
-      report.problem(element, "is a second layout; a placement has one");
+      report.problem(element, "is a second layout; a placement must have only one");
       return std::nullopt;
     }
     const auto values = ExtensionValues::read(element, *find_extension(name, "placement"), report);
@@ -96,7 +96,7 @@ std::optional<Layout> read_layout(const ExtensionValues& placement, std::uint64_
   return layout;
 }
 
-// False if it makes no sense; the report then has it.
+// Returns false, with a report, if the heading is invalid.
 bool read_heading(const ExtensionValues& values, const SdfReport& report, Population& population) {
   const bool is_random = std::holds_alternative<UniformLayout>(population.layout) ||
                          std::holds_alternative<GaussianLayout>(population.layout);
@@ -106,14 +106,14 @@ bool read_heading(const ExtensionValues& values, const SdfReport& report, Popula
   population.yaw = values.real("yaw");
   if (values.has("heading")) population.heading = choice_of<HeadingKind>(headings, values.text("heading"));
   if (population.heading == HeadingKind::along && !has_course) {
-    report.problem(values.where("heading"), "'along' is for <cohort:ring> and <cohort:line>");
+    report.problem(values.where("heading"), "'along' can only be used with <cohort:ring> and <cohort:line>");
     return false;
   }
   const bool needs_point = population.heading == HeadingKind::towards || population.heading == HeadingKind::away;
   if (needs_point != values.has("point")) {
     report.problem(values.where(needs_point ? "heading" : "point"),
-                   needs_point ? "'" + values.text("heading") + "' needs a <cohort:point>"
-                               : "is for the headings 'towards' and 'away'");
+                   needs_point ? "'" + values.text("heading") + "' requires a <cohort:point>"
+                               : "can only be used with the headings 'towards' and 'away'");
     return false;
   }
   if (needs_point) population.point = values.point("point");

@@ -17,7 +17,7 @@ struct WrittenPopulation {
   Population population;  ///< without its model
 };
 
-/// Nothing if anything is wrong with the element; the report then has it.
+/// Reads a population; returns nothing, with a report, if the element is invalid.
 std::optional<WrittenPopulation> read_population(const sdf::ElementPtr& element, const Extension& extension,
                                                  const SdfReport& report);
 

@@ -11,7 +11,7 @@
 namespace cohort::parsing {
 namespace {
 
-// Whatever else a library throws is wrong with the file.
+// Any other exception of a library is a problem of the file.
 template <class Read>
 World read_or_input_error(const std::filesystem::path& file, Read&& read) {
   std::optional<World> world;
@@ -38,7 +38,7 @@ ParsedModelPtr read_model_text(const std::string& text, const std::shared_ptr<co
                                                    inputs->last_model_folders.end());
   World alone = read_or_input_error(file, [&] { return WorldReader(input, file, no_seed, folders).read_model_file(); });
   if (alone.models.size() > 1)
-    throw InputError({{file, 0, "", "the model has several roots, which are bodies of their own; expected one"}});
+    throw InputError({{file, 0, "", "the model has several root links, which are separate bodies; expected one"}});
   return std::make_shared<const ParsedModel>(
       ParsedModel{text, alone.models.front(), std::move(alone.materials), std::move(alone.warnings)});
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double gap_above_plane = 1e-3;  // [m]
 
-// Infinite if nothing is solid; without lower end if something is ground.
+// Returns infinity if nothing is solid, and minus infinity if something is ground.
 double lowest_point(const World& world) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const Instance& instance : world.instances)
@@ -41,7 +41,7 @@ void warn_of_what_falls(World& world) {
   for (const Instance& instance : world.instances)
     if (world.models[instance.model].why_fixed() == nullptr)
       world.warnings.push_back(
-          {world.file, 0, "model[" + instance.name + "]", "has no collisions: it falls, and nothing holds it up"});
+          {world.file, 0, "model[" + instance.name + "]", "has no collisions, so it falls through the ground"});
 }
 
 }  // namespace

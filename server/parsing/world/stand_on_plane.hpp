@@ -5,9 +5,9 @@
 
 namespace cohort::parsing {
 
-/// Puts a plane into a world that has nothing but one model, and the model onto it, its lowest point just above the
-/// plane at z = 0. A model that is ground itself, or has nothing solid, stays where it is; of what then falls for ever
-/// a warning tells.
+/// Adds a plane to a world with a single model, and places the model on it, with its lowest point just above the plane
+/// at z = 0. A model that is ground itself, or has nothing solid, is not moved. Adds a warning for a model that would
+/// fall without end.
 void stand_on_plane(World& world);
 
 }  // namespace cohort::parsing

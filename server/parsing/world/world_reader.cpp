@@ -30,7 +30,7 @@ namespace {
 
 const Eigen::Vector3d sdf_gravity{0.0, 0.0, -9.8};  // SDF's default
 
-// A world has one at most.
+// Returns whether a world can have at most one.
 bool is_once(const Extension& extension) {
   return extension.name == "physics" || extension.name == "air" || extension.name == "water";
 }
@@ -86,7 +86,7 @@ void WorldReader::read_model_alone(const SdfFile& file) {
 void WorldReader::read_settings(const sdf::World& sdf_world) {
   world_.name = sdf_world.Name();
   world_.gravity = to_eigen(sdf_world.Gravity());
-  // SDF's default is World's, which libsdformat rounds.
+  // The default of SDF is that of World, which libsdformat rounds.
   if (const sdf::ElementPtr field = find(sdf_world.Element(), {"magnetic_field"}); is_written(field))
     world_.magnetic_field = to_eigen(field->Get<ignition::math::Vector3d>());
   if (const sdf::ElementPtr wind = find(sdf_world.Element(), {"wind", "linear_velocity"}); is_written(wind))
@@ -134,7 +134,7 @@ void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) 
   add_placed_before(place);
 }
 
-// A light of the world is an object with nothing but the light: events switch it off and move it as any other.
+// A light of the world becomes an object with only the light, so that events can switch and move it like any other.
 void WorldReader::read_lights(const sdf::World& sdf_world, const SdfFile& file) {
   const ModelReading how = reading(true, file);
   for (std::uint64_t i = 0; i < sdf_world.LightCount(); ++i) {
@@ -175,7 +175,7 @@ void WorldReader::add_part(const SdfFile& unread, const std::string& name, const
   }
 }
 
-// As a model that was read, with all of its bodies.
+// Returns a model that was read, with all of its bodies.
 std::vector<Model> WorldReader::renamed(std::size_t model, const std::string& name) const {
   const std::size_t count = count_of_bodies(model);
   const std::size_t length = world_.models[model].name.size();
@@ -216,7 +216,7 @@ std::size_t WorldReader::add_models(std::vector<Model> bodies) {
 void WorldReader::read_extensions(const sdf::World& sdf_world) {
   const auto extensions = extensions_in(sdf_world.Element(), report_);
   std::set<std::string_view> given;
-  read_world_plugins(sdf_world.Element(), world_, report_);  // what stands in elements of ours goes before it
+  read_world_plugins(sdf_world.Element(), world_, report_);  // `cohort:` elements have priority
   for (const auto& [element, extension] : extensions) {
     if (is_once(*extension) && !given.insert(extension->name).second)
       report_.problem(element, "<" + prefixed(extension->name) + "> is given twice");
@@ -239,12 +239,13 @@ void WorldReader::read_extensions(const sdf::World& sdf_world) {
     }
   }
   placement::add_populations(world_, seed_, names_, problems_);
-  // Last, when all materials and objects are known; what could not be read may have had more.
+  // References are resolved last, when all materials and objects are known. If something could not be read, there may
+  // be more of them.
   const bool all_is_read = problems_.empty();
   for (const auto& [element, extension] : extensions) read_reference(element, *extension, all_is_read);
 }
 
-// What names a material or an object. Its keys are checked in any case.
+// Reads an element that names a material or an object; always checks its keys.
 void WorldReader::read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read) {
   const bool is_pair = extension.name == "material_pair";
   if (!is_pair && extension.name != "breakable_joint") return;
@@ -261,7 +262,7 @@ std::optional<std::uint32_t> WorldReader::find_material(const ExtensionValues& v
   const auto found = std::find(named.begin(), named.end(), values.text(key));
   if (found != named.end()) return static_cast<std::uint32_t>(found - named.begin() + 1);
   report_.problem(values.where(key),
-                  "nothing is made of '" + values.text(key) + "'" + suggestion(values.text(key), named));
+                  "no collision has the material '" + values.text(key) + "'" + suggestion(values.text(key), named));
   return std::nullopt;
 }
 
@@ -271,8 +272,8 @@ void WorldReader::add_material_pair(const ExtensionValues& values) {
   if (!first || !second) return;
   for (const MaterialPair& other : world_.material_pairs)
     if (std::minmax(other.first, other.second) == std::minmax(*first, *second))
-      report_.problem(values.element(), "another <cohort:material_pair> is of '" + values.text("first") + "' and '" +
-                                            values.text("second") + "'");
+      report_.problem(values.element(), "there is already a <cohort:material_pair> for '" + values.text("first") +
+                                            "' and '" + values.text("second") + "'");
   world_.material_pairs.push_back(
       {*first, *second, values.real("friction"), values.real("restitution"), values.real("rolling_resistance")});
 }
@@ -309,7 +310,7 @@ void WorldReader::add_later(const LaterObject& object) {
   if (file == nullptr) return;
   const std::size_t model = shared_model(*file, file->root.Model()->Static());
   if (count_of_bodies(model) > 1)
-    return problem("the model has several roots, which are bodies of their own; an event can bring one");
+    return problem("the model has several root links, which are separate bodies; an event can add only one");
   if (object.is_model_only) {
     world_.spawnable_models.push_back({object.uri, model});
     return;
@@ -326,7 +327,7 @@ void WorldReader::add_population(WrittenPopulation written) {
   Population& population = written.population;
   population.model = shared_model(*file, file->root.Model()->Static());
   population.bodies = count_of_bodies(population.model);
-  // Where a shape is wrong, so is the room that it takes.
+  // If a shape is invalid, so is the space that it occupies.
   if (problems_.empty()) world_.populations.push_back(std::move(population));
 }
 

@@ -20,10 +20,10 @@
 
 namespace cohort::parsing {
 
-/// What a file may hold in the place of a world.
+/// How a file with a model instead of a world is read.
 enum class LoneModel { none, at_origin, on_plane };
 
-/// Reads one world, or a model alone.
+/// Reads one world, or a single model.
 class WorldReader {
  public:
   WorldReader(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
@@ -36,7 +36,7 @@ class WorldReader {
   }
 
   World read(LoneModel lone, const std::vector<LaterObject>& later);
-  /// A world with nothing but the model of the file.
+  /// Reads a world with only the model of the file.
   World read_model_file();
 
  private:
@@ -52,23 +52,23 @@ class WorldReader {
   void read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read);
   void add_material_pair(const ExtensionValues& values);
   void add_breakable_joint(const ExtensionValues& values);
-  /// The index of the material that `key` names; reported if nothing is made of it.
+  /// Returns the index of the material that `key` names; reports an unknown one.
   std::optional<std::uint32_t> find_material(const ExtensionValues& values, const char* key) const;
   ModelReading reading(bool is_static, const SdfFile& file) {
     return {is_static, file.sound, report_, shape_files_, world_.materials};
   }
   void add_population(WrittenPopulation written);
   std::size_t count_of_bodies(std::size_t model) const;
-  /// The file of a model. Null if there is none, or it is not sound; `problem` is called with what is wrong.
+  /// Returns the file of a model; null if there is none or it is invalid, and then calls `problem`.
   template <class Report>
   const SdfFile* find_model(const std::string& uri, const Report& problem);
-  /// The place in World::models of the model in a file: one for all that include it.
+  /// Returns the index in World::models of the model in a file, which all its includes share.
   std::size_t shared_model(const SdfFile& file, bool is_static);
   void add_later(const LaterObject& object);
   std::vector<Model> renamed(std::size_t model, const std::string& name) const;
-  /// Adds the bodies of a model, and returns the place of the first of them in World::models.
+  /// Adds the bodies of a model, and returns the index of the first in World::models.
   std::size_t add_models(std::vector<Model> bodies);
-  /// With all bodies of the model. False if a name is taken.
+  /// Adds an instance with all bodies of the model. Returns false if a name is in use.
   bool add_instance(const std::string& name, std::size_t model, const Pose& X_WM);
 
   std::uint64_t seed_;
@@ -79,7 +79,7 @@ class WorldReader {
   SdfReport report_;
   std::map<std::pair<const SdfFile*, bool>, std::size_t> shared_;
   std::map<const SdfFile*, std::optional<std::size_t>> parts_;  // likewise; nothing if it cannot be read
-  std::map<std::size_t, std::size_t> bodies_;  // of a model that has several: how many, by the place of the first
+  std::map<std::size_t, std::size_t> bodies_;  // number of bodies, for models with several, by the index of the first
   std::set<std::string> names_;
 };
 

@@ -27,8 +27,8 @@ std::vector<std::string> texts_of_value(const ExtensionKey& key, const Member& v
   }
 }
 
-// What the elements of a key hold, none if it is not written: one overload for each type of row of a table. Those of
-// references need the model and the folder of the file.
+// Returns the contents of the elements of a key, none if it is not written: one overload for each type of row of a
+// table. Those for references need the model and the folder of the file.
 template <class Struct, class Member>
 std::vector<std::string> texts_of(const keys::MemberKey<Struct, Member>& key, const Struct& from, const auto&...) {
   std::vector<std::string> texts = texts_of_value(key, from.*key.member);
@@ -68,7 +68,7 @@ std::vector<std::string> texts_of(const keys::ReferenceKey<Struct, Member>& key,
   return texts;
 }
 
-// What a struct has of the keys of a kind.
+// Writes the members of a struct for the keys of a kind.
 template <class Kind, class Struct>
 void write_values(XmlNode& element, const Struct& from, const auto&... scope) {
   keys::for_keys_of<Struct>(keys::keys_of<Kind>, [&]<class Key>(const Key& key) {

@@ -10,11 +10,11 @@
 namespace cohort::parsing {
 namespace {
 
-// The `place`-th child of this kind.
+// Returns the `place`-th child of this kind.
 XmlNode& child_of(XmlNode& element, std::string_view kind, std::size_t place) {
   for (XmlNode& child : element.children)
     if (child.name == kind && place-- == 0) return child;
-  throw std::logic_error("a sensor is written before what it stands on");
+  throw std::logic_error("a sensor is written before its link or joint");
 }
 
 XmlNode& add_sensor(XmlNode& owner, const char* type, const std::string& name, const Readout& readout) {
@@ -33,7 +33,7 @@ XmlNode& add_posed_sensor(XmlNode& model, const char* type, const Posed& sensor)
   return element;
 }
 
-// nullptr if there is none.
+// Returns the noise; nullptr if there is none.
 const Noise* noise_on(const Readout& readout, std::string_view quantity, int value) {
   const Noise* found = nullptr;
   for (const Noise& noise : readout.noises)
@@ -42,7 +42,8 @@ const Noise* noise_on(const Readout& readout, std::string_view quantity, int val
   return found;
 }
 
-// What gives `deviation` again when it is read: the quotient is rounded, and may be one off.
+// Returns the density that gives `deviation` when it is read; the quotient is rounded and may be off by one unit in the
+// last place.
 double density_of(double deviation, double time) {
   const double factor = drift_from_density(time);
   const double density = deviation / factor;
@@ -67,7 +68,7 @@ void add_noise(XmlNode& parent, const Readout& readout, std::string_view quantit
   if (noise->precision > 0.0) add_value(element, "precision", noise->precision);
 }
 
-// Of a quantity of three values.
+// Adds the noises of a quantity of three values.
 void add_noises(XmlNode& parent, const Readout& readout, std::string_view quantity) {
   int axis = 0;
   for (const char* const name : {"x", "y", "z"}) {
@@ -154,6 +155,16 @@ void write_sdf_sensor(XmlNode& model_element, const Model&, const AirPressureSen
   XmlNode& element = add(add_posed_sensor(model_element, "air_pressure", sensor), "air_pressure");
   add_value(element, "reference_altitude", sensor.reference_altitude);
   add_noise(add(element, "pressure"), sensor.readout, "pressure");
+}
+
+void write_sdf_sensor(XmlNode& model_element, const Model&, const NavSat& sensor) {
+  XmlNode& element = add(add_posed_sensor(model_element, "navsat", sensor), "navsat");
+  for (const auto& [sensing, quantity] :
+       {std::pair{"position_sensing", "position"}, std::pair{"velocity_sensing", "velocity"}}) {
+    XmlNode& each = add(element, sensing);
+    add_noise(add(each, "horizontal"), sensor.readout, quantity, 0);
+    add_noise(add(each, "vertical"), sensor.readout, quantity, 2);
+  }
 }
 
 }  // namespace cohort::parsing

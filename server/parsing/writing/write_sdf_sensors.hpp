@@ -5,7 +5,7 @@
 
 namespace cohort::parsing {
 
-/// One of SDF's own sensors, into its link or joint in the element of the model.
+/// Writes a `<sensor>` of SDF into its link or joint in the element of the model.
 void write_sdf_sensor(XmlNode& model_element, const Model& model, const Lidar& lidar);
 void write_sdf_sensor(XmlNode& model_element, const Model& model, const Imu& imu);
 void write_sdf_sensor(XmlNode& model_element, const Model& model, const ContactSensor& sensor);
@@ -14,5 +14,6 @@ void write_sdf_sensor(XmlNode& model_element, const Model& model, const Altimete
 void write_sdf_sensor(XmlNode& model_element, const Model& model, const Magnetometer& magnetometer);
 void write_sdf_sensor(XmlNode& model_element, const Model& model, const LogicalCamera& camera);
 void write_sdf_sensor(XmlNode& model_element, const Model& model, const AirPressureSensor& sensor);
+void write_sdf_sensor(XmlNode& model_element, const Model& model, const NavSat& sensor);
 
 }  // namespace cohort::parsing

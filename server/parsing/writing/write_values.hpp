@@ -12,10 +12,10 @@
 #include "server/parsing/files/xml_outline.hpp"
 #include "server/parsing/keys/extensions.hpp"
 
-/// What writing a world as XML is made of.
+/// Helpers for writing a world as XML.
 namespace cohort::parsing {
 
-/// As few digits as give the same number again.
+/// Returns the shortest text that gives the same number when it is read.
 std::string text_of(double number);
 inline std::string text_of(const std::string& text) { return text; }
 inline std::string text_of(bool flag) { return flag ? "true" : "false"; }
@@ -48,17 +48,17 @@ inline void add_pose(XmlNode& parent, const Pose& X) {
   add_value(parent, "pose", X).attributes.emplace_back("rotation_format", "quat_xyzw");
 }
 
-/// SDF keeps "::" for itself: it stands in the names of what was in a model inside of the model.
+/// Removes "::" from names of nested models, since SDF reserves it.
 std::string without_scope_marks(std::string name);
 
-/// How to get to a file from a folder.
+/// Returns the path to a file from a folder.
 std::string relative_to(const std::filesystem::path& folder, const std::filesystem::path& file);
 
-/// In the element of its model, which has those of its links and joints. `folder`: where the world will stand.
+/// Writes a device into the element of its model, which has the elements of its links and joints. `folder`: folder of
+/// the world file.
 void write_device(XmlNode& model_element, const Model& model, const Device& device,
                   const std::filesystem::path& folder);
-/// In its link.
-/// A GripRing, a Fin or a Drag of a link.
+/// Writes a GripRing, a Fin or a Drag into its link.
 template <class Part>
 void write_link_part(XmlNode& link_element, const Part& part);
 void write_emitter(XmlNode& link_element, const Emitter& emitter);

@@ -194,7 +194,7 @@ class WorldWriter {
     }
     add_value(add(friction, "bullet"), "rolling_friction", surface.rolling_resistance);
     if (surface.spinning_resistance > 0.0) {
-      // Of this radius it is the coefficient, to the last bit.
+      // The radius for which the coefficient is exactly the same.
       XmlNode& torsional = add(friction, "torsional");
       add_value(torsional, "coefficient", surface.spinning_resistance);
       add_value(torsional, "patch_radius", 16.0 / (3.0 * std::numbers::pi));

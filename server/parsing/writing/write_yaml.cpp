@@ -12,7 +12,7 @@ namespace {
 
 bool is_alphanumeric(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-// YAML would read it as this very text without quotation marks.
+// Returns whether YAML reads the text unchanged without quotation marks.
 bool is_plain(const std::string& text) {
   if (text.empty() || text == "null" || text == "Null" || text == "NULL") return false;
   const bool has_sign = text.size() > 1 && (text[0] == '-' || text[0] == '+');
@@ -43,7 +43,7 @@ std::string scalar(const std::string& text) {
   return quoted + '"';
 }
 
-// Several numbers are a list.
+// Several numbers become a list.
 std::string value_text(const std::string& text, const ElementSchema& schema) {
   const std::vector<std::string_view> parts = words(text);
   const bool are_plain = std::all_of(parts.begin(), parts.end(), [](std::string_view part) {
@@ -58,7 +58,7 @@ std::string value_text(const std::string& text, const ElementSchema& schema) {
 
 std::string lines_of(const XmlNode& node, const ElementSchema& schema);
 
-// What follows a key's colon: a value on the same line, or lines below it.
+// Returns the text after the colon of a key: a value on the same line, or lines below it.
 std::string after_key(const XmlNode& node, const ElementSchema& schema) {
   if (!node.attributes.empty() || !node.children.empty()) {
     std::istringstream lines(lines_of(node, schema));
@@ -84,7 +84,7 @@ std::string key_of_child(const std::string& name, const ElementSchema& schema) {
   return would_be_an_attribute ? "\"=" + name + "\"" : name;
 }
 
-// All of a name stand together.
+// Returns whether all children of the same name are adjacent.
 bool are_in_groups(const std::vector<XmlNode>& children) {
   std::set<std::string_view> done;
   for (std::size_t i = 0; i < children.size(); ++i) {
@@ -94,7 +94,7 @@ bool are_in_groups(const std::vector<XmlNode>& children) {
   return true;
 }
 
-// Under one key, which keeps the order of elements of different names.
+// Writes children under one key, which keeps the order of elements of different names.
 std::string lines_of_mixed_children(const XmlNode& node, const ElementSchema& schema) {
   std::string text = schema.takes_anything() ? "\"=elements\":\n" : "elements:\n";
   for (const XmlNode& child : node.children) {

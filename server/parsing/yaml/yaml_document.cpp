@@ -26,7 +26,7 @@ bool has_control_character(std::string_view text) {
                      [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n' && c != '\r'; });
 }
 
-/// Builds the tree from yaml-cpp's events. Its own nodes know neither where an alias stands nor that a key came twice.
+/// Builds the tree from the events of yaml-cpp, whose nodes have neither positions of aliases nor duplicate keys.
 class YamlBuilder : public YAML::EventHandler {
  public:
   YamlPtr root() const { return root_; }
@@ -54,7 +54,7 @@ class YamlBuilder : public YAML::EventHandler {
   struct Open {
     std::shared_ptr<YamlNode> node;
     YAML::anchor_t anchor;
-    YamlPtr key;  // of a map, that still waits for its value
+    YamlPtr key;  // key of a map that has no value yet
   };
 
   static std::shared_ptr<YamlNode> make(YamlNode::Kind kind, const YAML::Mark& mark) {
@@ -83,12 +83,12 @@ class YamlBuilder : public YAML::EventHandler {
 
 void YamlBuilder::OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) {
   const auto found = anchored_.find(anchor);
-  if (found == anchored_.end()) throw Refused{mark.line + 1, "this alias stands for something that it is a part of"};
+  if (found == anchored_.end()) throw Refused{mark.line + 1, "this alias refers to a value that contains it"};
   const YamlPtr& meant = found->second;
   from_aliases_ += meant->size;
   if (from_aliases_ > most_from_aliases)
     throw Refused{mark.line + 1,
-                  "the aliases of this file stand for more than " + std::to_string(most_from_aliases) + " values"};
+                  "the aliases of this file expand to more than " + std::to_string(most_from_aliases) + " values"};
   if (open_.size() + meant->depth > deepest)
     throw Refused{mark.line + 1, "is nested more than " + std::to_string(deepest) + " levels deep"};
   put(meant, YAML::NullAnchor);
@@ -96,10 +96,10 @@ void YamlBuilder::OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) {
 
 void YamlBuilder::OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                            const std::string& value) {
-  if (has_control_character(value)) throw Refused{mark.line + 1, "there is a control character in this text"};
+  if (has_control_character(value)) throw Refused{mark.line + 1, "this text contains a control character"};
   const auto node = make(YamlNode::Kind::scalar, mark);
   node->text = value;
-  node->is_plain = tag == "?";  // as yaml-cpp says it
+  node->is_plain = tag == "?";  // notation of yaml-cpp
   put(node, anchor);
 }
 
@@ -120,11 +120,11 @@ void YamlBuilder::put(YamlPtr node, YAML::anchor_t anchor) {
     parent.node->pairs.emplace_back(std::exchange(parent.key, nullptr), std::move(node));
 }
 
-/// Sees that there is no more.
+/// Checks that there is no further document.
 class NoMore : public YAML::EventHandler {
  public:
   void OnDocumentStart(const YAML::Mark& mark) override {
-    throw Refused{mark.line + 1, "a second document starts here; expected one in a file"};
+    throw Refused{mark.line + 1, "unexpected second document; a file must contain only one"};
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
@@ -144,6 +144,47 @@ const YamlNode* YamlNode::find(std::string_view key) const {
   return found == pairs.end() ? nullptr : found->second.get();
 }
 
+namespace {
+
+// A message of the parser in plain words.
+struct Expectation {
+  std::string_view said;  ///< how the parser's message begins
+  std::string_view text;
+};
+constexpr Expectation expectations[] = {
+    {"illegal map value",
+     "unexpected ':', or none in the line above. Expected one 'key: value' on a line, all keys indented alike, "
+     "and quotes around a text that has ': '"},
+    {"illegal map key", "unexpected '?'. Expected 'key: value', or quotes around a text that begins with '?'"},
+    {"illegal block entry", "unexpected '- '. Expected each entry of a list on a line of its own"},
+    {"end of map not found",
+     "wrong indentation, or a key without ':'. Expected 'key: value', indented as the key above"},
+    {"end of sequence not found", "wrong indentation. Expected '- ' indented as the entry above"},
+    {"end of map flow not found", "'{' is not closed. Expected ',' or '}'"},
+    {"end of sequence flow not found", "'[' is not closed. Expected ',' or ']'"},
+    {"illegal flow end", "']' or '}' without '[' or '{' before it"},
+    {"illegal EOF in scalar", "the quotes around a text are not closed"},
+    {"illegal tab", "a tab in the indentation. Expected spaces"},
+    {"unknown token", "a text cannot begin with this character. Expected quotes around the text"},
+    {"alias not found after *", "a text cannot begin with '*'. Expected quotes around the text"},
+    {"anchor not found after &", "a text cannot begin with '&'. Expected quotes around the text"},
+    {"the referenced anchor is not defined",
+     "no anchor '&' of this name comes before. Expected one, or quotes around "
+     "a text that begins with '*'"},
+    {"unknown escape character",
+     "unknown escape after a backslash. Expected single quotes around a text with "
+     "backslashes"},
+};
+
+std::string in_plain_words(const YAML::Exception& error) {
+  const auto found =
+      std::ranges::find_if(expectations, [&](const Expectation& each) { return error.msg.starts_with(each.said); });
+  const std::string text = found == std::end(expectations) ? error.msg : std::string(found->text);
+  return error.mark.is_null() ? text : text + " (column " + std::to_string(error.mark.column + 1) + ")";
+}
+
+}  // namespace
+
 YamlDocument parse_yaml(std::string_view text) {
   YamlDocument document;
   try {
@@ -151,7 +192,7 @@ YamlDocument parse_yaml(std::string_view text) {
     YAML::Parser parser(stream);
     YamlBuilder tree;
     if (!parser.HandleNextDocument(tree) || !tree.root()) {
-      document.error = {0, "there is nothing in this file"};
+      document.error = {0, "this file is empty"};
       return document;
     }
     NoMore no_more;
@@ -160,7 +201,7 @@ YamlDocument parse_yaml(std::string_view text) {
   } catch (const Refused& refused) {
     document.error = {refused.line, refused.message};
   } catch (const YAML::Exception& error) {
-    document.error = {error.mark.is_null() ? 0 : error.mark.line + 1, "not YAML: " + error.msg};
+    document.error = {error.mark.is_null() ? 0 : error.mark.line + 1, "not YAML: " + in_plain_words(error)};
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

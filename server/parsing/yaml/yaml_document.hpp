@@ -15,24 +15,24 @@ namespace cohort::parsing {
 struct YamlNode;
 using YamlPtr = std::shared_ptr<const YamlNode>;
 
-/// A node of a YAML document as it is written: duplicate keys are kept, in order, and each node knows its line. An
-/// alias is the node that it stands for, so nodes may be shared.
+/// A node of a YAML document as it is written: duplicate keys are kept, in order, and each node has its line. An alias
+/// is the node to which it refers, so nodes may be shared.
 struct YamlNode {
   enum class Kind { nothing, scalar, list, map };
 
   Kind kind = Kind::nothing;
   int line = 0;
-  std::string text;                                ///< of a scalar
+  std::string text;                                ///< text of a scalar
   bool is_plain = false;                           ///< a scalar without quotation marks
-  std::vector<YamlPtr> items;                      ///< of a list
-  std::vector<std::pair<YamlPtr, YamlPtr>> pairs;  ///< of a map: keys and values
+  std::vector<YamlPtr> items;                      ///< items of a list
+  std::vector<std::pair<YamlPtr, YamlPtr>> pairs;  ///< keys and values of a map
   std::size_t size = 1;                            ///< with all nodes below it, those of aliases too
-  std::size_t depth = 1;                           ///< of the deepest node below it, counted from this one
+  std::size_t depth = 1;                           ///< depth of the deepest node below it, from this one
 
   bool is_scalar() const { return kind == Kind::scalar; }
   bool is_list() const { return kind == Kind::list; }
   bool is_map() const { return kind == Kind::map; }
-  /// What a map has under the key, the first time that it is written; nullptr if nothing, or if this is no map.
+  /// Returns the first value of the key in a map; nullptr if there is none, or if this is not a map.
   const YamlNode* find(std::string_view key) const;
 };
 
@@ -45,11 +45,11 @@ struct YamlDocument {
   std::optional<Error> error;
 };
 
-/// The one document of a YAML text. Refused are, besides what is no YAML, more documents than one, control characters,
-/// nodes nested deeper than 64, and aliases that stand for more than 10 000 nodes in all or for themselves.
+/// Parses a YAML text with one document. Rejects invalid YAML, several documents, control characters, nodes nested
+/// deeper than 64, and aliases that expand to more than 10 000 nodes in total or refer to themselves.
 YamlDocument parse_yaml(std::string_view text);
 
-/// What a node is, for messages: its text in quotes, or `a list`, `a map`, `nothing`.
+/// Returns a node for messages: its text in quotes, or `a list`, `a map`, `nothing`.
 std::string shown(const YamlNode& node);
 
 }  // namespace cohort::parsing

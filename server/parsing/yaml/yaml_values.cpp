@@ -12,7 +12,7 @@ bool has_several_numbers(ExtensionValue value) {
          value == ExtensionValue::pose;
 }
 
-// The text of a value; of a list of numbers, all of them. Empty if it is something else.
+// Returns the text of a value, or all numbers of a list of numbers; empty for anything else.
 std::string text_of_value(const YamlNode& node, const ExtensionKey& key) {
   if (node.is_scalar()) return std::string(trimmed(node.text));
   std::string text;
@@ -54,6 +54,7 @@ KeyValues read_values(const YamlNode& node, const std::string& path, const Exten
         values.add(key.name, *parse_value(key.fallback, key));
       continue;
     }
+    if (key.value == ExtensionValue::group) continue;
     const YamlNode& value = map.where(name);
     if (!key.repeats || !value.is_list()) {
       take(value, map.path_to(name), key);

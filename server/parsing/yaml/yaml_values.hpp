@@ -9,12 +9,12 @@
 
 namespace cohort::parsing {
 
-/// The names of the keys of a table entry.
+/// Returns the names of the keys of a table entry.
 std::vector<std::string> names_of_keys(const Extension& part);
 
-/// The values of a YAML map whose keys are those of `part`. A vector, a point or a pose is a text or a list of numbers;
-/// a key that repeats has a value or a list of values. What is wrong is reported, and has no value. `fill`: a key that
-/// is absent gets its fallback, or is reported if it has none.
+/// Reads the values of a YAML map with the keys of `part`. A vector, a point or a pose is a text or a list of numbers;
+/// a repeated key has a value or a list of values. Reports invalid values, which are omitted. `fill`: an absent key
+/// gets its fallback, or is reported if it has none. Keys that are groups are left to the caller.
 KeyValues read_values(const YamlNode& node, const std::string& path, const Extension& part, bool fill,
                       const YamlReport& report);
 

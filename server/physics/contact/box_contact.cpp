@@ -9,7 +9,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// An edge has to separate by this much better than a face to be preferred [m]: faces give more points.
+// An edge axis is preferred only if it separates better than the best face axis by this much [m]: faces give more
+// points.
 constexpr double edge_handicap = 1e-4;
 
 struct Placed {
@@ -18,7 +19,7 @@ struct Placed {
   Matrix3d R;
 
   double reach(const Vector3d& direction) const { return (R.transpose() * direction).cwiseAbs().dot(half); }
-  // The corner that is furthest along a direction.
+  // Returns the corner that is furthest along a direction.
   Vector3d corner(const Vector3d& direction) const {
     Vector3d corner_W = centre;
     for (int i = 0; i < 3; ++i) corner_W += (R.col(i).dot(direction) < 0.0 ? -half[i] : half[i]) * R.col(i);
@@ -26,7 +27,7 @@ struct Placed {
   }
 };
 
-// The clipped face, in the frame of the reference face: x and y along it, z above it.
+// The clipped face, in the frame of the reference face: x and y lie in that face, z points out of it.
 struct Polygon {
   std::array<Vector3d, 8> corners;
   std::size_t count = 0;
@@ -35,7 +36,7 @@ struct Polygon {
   }
 };
 
-// Keeps what has sign * coordinate <= limit.
+// Keeps the part where sign * coordinate <= limit.
 Polygon clip(const Polygon& polygon, int axis, double sign, double limit) {
   Polygon kept;
   for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -50,7 +51,8 @@ Polygon clip(const Polygon& polygon, int axis, double sign, double limit) {
   return kept;
 }
 
-// Of many corners the four furthest out along the diagonals, always in that order: they hold the face as all would.
+// Reduces a polygon to the four corners furthest along the diagonals, always in the same order. These four support the
+// face as all of them would.
 Polygon thin_out(const Polygon& polygon) {
   Polygon kept;
   std::array<bool, 8> taken{};
@@ -70,10 +72,10 @@ Polygon thin_out(const Polygon& polygon) {
   return kept;
 }
 
-// `normal`: outwards from the reference's face `axis`. `sign`: of the normal that points towards a.
+// `normal`: outward normal of the reference box's face `axis`. `sign`: turns that normal towards a.
 void find_face_contact(const Placed& reference, int axis, const Vector3d& normal, const Placed& incident, double sign,
                        double margin, ContactPoints& found) {
-  // The face of the other box that looks at this one the most.
+  // Find the incident face: the face of the other box that is most nearly opposite to the reference face.
   int facing = 0;
   (incident.R.transpose() * normal).cwiseAbs().maxCoeff(&facing);
   const double away = incident.R.col(facing).dot(normal) > 0.0 ? -1.0 : 1.0;
@@ -107,7 +109,7 @@ void find_face_contact(const Placed& reference, int axis, const Vector3d& normal
 
 void find_edge_contact(const Placed& a, int i, const Placed& b, int j, const Vector3d& normal, double gap,
                        ContactPoints& found) {
-  // The lines of the two edges that look at each other, and where they are nearest.
+  // Find the closest points of the lines through the two edges that face each other.
   const Vector3d on_a = a.corner(-normal);
   const Vector3d on_b = b.corner(normal);
   const Vector3d along_a = a.R.col(i);
@@ -142,7 +144,7 @@ void find_box_contact(const description::Box& box_a, const Pose& X_WA, const des
   for (int i = 0; i < 3; ++i)
     if (!look_along(b.R.col(i), -1, i, 0.0)) return;
   for (int i = 0; i < 3; ++i)
-    if (!look_along(a.R.col(i), i, -1, edge_handicap)) return;  // of two faces alike, always b's
+    if (!look_along(a.R.col(i), i, -1, edge_handicap)) return;  // equal faces: always b's
   constexpr double parallel = 1e-6;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {

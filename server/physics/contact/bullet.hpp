@@ -1,6 +1,6 @@
 #pragma once
 
-// Bullet's headers, and the way from Eigen's types to its own and back. Private to server/physics.
+// Bullet's headers, and conversions between Eigen's types and Bullet's. Private to server/physics.
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"

@@ -16,8 +16,8 @@ btDefaultCollisionConstructionInfo without_pools() {
 
 }  // namespace
 
-// Bullet's dispatcher hands out manifolds and algorithms from pools that are not safe for several threads, and lists
-// all manifolds in one array; ours takes memory from the allocator and keeps no list.
+// A dispatcher that allocates from the heap and keeps no list of manifolds. Bullet's own takes manifolds and algorithms
+// from pools that are not thread-safe, and lists all manifolds in one array.
 class BulletNarrowPhase::Dispatcher final : public btCollisionDispatcher {
  public:
   Dispatcher(btCollisionConfiguration* configuration, double margin)
@@ -86,7 +86,7 @@ BulletContact& BulletContact::operator=(BulletContact&&) noexcept = default;
 
 namespace {
 
-// What of a point of Bullet's decides which points it keeps in the next step.
+// Visits those members of a Bullet contact point that decide which points Bullet keeps in the next step.
 template <class Point, class Visit>
 void visit_point(Point& point, Visit&& visit) {
   for (auto* vector : {&point.m_localPointA, &point.m_localPointB, &point.m_positionWorldOnA, &point.m_positionWorldOnB,
@@ -98,7 +98,7 @@ void visit_point(Point& point, Visit&& visit) {
 
 }  // namespace
 
-// The manifold, if the algorithm has one yet.
+// Returns the manifold, or nullptr if the algorithm has none yet.
 btPersistentManifold* BulletContact::State::manifold() const {
   if (algorithm == nullptr) return nullptr;
   btManifoldArray manifolds;
@@ -120,7 +120,7 @@ void BulletContact::State::collide(const Pose& X_WA, const Pose& X_WB) {
 
 void BulletContact::update(const Pose& X_WA, const Pose& X_WB, ContactPoints& points) {
   State& state = *state_;
-  // Bullet moves its points about as it drops and replaces some: the impulses go along with them.
+  // Bullet reorders its points when it drops or replaces some. The impulses move with them.
   if (btPersistentManifold* manifold = state.manifold()) {
     for (int i = 0; i < manifold->getNumContacts(); ++i) {
       const ContactPoint& point = points.points[static_cast<std::size_t>(i)];
@@ -157,10 +157,10 @@ void BulletContact::save(SnapshotWriter& writer) const {
 void BulletContact::restore(const Pose& X_WA, const Pose& X_WB, SnapshotReader& reader) {
   int count = 0;
   reader.read(count);
-  if (count < 0 || count > ContactPoints::most) throw SnapshotError("the snapshot has a contact of too many points");
-  state_->collide(X_WA, X_WB);  // makes the manifold
+  if (count < 0 || count > ContactPoints::most) throw SnapshotError("snapshot: a contact has too many points");
+  state_->collide(X_WA, X_WB);  // creates the manifold
   btPersistentManifold* manifold = state_->manifold();
-  if (manifold == nullptr && count > 0) throw SnapshotError("the snapshot has a contact where there is none");
+  if (manifold == nullptr && count > 0) throw SnapshotError("snapshot: points of two solids without a contact");
   if (manifold == nullptr) return;
   manifold->clearManifold();
   manifold->setNumContacts(count);

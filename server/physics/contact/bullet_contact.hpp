@@ -8,7 +8,7 @@
 
 namespace cohort::physics {
 
-/// Bullet's narrow phase for shapes of any kind. May be used from several threads at once.
+/// Bullet's narrow phase for shapes of any kind. Thread-safe.
 class BulletNarrowPhase {
  public:
   /// Finds points nearer than `margin` [m].
@@ -22,9 +22,9 @@ class BulletNarrowPhase {
   std::unique_ptr<State> state_;
 };
 
-/// Contact between two shapes. Bullet finds one point or a few at a time and keeps those of the last steps: so this
-/// object lives as long as the two are near each other, and its points are state. Different objects may be used from
-/// different threads at once.
+/// The contact between two shapes. Bullet finds one or a few points per step and keeps those of the last steps.
+/// Therefore this object lives as long as the two shapes are near each other, and its points are state. Different
+/// objects may be used from different threads at once.
 class BulletContact {
  public:
   /// The narrow phase must outlive this.
@@ -34,12 +34,12 @@ class BulletContact {
   BulletContact(BulletContact&&) noexcept;
   BulletContact& operator=(BulletContact&&) noexcept;
 
-  /// `points` are those of the last call, with the impulses that the solver has given them since.
+  /// Updates `points`, which must be those of the last call with the impulses that the solver has given them since.
   void update(const Pose& X_WA, const Pose& X_WB, ContactPoints& points);
 
-  /// Bullet's side of the points; `points` holds the rest.
+  /// Saves Bullet's part of the points; `points` holds the rest.
   void save(SnapshotWriter& writer) const;
-  /// For the poses that the shapes had when it was saved.
+  /// Restores them; the shapes must have the poses at which they were saved.
   void restore(const Pose& X_WA, const Pose& X_WB, SnapshotReader& reader);
 
  private:

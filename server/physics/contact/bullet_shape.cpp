@@ -11,8 +11,8 @@ using description::HeightGrid;
 using description::TriangleMesh;
 using Eigen::Vector3d;
 
-// Bullet finds contacts between hulls best if they are rounded a little [m]: it adds this all around to a hull that is
-// that much smaller, so that faces are where they were and edges are rounded.
+// Bullet finds contacts between hulls best if they are slightly rounded [m]. The hull is shrunk by this much and Bullet
+// adds it as a margin, so that faces stay in place and edges are rounded.
 constexpr double hull_rounding = 0.0005;
 constexpr double surface_skin = 0.001;  // [m]
 
@@ -24,7 +24,7 @@ std::unique_ptr<btConvexHullShape> rounded_hull(const std::vector<Vector3d>& ver
                                           hull_rounding, most_of_its_size);
   if (rounding > 0.0) {
     for (int i = 0; i < smaller.vertices.size(); ++i) hull->addPoint(smaller.vertices[i], false);
-  } else {  // flat: it is as thick as it is rounded
+  } else {  // flat: only the rounding gives it thickness
     for (const Vector3d& vertex : vertices) hull->addPoint(to_bullet(vertex), false);
   }
   hull->recalcLocalAabb();
@@ -32,7 +32,8 @@ std::unique_ptr<btConvexHullShape> rounded_hull(const std::vector<Vector3d>& ver
   return hull;
 }
 
-// Bullet has no ellipsoid: the point furthest along a direction is all that its narrow phase asks for.
+// An ellipsoid, which Bullet lacks. Bullet's narrow phase needs only the support point: the one furthest along a
+// direction.
 class EllipsoidShape final : public btConvexInternalShape {
  public:
   explicit EllipsoidShape(const Vector3d& radii) : radii_(radii) {
@@ -53,7 +54,7 @@ class EllipsoidShape final : public btConvexInternalShape {
                                                          int count) const override {
     for (int i = 0; i < count; ++i) found[i] = localGetSupportingVertexWithoutMargin(directions[i]);
   }
-  void calculateLocalInertia(btScalar, btVector3& inertia) const override { inertia.setZero(); }  // nobody asks
+  void calculateLocalInertia(btScalar, btVector3& inertia) const override { inertia.setZero(); }  // never used
   void getAabb(const btTransform& X_WC, btVector3& lower, btVector3& upper) const override {
     const btVector3 half(radii_.maxCoeff(), radii_.maxCoeff(), radii_.maxCoeff());
     lower = X_WC.getOrigin() - half;

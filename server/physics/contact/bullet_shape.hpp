@@ -8,7 +8,7 @@ class btCollisionShape;
 
 namespace cohort::physics {
 
-/// A shape as Bullet takes it. Constant; may be shared between solids.
+/// A shape as Bullet represents it. Immutable; may be shared between solids.
 class BulletShape {
  public:
   explicit BulletShape(const geometry::Shape& shape);
@@ -17,12 +17,13 @@ class BulletShape {
   BulletShape& operator=(const BulletShape&) = delete;
 
   btCollisionShape* get() const;
-  /// Bullet's frame of the shape in ours: it puts the middle of a height map's heights at the origin.
+  /// Returns the origin of Bullet's frame of the shape in the frame of `geometry::Shape`. Bullet puts the origin of a
+  /// height map at the middle of its heights.
   const Eigen::Vector3d& offset() const { return offset_; }
-  /// By how much Bullet finds others nearer than they are, but for spheres [m]: meshes that are surfaces and height
-  /// maps have a skin, or it would find them only once they are reached.
+  /// Returns the distance by which Bullet finds all shapes except spheres nearer than they are [m]. Surface meshes and
+  /// height maps have such a skin; without it, Bullet would find a contact only once the surface is reached.
   double skin() const;
-  /// As geometry::half_thickness_of [m].
+  /// Returns geometry::half_thickness_of the shape [m].
   double half_thickness() const { return half_thickness_; }
 
  private:

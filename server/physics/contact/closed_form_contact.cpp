@@ -24,7 +24,7 @@ using Eigen::Vector3d;
 
 struct HalfSpace {
   Vector3d normal_W;
-  double offset;  // of the surface along the normal
+  double offset;  // position of the surface along the normal
 
   HalfSpace(const Plane& plane, const Pose& X_W)
       : normal_W(X_W.orientation * plane.normal), offset(normal_W.dot(X_W.position)) {}
@@ -57,15 +57,15 @@ void on_plane(const Box& box, const Pose& X_W, const HalfSpace& plane, double ma
     corners[i] = {plane.height(positions_W[i]), i};
   }
   std::partial_sort(corners.begin(), corners.begin() + ContactPoints::most, corners.end());
-  // In the order of the corners, so that the solver sees the same rows step after step.
+  // Add them in the order of the corners, so that the solver sees the same rows in each step.
   std::array<std::uint32_t, ContactPoints::most> lowest{};
   for (std::size_t i = 0; i < lowest.size(); ++i) lowest[i] = corners[i].index;
   std::sort(lowest.begin(), lowest.end());
   for (const std::uint32_t corner : lowest) touch_plane(positions_W[corner], plane, margin, found);
 }
 
-// At right angles to each other and to the axis. Four points are a square in the rim: on a slope one of its corners is
-// at the bottom, where the cylinder tips over.
+// Returns two directions perpendicular to each other and to the axis. They give four points on the rim that form a
+// square; on a slope, one of its corners is the lowest point, over which the cylinder tips.
 std::array<Vector3d, 2> directions_on_rim(const Matrix3d& R, const Vector3d& normal_W) {
   const Vector3d downhill = normal_W.z() * normal_W - Vector3d::UnitZ();
   constexpr double level = 1e-3;
@@ -90,7 +90,7 @@ void on_plane(const Cylinder& cylinder, const Pose& X_W, const HalfSpace& plane,
     }
     return;
   }
-  // Lies or leans: the lowest line, of which the ends count.
+  // The cylinder lies or leans: the ends of its lowest line are the points.
   const Vector3d down = (upright * axis - plane.normal_W).normalized();
   touch_plane(X_W.position + cylinder.radius * down - to_end, plane, margin, found);
   touch_plane(X_W.position + cylinder.radius * down + to_end, plane, margin, found);
@@ -110,9 +110,9 @@ void on_plane(const Ellipsoid& ellipsoid, const Pose& X_W, const HalfSpace& plan
   touch_plane(X_W * lowest, plane, margin, found);
 }
 
-// Of the corners near the plane the lowest, and those furthest out to three sides of it.
+// Takes, of the vertices near the plane, the lowest one and those furthest out in three directions around it.
 void on_plane(const Mesh& mesh, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
-  if (!mesh.convex) return;  // it does not move, and neither does the plane
+  if (!mesh.convex) return;  // it is static, and so is the plane
   std::vector<Vector3d> near;
   Vector3d lowest = Vector3d::Zero();
   double least = std::numeric_limits<double>::infinity();
@@ -140,7 +140,7 @@ void on_plane(const Mesh& mesh, const Pose& X_W, const HalfSpace& plane, double 
   }
 }
 
-// The point of a box nearest to `point`, both in the box's frame; if that is inside, the way out through the nearest
+// The point of a box's surface nearest to `point`, both in the box's frame. For a point inside, it is on the nearest
 // face.
 struct Nearest {
   Vector3d point;
@@ -199,7 +199,7 @@ std::optional<Nearest> nearest_on(const Other&, const Vector3d&) {
   return std::nullopt;
 }
 
-// Sphere a on any b that has a nearest point. `flipped`: the sphere is b.
+// Finds the contact of sphere a with any b that has a nearest point. `flipped`: the sphere is b.
 bool ball_on(const Sphere& sphere, const Pose& X_WA, const geometry::Shape& b, const Pose& X_WB, double margin,
              bool flipped, ContactPoints& found) {
   const Pose X_BW = X_WB.inverse();
@@ -214,7 +214,7 @@ bool ball_on(const Sphere& sphere, const Pose& X_WA, const geometry::Shape& b, c
   return true;
 }
 
-// A shape on a plane. `flipped`: the plane is a.
+// Finds the contact of a shape with a plane. `flipped`: the plane is a.
 bool anything_on_plane(const geometry::Shape& shape, const Pose& X_W, const HalfSpace& plane, double margin,
                        bool flipped, ContactPoints& found) {
   const bool known = std::visit(
@@ -232,7 +232,8 @@ bool anything_on_plane(const geometry::Shape& shape, const Pose& X_W, const Half
   return known;
 }
 
-// The face of a box that all of a cylinder is above: there the box is as good as endless.
+// Returns the face of a box that the whole cylinder is above: for this contact the face can be treated as an infinite
+// plane.
 std::optional<HalfSpace> face_under(const Cylinder& cylinder, const Pose& X_WC, const Box& box, const Pose& X_WB) {
   const Pose X_BC = X_WB.inverse() * X_WC;
   const geometry::Bounds around = geometry::bounds_of(cylinder, X_BC);

@@ -4,10 +4,10 @@
 
 namespace cohort::physics {
 
-/// Finds where two shapes come nearer than `margin` [m], if there is a closed form for them: anything round or angular
-/// on a plane, spheres and capsules against each other and against boxes and cylinders, and upright cylinders beside
-/// upright cylinders and boxes. False if there is none; `found` is then unchanged. Without memory: the same poses give
-/// the same points.
+/// Finds the contact points of two shapes that are nearer than `margin` [m], if there is a closed form for the pair.
+/// Closed forms exist for round and angular shapes on a plane and for spheres and capsules against each other, boxes
+/// and cylinders. They also exist for upright cylinders beside upright cylinders and boxes. Returns false if there is
+/// none; `found` is then unchanged. Stateless: the same poses give the same points.
 bool find_closed_form_contact(const geometry::Shape& a, const Pose& X_WA, const geometry::Shape& b, const Pose& X_WB,
                               double margin, ContactPoints& found);
 

@@ -10,7 +10,7 @@
 namespace cohort::physics {
 namespace {
 
-// One for all worlds: it has no state, and takes more memory than a small world.
+// One narrow phase serves all worlds: it has no state, and takes more memory than a small world.
 BulletNarrowPhase& narrow_phase() {
   static BulletNarrowPhase shared(Collision::margin);
   return shared;
@@ -72,7 +72,7 @@ bool Collision::makes_a_pair(std::uint32_t solid, std::uint32_t other) const {
   return scene_.solid(other).body != scene_.solid(solid).body || may_touch_(solid, other);
 }
 
-// Old pairs that are still near keep what they know.
+// Pairs that are still near keep their contact points.
 void Collision::find_pairs(std::uint32_t solid, std::span<const std::uint32_t> near) {
   std::vector<SolidPair>& pairs = moving_[place_[solid]].pairs;
   std::size_t same = 0;
@@ -120,7 +120,7 @@ void Collision::find_contact(SolidPair& pair) {
   pair.general->update(a.X_WC, b.X_WC, pair.contact);
 }
 
-// Of two that were apart, with the first one somewhere else than it is.
+// Returns the contact of two solids that were apart, with the first one at X_WA instead of its present pose.
 ContactPoints Collision::contact_at(const Pose& X_WA, std::uint32_t solid, std::uint32_t other) const {
   const geometry::Solid& b = scene_.solid(other);
   ContactPoints found;
@@ -129,15 +129,15 @@ ContactPoints Collision::contact_at(const Pose& X_WA, std::uint32_t solid, std::
   return found;
 }
 
-// Bullet finds one point at a time, and those beside it in the next steps. Of what is fast they are found now, each by
-// turning the solid a little towards it: a face that hits with one corner alone would turn past what it hits. Only a
-// ball has no more.
+// Adds further contact points of a fast solid at once, each found with the solid rotated a little towards it. Bullet
+// finds one point per step and its neighbours in the next steps; a face that hits with one corner alone would meanwhile
+// turn past the obstacle. A ball has only one point.
 void Collision::add_points_beside(const Pose& X_WA, std::uint32_t solid, std::uint32_t other,
                                   ContactPoints& found) const {
   if (found.count > 2 || std::holds_alternative<description::Sphere>(scene_.solid(solid).shape())) return;
   constexpr double little = 0.01;  // [rad]
-  constexpr double askew = 0.46;   // so that no edge is level [rad]
-  constexpr double alike = 0.999;  // cosine between normals
+  constexpr double askew = 0.46;   // keeps edges from being level [rad]
+  constexpr double alike = 0.999;  // cosine of the angle between normals
   const Eigen::Vector3d way_W = way_of(solid) - way_of(other);
   const auto is_more_against = [&](const ContactPoint& one, const ContactPoint& two) {
     return one.normal_W.dot(way_W) < two.normal_W.dot(way_W);
@@ -163,7 +163,8 @@ void Collision::add_points_beside(const Pose& X_WA, std::uint32_t solid, std::ui
   found = beside;
 }
 
-// The places where that is looked for are so close together that nothing fits between.
+// Returns the first contact on the way. The sampled positions are so close together that the other solid cannot be
+// missed between them.
 Collision::Touch Collision::first_touch(std::uint32_t solid, std::uint32_t other, const Eigen::Vector3d& way_W) const {
   const Pose& X_WA = scene_.solid(solid).X_WC;
   const auto pose_at = [&](double share) { return Pose{X_WA.position + share * way_W, X_WA.orientation}; };
@@ -191,15 +192,16 @@ Collision::Touch Collision::first_touch(std::uint32_t solid, std::uint32_t other
   return touch;
 }
 
-// Of two that are apart, but of which one is so fast that they may have passed through each other at the end of the
-// step: where they will touch.
+// Finds where two solids will touch that are now apart, if one is so fast that they may have passed through each other
+// at the end of the step.
 void Collision::find_contact_on_the_way(SolidPair& pair) {
-  const Eigen::Vector3d way_W = way_of(pair.a) - way_of(pair.b);  // of a as b sees it
+  const Eigen::Vector3d way_W = way_of(pair.a) - way_of(pair.b);  // a relative to b
   Touch touch = first_touch(pair.a, pair.b, way_W);
   if (touch.points.count == 0) return;
   const Pose& X_WA = scene_.solid(pair.a).X_WC;
   add_points_beside({X_WA.position + touch.share * way_W, X_WA.orientation}, pair.a, pair.b, touch.points);
-  // As if a were where it is now: the faster of the two has come the longer way to where they meet.
+  // Give the points relative to a's present pose. Each of the two covers a share of the way to the meeting point
+  // proportional to its speed.
   const double of_a = way_of(pair.a).norm() / (way_of(pair.a).norm() + way_of(pair.b).norm());
   for (const ContactPoint& point : touch.points) {
     const double closes = -touch.share * point.normal_W.dot(way_W);
@@ -209,12 +211,12 @@ void Collision::find_contact_on_the_way(SolidPair& pair) {
 }
 
 double Collision::free_share(std::uint32_t solid, const Eigen::Vector3d& way_W) const {
-  if (!((way_W - way_of(solid)).norm() > furthest_unseen(solid))) return 1.0;  // as foreseen, or not a number
+  if (!((way_W - way_of(solid)).norm() > furthest_unseen(solid))) return 1.0;  // as predicted, or not a number
   double share = 1.0;
   scene_.for_each_static_overlap(region_along(solid, way_W), [&](std::uint32_t other) {
     if (!may_collide(scene_.solid(solid).surface(), scene_.solid(other).surface())) return;
     const auto touches = [&](const SolidPair& pair) { return pair.b == other && pair.contact.count > 0; };
-    if (std::ranges::any_of(pairs_of(solid), touches)) return;  // the solver knows
+    if (std::ranges::any_of(pairs_of(solid), touches)) return;  // the solver already handles it
     const Touch touch = first_touch(solid, other, way_W);
     if (touch.points.count > 0) share = std::min(share, touch.share);
   });
@@ -240,7 +242,7 @@ void Collision::restore(SnapshotReader& reader) {
   reader.expect_count(place_.size(), "solids");
   for (std::uint32_t solid = 0; solid < place_.size(); ++solid) {
     if (!moves(solid)) {
-      reader.expect_count(0, "contacts of a solid that does not move");
+      reader.expect_count(0, "contacts of a static solid");
       continue;
     }
     std::vector<SolidPair>& pairs = moving_[place_[solid]].pairs;
@@ -252,7 +254,7 @@ void Collision::restore(SnapshotReader& reader) {
       reader.read(pair.b);
       reader.read(pair.contact.count);
       if (pair.b >= place_.size() || pair.contact.count < 0 || pair.contact.count > ContactPoints::most)
-        throw SnapshotError("the snapshot has a contact of a solid that is not there");
+        throw SnapshotError("snapshot: invalid contact");
       for (ContactPoint& point : pair.contact) ContactPoint::visit_state(point, StateRestorer{reader});
       bool is_general = false;
       reader.read(is_general);

@@ -11,71 +11,73 @@
 
 namespace cohort::physics {
 
-/// Two solids that are near each other. `a` moves; if both do, it is the one that is awake, or fast or, if both are or
-/// neither is, has the lower index.
+/// Two solids that are near each other; `a` moves. If both move, `a` is the one that is awake. If both are awake, `a`
+/// is the fast one; if both or neither is fast, the one with the lower index.
 struct SolidPair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   ContactPoints contact;
-  std::optional<BulletContact> general;  ///< where there is no closed form
+  std::optional<BulletContact> general;  ///< if there is no closed form
 };
 
-/// Finds where the solids of a scene touch. Pairs are in the order of `a`, then of `b`, so nothing depends on the
-/// number of workers or on what was near before.
+/// Finds where the solids of a scene touch. Pairs are ordered by `a`, then by `b`, so that nothing depends on the
+/// number of workers or on earlier pairs.
 class Collision {
  public:
-  /// Says whether two solids of one body may touch each other.
+  /// Returns whether two solids of one body may collide.
   using MayTouch = std::function<bool(std::uint32_t, std::uint32_t)>;
 
   /// The scene must outlive this.
   Collision(const geometry::Scene& scene, MayTouch may_touch);
 
-  /// Solids in the order of the scene, each with Bullet's shape of it.
+  /// Adds the next solid of the scene, with Bullet's shape of it. Solids are added in the order of the scene.
   void add(std::shared_ptr<const BulletShape> shape, bool moves);
-  /// Takes memory for as many solids.
+  /// Reserves memory for this many solids.
   void reserve(std::size_t solids);
   /// Forgets a solid that is no longer in the scene.
   void remove(std::uint32_t solid);
 
-  /// Further than this in one step a solid could pass through another one without ever touching it [m]: it is fast.
+  /// Returns the distance per step beyond which a solid could pass through another one undetected [m]. A solid that
+  /// moves further is called fast.
   double furthest_unseen(std::uint32_t solid) const {
     constexpr double nearly = 0.9;
     return nearly * shapes_[solid]->half_thickness();
   }
-  /// Further than this nothing is followed in one step [m].
+  /// Returns the greatest distance over which a solid's motion is checked in one step [m].
   double furthest_followed(std::uint32_t solid) const { return most_places * furthest_unseen(solid); }
-  /// Where a solid that moves and is fast will be at the end of the step if nothing holds it, less where it is [m];
-  /// zero for one that is not. Different solids from different threads, before `detect`.
+  /// Sets the displacement over the step [m] that a moving, fast solid would make if nothing stopped it, or zero for
+  /// one that is not fast. Call it before `detect`; threads may call it for different solids.
   void set_way(std::uint32_t solid, const Eigen::Vector3d& way_W) { moving_[place_[solid]].way_W = way_W; }
-  /// What sleeps leaves its pairs as they are, and reports none with what is awake. Not while others `detect`.
+  /// Sets whether a solid sleeps. A sleeping solid keeps its pairs unchanged and reports none with awake solids. Not
+  /// while another thread is in `detect`.
   void set_asleep(std::uint32_t solid, bool asleep) { moving_[place_[solid]].is_asleep = asleep; }
-  /// All places of the solid in the step, and `margin` around them.
+  /// Returns the bounds of all positions of the solid in the step, extended by `margin`.
   geometry::Bounds region_of(std::uint32_t solid) const { return region_along(solid, way_of(solid)); }
 
-  /// Finds the pairs that `solid`, which moves, reports, and their contact points for the present poses or, of what is
-  /// fast, for those where the two will meet. `near`: in ascending order all solids, and maybe more, that its region
-  /// overlaps, and if it is fast those too whose own regions do. Points that were there before keep their impulses.
-  /// Different solids from different threads.
+  /// Finds the pairs that `solid`, which moves, reports, and their contact points. The points are those for the present
+  /// poses or, for a fast solid, for the poses where the two will meet. `near`: all solids that overlap its region, and
+  /// possibly more, in ascending order. For a fast solid `near` also holds those whose own regions overlap it. Points
+  /// that existed before keep their impulses. Threads may call it for different solids.
   void detect(std::uint32_t solid, std::span<const std::uint32_t> near);
-  /// Points this near count as touching for the solver, which lets them close the gap within the step [m].
+  /// Points nearer than this are passed to the solver, which lets the bodies close the gap within the step [m].
   static constexpr double margin = 0.005;
-  /// Which share of its way a solid that still is where it was may go, though the solver has made it faster than it was
-  /// foreseen: up to what stands still in its way. Different solids from different threads.
+  /// Returns the share of its displacement that a solid may make if the solver has made it faster than predicted: up to
+  /// the first static obstacle. The solid must still be at its old pose. Threads may call it for different solids.
   double free_share(std::uint32_t solid, const Eigen::Vector3d& way_W) const;
 
-  /// All points and what decides the next ones.
+  /// Saves all points and the state that decides the next ones.
   void save(SnapshotWriter& writer) const;
-  /// With the solids where they were when it was saved.
+  /// Restores them; the solids must have the poses at which they were saved.
   void restore(SnapshotReader& reader);
 
-  /// The pairs that solid `a`, which moves, reports.
+  /// Returns the pairs that a moving solid reports.
   std::span<SolidPair> pairs_of(std::uint32_t solid) { return moving_[place_[solid]].pairs; }
   std::span<const SolidPair> pairs_of(std::uint32_t solid) const { return moving_[place_[solid]].pairs; }
 
  private:
-  static constexpr double most_places = 64.0;  // where one fast solid is looked for on its way
+  static constexpr double most_places = 64.0;  // most sampled positions of one fast solid
   static constexpr std::uint32_t nowhere = 0xffffffffu;
-  struct Moving {                    // what a solid that moves has more than others
+  struct Moving {                    // additional data of a moving solid
     std::vector<SolidPair> pairs{};  // ascending b
     Eigen::Vector3d way_W = Eigen::Vector3d::Zero();
     bool is_asleep = false;
@@ -93,9 +95,9 @@ class Collision {
   void find_pairs(std::uint32_t solid, std::span<const std::uint32_t> near);
   void find_contact(SolidPair& pair);
   void find_contact_on_the_way(SolidPair& pair);
-  /// Where on its way a solid first touches another one.
+  /// The point on its way at which a solid first touches another one.
   struct Touch {
-    double share = 1.0;  // of the way
+    double share = 1.0;  // fraction of the way
     ContactPoints points;
   };
   Touch first_touch(std::uint32_t solid, std::uint32_t other, const Eigen::Vector3d& way_W) const;
@@ -105,7 +107,7 @@ class Collision {
   const geometry::Scene& scene_;
   std::vector<std::shared_ptr<const BulletShape>> shapes_;
   MayTouch may_touch_;
-  std::vector<std::uint32_t> place_;  // by solid, in moving_; `nowhere`: it does not move
+  std::vector<std::uint32_t> place_;  // by solid, index in moving_; `nowhere`: does not move
   std::vector<Moving> moving_;
 };
 

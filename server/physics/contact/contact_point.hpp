@@ -7,19 +7,19 @@
 
 namespace cohort::physics {
 
-/// Where two solids touch, or are about to.
+/// A point at which two solids touch or are about to.
 struct ContactPoint {
   Eigen::Vector3d position_W = Eigen::Vector3d::Zero();  ///< halfway between the surfaces
   Eigen::Vector3d normal_W = Eigen::Vector3d::Zero();    ///< unit, from b towards a
-  double gap = 0.0;                                      ///< [m], negative: they overlap
+  double gap = 0.0;                                      ///< [m]; negative if they overlap
 
-  // What the solver keeps from step to step: impulses along the normal and two tangents [N s], and against rolling
-  // about the tangents and spinning about the normal [N m s].
+  // The solver keeps these impulses between steps for warm starting: along the normal and two tangents [N s], against
+  // rolling about the tangents and against spinning [N m s].
   std::array<double, 3> impulse{};
   std::array<double, 2> rolling_impulse{};
   double spinning_impulse = 0.0;
 
-  /// Calls `visit` for each number, always in the same order: one of core/state_visitors.hpp.
+  /// Calls `visit`, one of core/state_visitors.hpp, for each number, always in the same order.
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit) {
     for (int i = 0; i < 3; ++i) visit(self.position_W[i]);
@@ -31,14 +31,14 @@ struct ContactPoint {
   }
 };
 
-/// The points of one pair of solids; four hold any face on any other.
+/// The contact points of one pair of solids; four support any face on any other.
 struct ContactPoints {
   static constexpr int most = 4;
 
   std::array<ContactPoint, most> points;
   int count = 0;
-  /// Along which the solver has laid the first tangent of each, of a belt its axis; zero: anywhere. Told anew in every
-  /// step.
+  /// The direction of the first tangent of each point in the solver (the axis of a belt), or zero if it is arbitrary.
+  /// Set again in every step.
   Eigen::Vector3d friction_direction_W = Eigen::Vector3d::Zero();
 
   void add(const Eigen::Vector3d& position_W, const Eigen::Vector3d& normal_W, double gap) {

@@ -10,26 +10,26 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double almost_parallel = 0.97;  // cosine of the greatest angle between the axes
-constexpr double one_point = 1e-3;        // a common stretch shorter than this is one point [m]
+constexpr double one_point = 1e-3;        // a common interval shorter than this gives one point [m]
 
-// Where a and b overlap along the axis.
+// The interval in which a and b overlap along the axis.
 struct Stretch {
   double low;
   double high;
   double length() const { return high - low; }
 };
 
-// A point of the section across the axis, at one height.
+// A contact point of the cross-section at one height.
 struct SectionContact {
   Vector3d surface_W;  // on b
   Vector3d normal_W;
   double gap;
 };
 
-// What is left to do once the section is known at both ends of the stretch.
+// Adds the points once the section is known at both ends of the interval.
 bool take_ends(const Stretch& stretch, const SectionContact& low, const SectionContact& high, double margin,
                ContactPoints& found) {
-  // Deeper sideways than lengthways: one stands on the other.
+  // The overlap is deeper sideways than along the axis: one shape stands on the other.
   if (std::min(low.gap, high.gap) < -stretch.length()) return false;
   if (stretch.length() < one_point) {
     if (low.gap < margin) found.add(low.surface_W + 0.5 * low.gap * low.normal_W, low.normal_W, low.gap);
@@ -54,14 +54,14 @@ bool find_side_contact(const description::Cylinder& a, const Pose& X_WA, const d
   if (cosine < almost_parallel) return false;
 
   const Vector3d axis = (axis_a + axis_b).normalized();
-  const double centre = axis.dot(X_WA.position - X_WB.position);  // of a, from b's
+  const double centre = axis.dot(X_WA.position - X_WB.position);  // position of a's centre relative to b's
   const Stretch stretch{std::max(centre - 0.5 * a.length, -0.5 * b.length),
                         std::min(centre + 0.5 * a.length, 0.5 * b.length)};
   const double rim_rise = std::max(a.radius, b.radius) * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   if (stretch.length() < -(margin + rim_rise)) return true;
   if (stretch.length() <= rim_rise) return false;
 
-  const double along = axis.dot(axis_a);  // the same of axis_b
+  const double along = axis.dot(axis_a);  // axis.dot(axis_b) is the same
   const auto section = [&](double height) {
     const Vector3d on_b = X_WB.position + height / along * axis_b;
     const Vector3d offset = X_WA.position + (height - centre) / along * axis_a - on_b;
@@ -100,7 +100,7 @@ bool find_side_contact(const description::Cylinder& a, const Pose& X_WA, const d
     double distance = normal.norm();
     if (distance > 0.0) {
       normal /= distance;
-    } else {  // the cylinder's axis is inside: out through the nearest side
+    } else {  // the cylinder's axis is inside the box: use the nearest side
       Vector3d depth = half - point.cwiseAbs();
       depth[up] = half.sum();
       int side = 0;

@@ -5,11 +5,11 @@
 
 namespace cohort::physics {
 
-/// A point of contact may move this far from one step to the next and still be the same [m].
+/// A contact point that moves less than this between two steps counts as the same point [m].
 inline constexpr double same_point = 0.01;
 
-/// Calls `take_over(old, point)` for each point of `now` that has one of the last step near it: the nearest that is
-/// left. Whose corner a point is may change by rounding; where it is does not.
+/// Calls `take_over(old, point)` for each point of `now` near a point of the last step: the nearest one not yet taken.
+/// Points are matched by position, because rounding may change which corner a point belongs to.
 template <class Points, class TakeOver>
 void match_points(const Points& before, Points& now, TakeOver&& take_over) {
   std::array<bool, Points::most> taken{};

@@ -36,8 +36,8 @@ void BiasForces::find(const double* velocities, const Vector3d& gravity, double*
   }
 }
 
-// Velocities and, with the joints unaccelerated, accelerations from the root to the leaves, and the force that this
-// takes of each segment. Gravity is an acceleration of the world upwards.
+// Computes velocities, accelerations at zero joint acceleration, and the force that each segment needs for them, from
+// the root to the leaves. Gravity is modelled as an upward acceleration of the world.
 void BiasForces::move_outwards(const double* velocities, const Vector3d& gravity) {
   const Spatial resting{Vector3d::Zero(), Vector3d::Zero()};
   const Spatial world{Vector3d::Zero(), -gravity};
@@ -49,7 +49,7 @@ void BiasForces::move_outwards(const double* velocities, const Vector3d& gravity
 
     if (segment.motion == Motion::free) {
       motion.velocity = {{velocities[0], velocities[1], velocities[2]}, {velocities[3], velocities[4], velocities[5]}};
-      // The reference moves along: where its own acceleration is zero, that of the space around it is not.
+      // The reference point moves with the root: where its own acceleration is zero, the spatial acceleration is not.
       motion.acceleration.linear -= motion.velocity.angular.cross(motion.velocity.linear);
     } else {
       Spatial joint = resting;

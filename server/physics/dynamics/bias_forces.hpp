@@ -7,25 +7,27 @@
 
 namespace cohort::physics {
 
-/// What the motion of a body and gravity take of each dof if nothing accelerates: recursive Newton-Euler (Featherstone,
-/// "Rigid body dynamics algorithms", 2008, chapter 5), in world axes about the body's reference point.
+/// Computes the bias forces of a body: the generalised forces that its motion and gravity require at zero acceleration.
+/// Recursive Newton-Euler algorithm (Featherstone, "Rigid body dynamics algorithms", 2008, chapter 5), in world axes
+/// about the body's reference point.
 ///
-/// One object serves many bodies one after the other; it keeps its memory.
+/// One object serves many bodies one after the other and reuses its memory.
 class BiasForces {
  public:
-  /// Of one segment, about the reference.
+  /// The inertia of one segment about the reference point.
   struct SpatialInertia {
     Eigen::Matrix3d inertia;  ///< [kg m^2]
     Eigen::Vector3d moment;   ///< mass times the centre's offset from the reference [kg m]
     double mass = 0.0;        ///< [kg]
   };
 
-  /// For where the segments of `body` are. `axes`: its, which must last as long as the rest is used.
+  /// Prepares for the present segment poses of `body`. `axes` are its joint axes and must outlive the use of this
+  /// object.
   void set_up(const BodyMotion& body, const std::vector<Spatial>& axes);
   const std::vector<SpatialInertia>& inertias() const { return inertias_; }  ///< by segment
 
-  /// For velocities, under `gravity` [m/s^2]: the generalised force, by dof [N] or [N m]. The gyroscopic torque of a
-  /// body on its own is not in it: how that turns is left to `integrate`.
+  /// Computes the generalised bias force by dof [N] or [N m] for these velocities under `gravity` [m/s^2]. The
+  /// gyroscopic torque of a free rigid body is not included: `integrate` handles its rotation.
   void find(const double* velocities, const Eigen::Vector3d& gravity, double* forces);
 
  private:

@@ -37,7 +37,7 @@ Twist BodyMotion::link_twist(std::size_t link) const {
 
 Twist BodyMotion::segment_twist(int of_segment, const Eigen::Vector3d& point_W) const {
   Twist twist{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  // From the segment to the root: each joint adds what it does to the point.
+  // Sum the velocity from the segment up to the root: each joint adds its contribution at the point.
   for (int s = of_segment; s >= 0; s = mechanism_->segments()[static_cast<std::size_t>(s)].parent) {
     const Segment& segment = mechanism_->segments()[static_cast<std::size_t>(s)];
     const Pose& X_WS = segment_pose(s);

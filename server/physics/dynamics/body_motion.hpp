@@ -12,49 +12,50 @@
 
 namespace cohort::physics {
 
-/// Where one instance of a model is and how it moves: its state, and the poses that follow from it. integration.hpp
-/// moves it on.
+/// The state of one instance of a model (pose and velocity), and the poses that follow from it. integration.hpp
+/// advances it.
 class BodyMotion {
  public:
-  /// The mechanism is shared and must outlive this; X_WM places the model with all its joints at zero.
+  /// Places the model at X_WM with all its joints at zero. The mechanism is shared and must outlive this.
   BodyMotion(const Mechanism& mechanism, description::Dynamics dynamics, const Pose& X_WM);
   BodyMotion(const BodyMotion&) = delete;
   BodyMotion& operator=(const BodyMotion&) = delete;
 
   const Mechanism& mechanism() const { return *mechanism_; }
-  /// What has the state and its dynamics, nullptr if they are our own.
+  /// Returns Bullet's body that holds the state and computes the dynamics, or nullptr if the dynamics are Cohort's own.
   BulletBody* bullet() const { return bullet_.get(); }
 
-  // The state: what decides how the body goes on.
-  /// Call `update_poses` after changes of the root or of coordinates.
+  // Returns the state, which determines the further motion of the body. Call `update_poses` after changes of the root
+  // or of coordinates.
   BodyState& state() { return state_; }
   const double* velocities() const { return state_.velocities(); }
   double coordinate(const Dof& dof) const { return *state_.coordinates(dof.coordinate); }
-  /// Where the spatial velocities of this body are taken: the centre of mass of the root segment, or the origin of a
-  /// root that is tied to the world [m].
+  /// Returns the reference point of this body's spatial velocities [m]: the centre of mass of the root segment, or the
+  /// origin of a root that is anchored to the world.
   Eigen::Vector3d reference() const { return state_.reference(); }
 
-  /// X_WM where it was placed: what joints to the world hold on to.
+  /// Returns X_WM as the model was placed: joints to the world are anchored there.
   const Pose& model_pose() const { return X_WM_; }
   const std::vector<Pose>& segment_poses() const { return X_WS_; }
   const Pose& segment_pose(int segment) const { return X_WS_[static_cast<std::size_t>(segment)]; }
   Pose link_pose(std::size_t link) const;  ///< X_WL
   Twist link_twist(std::size_t link) const;
-  /// Returns the velocity of the segment at a point.
+  /// Returns the velocity of the segment's point at `point_W`.
   Twist segment_twist(int segment, const Eigen::Vector3d& point_W) const;
-  /// No point within `reach` of all joints it hangs on, and of the reference, moves faster [m/s].
+  /// Returns an upper bound on the speed [m/s] of the body's points. It holds for points within `reach` of the
+  /// reference point and of all joints between the point and the root.
   double greatest_speed(double reach) const;
   double joint_position(std::size_t joint) const;
   double joint_velocity(std::size_t joint) const;
 
-  /// Puts the model at X_WM, at rest, with its joints as they are.
+  /// Places the model at X_WM at rest, with its joints unchanged.
   void place(const Pose& X_WM);
-  /// Puts a body whose root is free elsewhere, as it is and moves.
+  /// Translates a body with a free root; orientation and velocities stay the same.
   void move(const Eigen::Vector3d& way_W) {
     state_.set_reference(reference() + way_W);
     update_poses();
   }
-  /// All velocities become zero.
+  /// Sets all velocities to zero.
   void stop() { std::fill_n(state_.velocities(), mechanism_->dof_count(), 0.0); }
   void set_root_twist(const Twist& twist);
   void set_joint_state(std::size_t joint, std::span<const double> coordinates, std::span<const double> velocities);
@@ -64,12 +65,12 @@ class BodyMotion {
   static void visit_state(Self& self, Visit&& visit) {
     BodyState::visit(self.state_, visit);
   }
-  /// After the state was changed through `state` or `visit_state`.
+  /// Updates the poses after the state was changed through `state` or `visit_state`.
   void update_poses();
 
  private:
   const Mechanism* mechanism_;
-  Pose X_WM_;  // of a root that is tied to the world
+  Pose X_WM_;  // pose of a root that is anchored to the world
   std::unique_ptr<BulletBody> bullet_;
   BodyState state_;
   std::vector<Pose> X_WS_;  // follow from the state

@@ -27,9 +27,10 @@ void Equations::set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, d
   for (int i = 0; i < size_; ++i) velocity_[at(i)] += body.velocities()[i];
 }
 
-// What was found is the change by the bias forces of the beginning of the step. Those of its middle, which neither give
-// energy nor take any, are others by half the change times their growth; and so are they for all that impulses change.
-// They are quadratic in the velocities: half the difference between one more and one less of a velocity is the growth.
+// Replaces the bias forces of the beginning of the step by those of its middle, which neither add nor remove energy.
+// The two differ by half the velocity change times the derivative of the bias force; this also holds for changes by
+// impulses. The bias force is quadratic in the velocities, so that the central difference with steps of one is the
+// exact derivative.
 void Equations::take_bias_of_the_middle(double step) {
   if (!is_inverted_) {
     inverse_.assign(at(size_ * stride_), 0.0);
@@ -63,7 +64,8 @@ void Equations::take_bias_of_the_middle(double step) {
   for (int i = 0; i < size_; ++i) middle_.solve(inverse_.data() + i * stride_);
 }
 
-// What dampers and springs do, of which the part that comes from how they move in this step resists like inertia.
+// Computes the efforts of dampers and springs. The part that depends on the motion within this step acts like added
+// inertia.
 void Equations::find_efforts(double step) {
   efforts_.assign(at(size_), 0.0);
   added_inertia_.assign(at(size_), 0.0);
@@ -96,9 +98,9 @@ void Equations::solve_by_mass_matrix(const Eigen::Vector3d& gravity, double step
   matrix_.invert(inverse_.data());
 }
 
-// Bullet knows nothing of the added inertia: each of it changes the inverse by a matrix of rank one (Sherman and
+// Bullet does not know the added inertia; each term of it is a rank-one update of the inverse. Source: Sherman and
 // Morrison, "Adjustment of an inverse matrix corresponding to a change in one element of a given matrix", Annals of
-// Mathematical Statistics 21, 1950).
+// Mathematical Statistics 21, 1950.
 void Equations::solve_by_bullet(const Eigen::Vector3d& gravity, double step) {
   inverse_.assign(at(size_ * stride_), 0.0);
   is_inverted_ = true;

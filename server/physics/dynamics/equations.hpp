@@ -10,50 +10,51 @@
 
 namespace cohort::physics {
 
-/// The equations of motion of one body over one step: its velocities without any impulse, and how an impulse
-/// changes them, by the dynamics that the body has: Bullet's, or our own mass matrix. Damping and springs of the joints
-/// are implicit: they are part of the inertia, and so stable at any stiffness; so is what the rotors of geared motors
-/// resist (Featherstone, "Rigid body dynamics algorithms", 2008, chapter 9.6). Bias forces are those of the beginning
-/// of the step or, where something spins fast, of its middle by the linearly implicit midpoint rule.
+/// The equations of motion of one body over one step: its velocities without any impulse, and how an impulse changes
+/// them. They use the dynamics that the body has: Bullet's, or Cohort's own mass matrix. Damping and springs of joints
+/// are integrated implicitly: they are part of the inertia, and so stable at any stiffness. The rotor inertia of geared
+/// motors is part of it too (Featherstone, "Rigid body dynamics algorithms", 2008, chapter 9.6). Bias forces are taken
+/// at the beginning of the step. If a part spins fast, they are taken at its middle instead (linearly implicit midpoint
+/// rule).
 ///
-/// One object serves many bodies one after the other; it keeps its memory.
+/// One object serves many bodies one after the other and reuses its memory.
 class Equations {
  public:
-  /// For the present state of `body`, under `gravity` [m/s^2], over `step` [s]. `is_held`: whether
-  /// something else touches or holds it.
+  /// Prepares for the present state of `body` under `gravity` [m/s^2] over `step` [s]. `is_held`: whether anything else
+  /// touches or holds the body.
   void set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, double step, bool is_held);
 
   const BodyMotion& body() const { return *body_; }
   const Mechanism& mechanism() const { return *mechanism_; }
   int size() const { return size_; }                 ///< degrees of freedom
-  std::ptrdiff_t stride() const { return stride_; }  ///< doubles of every vector below, zero beyond `size`
+  std::ptrdiff_t stride() const { return stride_; }  ///< length of every vector below, zero beyond `size`
 
-  /// Whether an impulse along one dof changes another as much as the other way round: not where something spins so fast
-  /// that its gyroscopic torques are taken in the middle of the step.
+  /// Returns whether the response matrix is symmetric. It is not if a part spins so fast that its gyroscopic torques
+  /// are taken at the middle of the step.
   bool is_symmetric() const { return is_symmetric_; }
 
-  /// The velocities: at first without impulses, then as the solver changes them.
+  /// Returns the velocities: without impulses at first, then as the solver changes them.
   double* velocity() { return velocity_.data(); }
   const double* velocity() const { return velocity_.data(); }
 
   /// Adds to `jacobian` the generalised force of a unit force along `direction_W` at `point_W` of a segment.
   void add_force(int segment, const Eigen::Vector3d& point_W, const Eigen::Vector3d& direction_W,
                  double* jacobian) const;
-  /// The same of a unit torque.
+  /// Adds to `jacobian` the generalised force of a unit torque.
   void add_torque(int segment, const Eigen::Vector3d& direction_W, double* jacobian) const;
   /// Changes the velocities by an impulse at `point_W` of a segment and an angular impulse on it [N s, N m s].
   void push(int segment, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
             const Eigen::Vector3d& angular_impulse_W);
-  /// What such pushes add up to, since `set_up`: their impulse, and its moment about the body's reference.
+  /// Returns the sum of these pushes since `set_up`: their impulse, and its moment about the body's reference point.
   const Spatial& pushed() const { return pushed_; }
-  /// Counts a push among them whose change of the velocities the caller has made.
+  /// Adds to `pushed` a push for which the caller has already changed the velocities.
   void count_push(const Eigen::Vector3d& point_W, const Spatial& impulse_W) {
     pushed_.angular += impulse_W.angular + (point_W - body_->reference()).cross(impulse_W.linear);
     pushed_.linear += impulse_W.linear;
   }
   /// Changes the velocities by an impulse along one dof of a joint.
   void push_dof(int dof, double impulse);
-  /// `response`: the change of the velocities by the generalised impulse `jacobian`.
+  /// Computes into `response` the change of the velocities by the generalised impulse `jacobian`.
   void respond(const double* jacobian, double* response) const;
 
  private:
@@ -68,14 +69,14 @@ class Equations {
   int size_ = 0;
   std::ptrdiff_t stride_ = 0;
   std::vector<Spatial> axes_;          // by dof
-  std::vector<double> efforts_;        // of dampers and springs, by dof
-  std::vector<double> added_inertia_;  // by them and by rotors, by dof
+  std::vector<double> efforts_;        // efforts of dampers and springs, by dof
+  std::vector<double> added_inertia_;  // from dampers, springs and rotors, by dof
   MassMatrix matrix_;
   BiasForces bias_;
   LinearSystem middle_;
   bool is_symmetric_ = true;
   std::vector<double> inverse_;  // size_ x stride_: by dof, the response to a unit impulse along it
-  bool is_inverted_ = false;     // whether inverse_ is of this body
+  bool is_inverted_ = false;     // true if inverse_ belongs to this body
   std::vector<double> velocity_;
   std::vector<double> response_;
   Spatial pushed_;

@@ -9,15 +9,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Torques that turn something at this rate [rad/s], taken as they are at the beginning of steps, change its energy by
-// the rate's square times the step in each second. Less than this is slow [1/s].
+// Torques that precess a part at `rate` [rad/s], evaluated at the beginning of each step, change its energy by the
+// factor rate^2 * step per second. A factor below this counts as slow [1/s].
 constexpr double slow = 0.2;
-// The same of a ball joint of what nothing else touches or holds: nothing hides it there.
+// The same limit for a ball joint of a body that nothing else touches or holds: no friction hides the error there.
 constexpr double slow_ball = 0.002;
 
 bool is_fast(double rate, double step, double limit = slow) { return step * rate * rate > limit; }
 
-// Whether it resists alike in all directions about its joint, and carries nothing: a caster.
+// Returns whether the segment has the same inertia about every axis through its joint and carries no other segment,
+// like a caster.
 bool is_round(const std::vector<Segment>& segments, std::size_t s) {
   constexpr double tolerance = 1e-6;
   const Segment& segment = segments[s];
@@ -28,8 +29,8 @@ bool is_round(const std::vector<Segment>& segments, std::size_t s) {
          std::ranges::none_of(segments, [&](const Segment& other) { return other.parent == static_cast<int>(s); });
 }
 
-// A ball joint's velocities turn with its segment, and seem to be turned by that; of what is round only as far as what
-// carries it turns.
+// Returns whether a ball joint turns too fast. Its velocities are in axes of its segment and seem to turn with that;
+// for a round segment only the rotation of its parent counts.
 bool has_fast_ball(const BodyMotion& body, double step, bool is_held) {
   const std::vector<Segment>& segments = body.mechanism().segments();
   const double limit = is_held ? slow : slow_ball;
@@ -46,12 +47,12 @@ bool has_fast_ball(const BodyMotion& body, double step, bool is_held) {
   return false;
 }
 
-// No segment turns faster [rad/s].
+// Returns an upper bound on the angular speed of every segment [rad/s].
 double bound_of_turning(const BodyMotion& body) {
   double turn = 0.0;
   for (const Segment& segment : body.mechanism().segments()) {
     if (segment.motion == Motion::prismatic) continue;
-    const int turning = std::min(segment.dofs, 3);  // of a free root the first three
+    const int turning = std::min(segment.dofs, 3);  // a free root: the first three
     for (int i = segment.first_dof; i < segment.first_dof + turning; ++i) turn += std::abs(body.velocities()[i]);
   }
   return turn;
@@ -59,9 +60,10 @@ double bound_of_turning(const BodyMotion& body) {
 
 }  // namespace
 
-// Of each joint what spins beyond it, against its own segment and across its axis, by what the segment resists with.
+// Compares, for each joint, the angular momentum of the parts beyond it with the inertia of its segment. Only momentum
+// relative to the segment and perpendicular to the joint's axis counts.
 bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_held) {
-  // How a body on its own turns is left to `integrate`. What closes a loop wants all rows solved at once, and for that
+  // `integrate` handles the rotation of a free rigid body. A loop joint needs all rows solved at once, and for that
   // symmetric equations.
   const bool has_loops = !body.mechanism().model().loop_joints.empty();
   if (body.mechanism().is_free_body() || has_loops) return false;
@@ -70,8 +72,8 @@ bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_h
   const std::vector<Segment>& segments = body.mechanism().segments();
   struct Turning {
     Vector3d angular_W;
-    Eigen::Matrix3d inertia_W;    // of all beyond, each about its own centre
-    Vector3d angular_momentum_W;  // likewise
+    Eigen::Matrix3d inertia_W;    // sum over the segments beyond, each about its own centre
+    Vector3d angular_momentum_W;  // the same sum
   };
   std::vector<Turning> turning(segments.size());
   for (std::size_t s = 0; s < segments.size(); ++s) {

@@ -4,9 +4,9 @@
 
 namespace cohort::physics {
 
-/// Whether something in a body spins so fast while it is turned, or turns on a ball joint, that torques which a step
-/// [s] takes as they are at its beginning would give it energy without end, or take it. Of what is held, friction
-/// takes more than slow turning gives.
+/// Returns whether a part of a body spins so fast while it is turned, or turns so fast on a ball joint, that explicit
+/// gyroscopic torques would be unstable. Evaluated at the beginning of each `step` [s], they would add or remove energy
+/// without bound. For a body that is held, friction removes more energy than slow rotation adds.
 bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_held);
 
 }  // namespace cohort::physics

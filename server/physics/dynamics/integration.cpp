@@ -8,8 +8,8 @@
 namespace cohort::physics {
 namespace {
 
-// Keeps the angular momentum as it is while the body turns, and its energy nearly: half a step with the angular
-// velocity at its beginning, then all of it with that of the middle.
+// Rotates a free body; conserves its angular momentum exactly and its energy nearly. Half a step with the initial
+// angular velocity gives the velocity in the middle, which turns the body over the whole step.
 void turn_freely(BodyMotion& body, double step) {
   BodyState& state = body.state();
   const Eigen::Matrix3d& inertia_S = body.mechanism().segments()[0].inertia_S;
@@ -68,9 +68,10 @@ void integrate(BodyMotion& body, const double* velocities, double step) {
   body.update_poses();
 }
 
-// Keeps the momentum of the whole body as it is but for what comes from outside: the root turns and moves as the joints
-// leave it to. The angular velocity of the middle of the step turns it, as in turn_freely. With the velocities that the
-// equations foresee from the beginning of a step, a wheel that spins would make its hull swing further and further.
+// Conserves the momentum of the whole body except for external impulses: the motion of the root follows from that of
+// the joints. The angular velocity of the middle of the step turns the root, as in turn_freely. With the velocities
+// that the equations predict from the beginning of a step, a spinning wheel would make its hull swing further and
+// further.
 void fly(BodyMotion& body, const double* velocities, const Eigen::Vector3d& impulse_W,
          const Eigen::Vector3d& angular_impulse_W, const Eigen::Vector3d& gravity, double step) {
   BodyState& state = body.state();
@@ -82,7 +83,7 @@ void fly(BodyMotion& body, const double* velocities, const Eigen::Vector3d& impu
   const Eigen::Vector3d momentum_W =
       before.inertia_W * angular_W + before.joints_angular_momentum_W + angular_impulse_W - arm_W.cross(impulse_W);
   const Eigen::Vector3d velocity_W = linear_W + angular_W.cross(arm_W) + step * gravity +
-                                     (before.joints_momentum_W + impulse_W) / before.mass;  // of the centre
+                                     (before.joints_momentum_W + impulse_W) / before.mass;  // centre of mass
 
   std::copy_n(velocities, body.mechanism().dof_count(), v);
   const Eigen::Quaterniond rotation = state.root_rotation();

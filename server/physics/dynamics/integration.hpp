@@ -4,10 +4,10 @@
 
 namespace cohort::physics {
 
-/// Takes the velocities that the solver found and moves the body by them over `step` [s].
+/// Moves the body over `step` [s] with the velocities that the solver found.
 void integrate(BodyMotion& body, const double* velocities, double step);
-/// The same of a body of several segments that touches nothing, which gravity [m/s^2] and an impulse from outside [N s]
-/// alone change as a whole, with the moment that it has about the reference [N m s].
+/// Moves a body of several segments that touches nothing. Only gravity [m/s^2] and an external impulse [N s], with its
+/// moment about the reference point [N m s], change its total momentum.
 void fly(BodyMotion& body, const double* velocities, const Eigen::Vector3d& impulse_W,
          const Eigen::Vector3d& angular_impulse_W, const Eigen::Vector3d& gravity, double step);
 

@@ -6,14 +6,14 @@
 
 namespace cohort::physics {
 
-/// Of a velocity or an acceleration; of a force: the torque and the force.
+/// A spatial velocity, acceleration or force; for a force, `angular` is the torque and `linear` the force.
 struct Spatial {
   Eigen::Vector3d angular;
   Eigen::Vector3d linear;
 };
 
-/// By dof, the velocity that a unit of it gives to all that hangs on it, about the body's reference point in world
-/// axes.
+/// Computes, by dof, the velocity that a unit rate gives to everything it carries, about the body's reference point in
+/// world axes.
 void find_joint_axes(const BodyMotion& body, std::vector<Spatial>& axes);
 
 }  // namespace cohort::physics

@@ -21,7 +21,7 @@ void MassMatrix::set_up(const BodyMotion& body, const std::vector<Spatial>& axes
   gather_inwards();
 }
 
-// From the leaves to the root.
+// Sums composite inertias from the leaves to the root.
 void MassMatrix::gather_inwards() {
   for (std::size_t s = composite_.size(); s-- > 0;) {
     const Segment& segment = mechanism_->segments()[s];
@@ -53,7 +53,7 @@ void MassMatrix::take_free_root(const SpatialInertia& whole) {
   m[5 * stride_ + 1] = -h.x();
 }
 
-// `beyond`: the joint's segment with all that hangs on it.
+// `beyond`: the composite inertia of the joint's segment and everything it carries.
 void MassMatrix::take_joint(int dof, const SpatialInertia& beyond) {
   const Spatial& axis = (*axes_)[at(dof)];
   const Spatial momentum{beyond.inertia * axis.angular + beyond.moment.cross(axis.linear),
@@ -84,11 +84,11 @@ void MassMatrix::factorise() {
       }
       row_k[i] = factor;
     }
-    row_k[k] = inverse;  // the solver multiplies
+    row_k[k] = inverse;  // stored as inverse: `solve` multiplies
   }
 }
 
-// From the factors: inv(L) inv(D) inv(L)', row by row.
+// The inverse is computed from the factors, inv(L) inv(D) inv(L)', row by row.
 bool MassMatrix::is_small() const { return size_ <= most_inverted; }
 
 void MassMatrix::invert(double* inverse) const {

@@ -6,27 +6,27 @@
 
 namespace cohort::physics {
 
-/// The mass matrix of one body, by composite rigid bodies, and its factors L'DL along the branches of the tree
-/// (Featherstone, "Rigid body dynamics algorithms", 2008, chapters 6 and 8.6), in world axes about the body's reference
+/// The mass matrix of one body, by the composite-rigid-body algorithm, and its branch-induced sparse factorisation L'DL
+/// (Featherstone, "Rigid body dynamics algorithms", 2008, chapters 6 and 8.6). In world axes about the body's reference
 /// point.
 ///
-/// One object serves many bodies one after the other; it keeps its memory.
+/// One object serves many bodies one after the other and reuses its memory.
 class MassMatrix {
  public:
   using SpatialInertia = BiasForces::SpatialInertia;
 
-  /// `inertias`: of the segments as they are.
+  /// Computes the matrix; `inertias` are those of the segments at their present poses.
   void set_up(const BodyMotion& body, const std::vector<Spatial>& axes, const std::vector<SpatialInertia>& inertias);
-  /// Adds to what one dof resists with.
+  /// Adds to the inertia of one dof.
   void add_inertia(int dof, double inertia) { matrix_[static_cast<std::size_t>(dof * (stride_ + 1))] += inertia; }
 
-  /// After all inertia was added, before the next two.
+  /// Factorises the matrix. Call it after all inertia was added and before `solve` and `invert`.
   void factorise();
-  /// In place: the solution of the matrix times it = `x`.
+  /// Solves matrix * y = x in place.
   void solve(double* x) const;
-  /// Whether the inverse is cheaper to have than to do without.
+  /// Returns whether the matrix is so small that using its inverse is cheaper than solving.
   bool is_small() const;
-  /// `inverse`: as many rows and columns as there are dofs, each row `stride` after the one before.
+  /// Computes the inverse: one row and column per dof, rows `stride` apart.
   void invert(double* inverse) const;
 
  private:
@@ -38,7 +38,7 @@ class MassMatrix {
   const std::vector<Spatial>* axes_ = nullptr;  // by dof
   int size_ = 0;
   std::ptrdiff_t stride_ = 0;
-  std::vector<SpatialInertia> composite_;  // by segment, with all that hangs on it
+  std::vector<SpatialInertia> composite_;  // by segment, with everything it carries
   std::vector<double> matrix_;             // size_ x stride_, lower triangle: the mass matrix, then its factors
 };
 

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 WholeBody::WholeBody(const BodyMotion& body) {
   const std::vector<Segment>& segments = body.mechanism().segments();
-  struct SegmentMotion {  // against the root: of the segment's origin
+  struct SegmentMotion {  // relative to the root, at the segment's origin
     Vector3d angular_W = Vector3d::Zero();
     Vector3d linear_W = Vector3d::Zero();
     Vector3d centre_W = Vector3d::Zero();

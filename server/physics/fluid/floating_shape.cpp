@@ -17,7 +17,7 @@ constexpr double pi = std::numbers::pi;
 
 using Points = std::vector<Vector3d>;
 
-// A ring of points around the z axis.
+// Adds a ring of points around the z axis.
 void add_ring(double radius, double z, Points& points) {
   constexpr int sides = 64;
   for (int i = 0; i < sides; ++i) {
@@ -39,7 +39,7 @@ Points points_of(const description::Cylinder& cylinder) {
   return points;
 }
 Points points_of(const description::Capsule& capsule) {
-  constexpr int rings = 12;  // of each end
+  constexpr int rings = 12;  // on each end cap
   Points points;
   for (const double end : {-1.0, 1.0}) {
     for (int i = 0; i < rings; ++i) {
@@ -52,8 +52,9 @@ Points points_of(const description::Capsule& capsule) {
   return points;
 }
 
-// The sums that make the submerged part, about a point O of the surface: tetrahedra from O to the triangles below, of
-// which those to the section itself are flat, and triangles from O to the edges of the section.
+// Sums over the submerged part about a point O of the water surface. The volume is split into tetrahedra from O to the
+// triangles below the surface; those to the section itself are flat. The section is split into triangles from O to its
+// edges.
 struct Sums {
   double volume = 0.0;
   Vector3d first = Vector3d::Zero();  // ∫ r dV
@@ -73,7 +74,7 @@ struct Sums {
     const Eigen::Vector2d a = p.head<2>(), b = q.head<2>();
     area_second += part / 12.0 * ((a + b) * (a + b).transpose() + a * a.transpose() + b * b.transpose());
   }
-  // Corners counter-clockwise seen from outside; what is above z = 0 is cut off.
+  // Adds the part of a triangle below z = 0. Corners are counter-clockwise seen from outside.
   void add_cut(const std::array<Vector3d, 3>& corners) {
     std::array<Vector3d, 4> kept;
     std::size_t count = 0;
@@ -124,7 +125,7 @@ void FloatingShape::take(const TriangleMesh& polyhedron) {
   for (const Vector3d& vertex : polyhedron_.vertices) reach_ = std::max(reach_, vertex.norm());
 }
 
-// Made wider, until it has the volume.
+// Takes the polyhedron, widened until it has this volume.
 void FloatingShape::take_round(const TriangleMesh& polyhedron, double volume) {
   take(polyhedron);
   const double wider = std::sqrt(volume / whole_volume_);
@@ -145,7 +146,8 @@ SubmergedPart FloatingShape::below(double level, const Pose& X_WC) const {
   return radii_.x() > 0.0 ? ellipsoid_below(level, X_WC) : polyhedron_below(level, X_WC);
 }
 
-// The ellipsoid is E times the unit ball, in which the surface is at a height t along a unit vector.
+// The ellipsoid is E times the unit ball. In the frame of that ball, the water surface is a plane at height t along a
+// unit vector.
 SubmergedPart FloatingShape::ellipsoid_below(double level, const Pose& X_WC) const {
   const Eigen::Matrix3d E = X_WC.orientation.toRotationMatrix() * radii_.asDiagonal();
   const Vector3d upwards = E.row(2);
@@ -156,7 +158,7 @@ SubmergedPart FloatingShape::ellipsoid_below(double level, const Pose& X_WC) con
   const double cap = pi / 3.0 * (1.0 + t) * (1.0 + t) * (2.0 - t);
   if (cap <= 0.0) return part;
   const double stretch = radii_.prod();
-  const double disc = 1.0 - t * t;  // the square of the section's radius
+  const double disc = 1.0 - t * t;  // squared radius of the section
   part.volume = stretch * cap;
   part.centre_W = X_WC.position + E * (-0.25 * pi * disc * disc / cap * m);
   part.area = stretch / half_height * pi * disc;

@@ -59,7 +59,7 @@ void FluidBody::apply(Equations& equations, const Media& media, double step) {
   for (const FluidModel::Windage& windage : model_->windages) blow(windage, equations, media, step);
 }
 
-// The motor is of first order, which is exact for a target that stays for a step.
+// The motor is a first-order system, integrated exactly for a target that is constant over the step.
 void FluidBody::push_by_rotor(std::size_t index, Equations& equations, const Media& media, double step) {
   const FluidModel::RotorPlace& placed = model_->rotors[index];
   const description::Thruster& rotor = *placed.thruster;
@@ -75,11 +75,11 @@ void FluidBody::push_by_rotor(std::size_t index, Equations& equations, const Med
        {rotor.reaction_sense() * step * rotor.moment_constant * thrust * axis_W, step * thrust * axis_W}, equations);
 }
 
-// What the section at the surface adds to the force as the body sinks and leans during the step. The axes about which
-// it leans are those of the section, so that each is a damper by itself.
+// Applies the change of buoyancy as the body sinks and tilts during the step. It tilts about the principal axes of the
+// section, so that each axis is an independent damper.
 void FluidBody::stiffen(const FluidModel::Float& floating, const SubmergedPart& part, const Media& media,
                         Equations& equations, double step) {
-  const double weight = -media.gravity.z() * media.water->density;  // of the water [N/m^3]
+  const double weight = -media.gravity.z() * media.water->density;  // specific weight of water [N/m^3]
   if (!(part.area > 0.0) || !(weight > 0.0)) return;
   aim(floating, part.area_centre_W, force_along(Vector3d::UnitZ()), equations);
   damp_along(0.0, step * weight * part.area, 0.0, equations, step);
@@ -109,9 +109,10 @@ void FluidBody::drag_rotor(std::size_t index, Equations& equations, const Media&
   }
 }
 
-// Upwards, then forwards. Upwards the force is taken as that of a damper towards the velocity without lift, or else
-// towards rest, which it then never passes: of a fin that is not stalled it is one. Lift does no work, and drag takes
-// energy, of the motion through the fluid: so forwards it gives back no more than it took upwards.
+// Applies lift and drag of a fin, first along its upward axis, then along its forward axis. Upwards, the force acts
+// like a damper towards the velocity of zero lift, or towards rest if it points that way; it never overshoots this
+// velocity. For a fin that is not stalled, the force is such a damper. Lift does no work and drag removes energy, both
+// of the motion relative to the fluid. So the forward impulse returns at most the energy that the upward one removed.
 void FluidBody::push_fin(const FluidModel::FinPlace& placed, Equations& equations, const Media& media, double step) {
   const Here at = here(placed, equations, media);
   const Eigen::Matrix3d R = at.X_WP.orientation.toRotationMatrix();
@@ -192,7 +193,7 @@ double FluidBody::response(const Equations& equations) {
   return dot(jacobian_.data(), response_.data(), equations.stride());
 }
 
-// After `response`.
+// Applies an impulse in the present direction. Call `response` first.
 void FluidBody::push(double impulse, Equations& equations) {
   if (equations.size() > 0) add_scaled(impulse, response_.data(), equations.velocity(), equations.stride());
   const Spatial impulse_W{impulse * aimed_.impulse_W.angular, impulse * aimed_.impulse_W.linear};

@@ -8,33 +8,33 @@
 
 namespace cohort::physics {
 
-/// What air and water do to one body, in every step: buoyancy, rotors, fins, drag and wind. Of different bodies from
-/// different threads.
+/// Applies the forces of air and water to one body in every step: buoyancy, rotors, fins, drag and wind. Threads may
+/// work on different bodies.
 ///
-/// Buoyancy and thrust follow from where the body is and how its rotors turn, and act first. What depends on how the
-/// body moves comes after them, one direction after the other, at the velocity to which it leads itself (implicit
-/// Euler), without contacts and joints' motors: so it is stable at any step. So is buoyancy, whose change over the step
-/// by the section at the surface is a damper of this kind.
+/// Buoyancy and thrust depend on the pose of the body and the speed of its rotors, and act first. Forces that depend on
+/// the velocity follow, one direction after the other. Each is evaluated at the velocity that results from it (implicit
+/// Euler), without contacts and joint motors, and is therefore stable at any step. Buoyancy is stable too: its change
+/// over the step, given by the section at the surface, is a damper of this kind.
 class FluidBody {
  public:
   explicit FluidBody(std::shared_ptr<const FluidModel> model);
 
   /// Changes the velocities. May be called again for the same step.
   void apply(Equations& equations, const Media& media, double step);
-  /// The step is done.
+  /// Ends the step: rotors take their new velocities.
   void finish_step();
-  /// The rotors stand still, until the next step.
+  /// Stops the rotors until the next step.
   void stop();
 
-  /// Sets the velocity that a rotor goes to. Returns false: that wakes no body, as one with rotors does not sleep.
+  /// Sets the target velocity of a rotor. Returns false (no body has to wake), because a body with rotors never sleeps.
   bool set_target(const DeviceOutputs::Propeller& rotor, double velocity) {
     rotors_[rotor.index].target = velocity;
     return false;
   }
-  /// Returns what a rotor does, with the torque that it has in the fluid of its coefficients.
+  /// Returns the state of a rotor, with its torque in the fluid for which its coefficients hold.
   OutputState state(const DeviceOutputs::Propeller& rotor) const;
 
-  /// What acted in the last step, on a link at a point [N s, N m s].
+  /// An impulse on a link at a point in the last step [N s, N m s].
   struct Impulse {
     std::size_t link = 0;
     Eigen::Vector3d point_W;
@@ -57,9 +57,9 @@ class FluidBody {
   struct RotorState {
     double velocity = 0.0;  // [rad/s]
     double target = 0.0;
-    double after = 0.0;  // its velocity at the end of the present step
+    double after = 0.0;  // velocity at the end of this step
   };
-  /// A place in the present step.
+  /// The pose of a place and the medium there in this step.
   struct Here {
     Pose X_WP;
     Media::Medium medium;
@@ -78,22 +78,22 @@ class FluidBody {
   void damp(const FluidModel::DragPlace& placed, Equations& equations, const Media& media, double step);
   void blow(const FluidModel::Windage& windage, Equations& equations, const Media& media, double step);
 
-  // The direction in which what follows acts: at a point of a place along a unit force or torque.
+  // Sets the direction of the following calls: a unit force or torque at a point of a place.
   void aim(const Place& place, const Eigen::Vector3d& point_W, const Spatial& unit_W, const Equations& equations);
   double velocity(const Equations& equations) const;
   double response(const Equations& equations);
   void push(double impulse, Equations& equations);
   void push(const Place& place, const Eigen::Vector3d& point_W, const Spatial& impulse_W, Equations& equations);
-  /// Resists the velocity along it, against that of the fluid.
+  /// Applies damping along this direction, relative to the velocity of the fluid.
   void damp_along(double fluid_velocity, double linear, double quadratic, Equations& equations, double step);
 
   std::shared_ptr<const FluidModel> model_;
-  std::vector<RotorState> rotors_;  // as those of the model
+  std::vector<RotorState> rotors_;  // in the order of the model's
   std::vector<Impulse> impulses_;
 
   // Scratch memory.
   std::vector<SubmergedPart> submerged_;
-  Impulse aimed_;  // of unit size
+  Impulse aimed_;  // unit impulse
   std::vector<double> jacobian_;
   std::vector<double> response_;
 };

@@ -24,7 +24,7 @@ Eigen::Vector2d fin_force(const description::Fin& fin, double density, const Eig
 }
 
 double damping_impulse(double v, double linear, double quadratic, double response, double step) {
-  // |v'| (1 + a) + b |v'|^2 = |v|
+  // Solve |v'| (1 + a) + b |v'|^2 = |v|.
   const double a = step * response * linear;
   const double b = step * response * quadratic;
   const double speed = std::abs(v);

@@ -8,7 +8,7 @@
 
 namespace cohort::physics {
 
-/// What air and water act on in a model. Constant; shared by all bodies of the model.
+/// The places of a model on which air and water act. Immutable; shared by all bodies of the model.
 struct FluidModel {
   FluidModel(const Mechanism& mechanism, const Media& media);
   bool is_empty() const {
@@ -22,7 +22,7 @@ struct FluidModel {
     Pose X_SP;
     bool feels_wind = false;
   };
-  struct Float : Place {  // P is that of the collision
+  struct Float : Place {  // P is the frame of the collision
     FloatingShape shape;
   };
   struct RotorPlace : Place {
@@ -30,7 +30,7 @@ struct FluidModel {
   };
   struct FinPlace : Place {
     const description::Fin* fin = nullptr;
-    double no_lift = 0.0;  // its velocity upwards for each m/s forwards at which it has no lift
+    double no_lift = 0.0;  // upward velocity per forward velocity at zero lift
   };
   struct DragPlace : Place {
     const description::Drag* drag = nullptr;

@@ -16,7 +16,7 @@ struct Media {
   };
 
   bool has_water_at(const Eigen::Vector3d& p_W) const { return water && p_W.z() < water->level; }
-  /// What is there; air stands still for who does not feel the wind.
+  /// Returns the medium at a point. The velocity of air is zero if `feels_wind` is false.
   Medium at(const Eigen::Vector3d& p_W, bool feels_wind) const {
     if (has_water_at(p_W)) return {water->density, water->current};
     return {air.density, feels_wind ? air.wind : Eigen::Vector3d(Eigen::Vector3d::Zero())};

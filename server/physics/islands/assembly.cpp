@@ -10,7 +10,7 @@
 namespace cohort::physics {
 namespace {
 
-// False for velocities from which the next step would leave the numbers [m/s or rad/s].
+// Returns false for velocities so large that the next step would overflow [m/s or rad/s].
 bool is_sensible(const double* velocities, int count) {
   constexpr double senseless = 1e6;
   double sum = 0.0;
@@ -18,7 +18,7 @@ bool is_sensible(const double* velocities, int count) {
   return sum < senseless;
 }
 
-// As far as the joints may stretch it; those that slide without a limit by a metre.
+// Returns the reach of the body with its joints fully extended; a prismatic joint without a limit counts as one metre.
 double reach_of(const Member& member) {
   double reach = 0.0;
   const Mechanism& mechanism = member.multibody->mechanism();
@@ -150,13 +150,13 @@ void Assembly::set_asleep(std::uint32_t index, bool asleep) {
   for (const Part& part : members[index].parts) collision.set_asleep(part.solid, asleep);
 }
 
-// Solids of one body: only if the model says so, and not beside a joint, where they overlap by design.
+// Solids of one body collide only if the model says so, and never across a joint, where they overlap by design.
 bool Assembly::may_touch(std::uint32_t solid, std::uint32_t other) const {
   if (!anchors.moves(solid)) return false;
   const Mechanism& mechanism = members[anchors.member(solid)].multibody->mechanism();
   if (!mechanism.model().self_collide) return false;
   const auto above = [&](int segment) {
-    // Over the massless middle of a universal joint.
+    // Skip the massless middle of a universal joint.
     const auto& segments = mechanism.segments();
     int parent = segments[static_cast<std::size_t>(segment)].parent;
     while (parent >= 0 && segments[static_cast<std::size_t>(parent)].mass == 0.0)
@@ -191,14 +191,14 @@ double Assembly::look_ahead(Member& member) {
   return furthest;
 }
 
-// One look around the scene for all of a body.
+// One query of the scene serves all solids of a body.
 void Assembly::look_around(const Member& member, double furthest, std::vector<std::uint32_t>& near,
                            std::vector<std::uint32_t>& candidates) {
   Multibody& multibody = *member.multibody;
   if (member.parts.empty() && multibody.treels().empty()) return;
   geometry::Bounds around{Eigen::Vector3d::Constant(infinity), Eigen::Vector3d::Constant(-infinity)};
   for (const Part& part : member.parts) around.include(collision.region_of(part.solid));
-  if (member.is_fast) around = around.grown_by(furthest);  // others come its way
+  if (member.is_fast) around = around.grown_by(furthest);  // others may move towards it
   const Pose& X_WS = multibody.motion().segment_pose(0);
   for (const TrackRows& treel : multibody.treels()) around.include(treel.ground_region(X_WS));
   near.clear();
@@ -279,7 +279,7 @@ void Assembly::expect_sound(const Member& member) const {
   const Mechanism& mechanism = member.multibody->mechanism();
   if (!member.is_finite || !member.is_inside ||
       !is_sensible(member.multibody->motion().velocities(), mechanism.dof_count()))
-    throw SnapshotError("the snapshot has a body that moves as none can");
+    throw SnapshotError("snapshot: invalid velocities of a body");
   for (const Pose& X_WS : member.multibody->motion().segment_poses()) expect_placed(X_WS);
 }
 
@@ -298,8 +298,8 @@ bool Assembly::is_held(std::uint32_t index) {
   return is_held;
 }
 
-// A body that another one has just hit may be much faster than at the beginning of the step, from which it was foreseen
-// what it would touch. It waits before what stands in its way, and touches it in the next step.
+// A body that was just hit may be much faster than predicted at the beginning of the step, when its contacts were
+// found. It stops at the first obstacle and touches that in the next step.
 void Assembly::keep_from_passing_through(Member& member) const {
   BodyMotion& motion = member.multibody->motion();
   if (!motion.mechanism().has_free_root() || motion.mechanism().has_kinematic_root()) return;

@@ -18,50 +18,50 @@
 
 namespace cohort::physics {
 
-/// A solid of a body that moves.
+/// A solid of a moving body.
 struct Part {
   std::uint32_t solid = 0;
   int segment = 0;
   Pose X_SC;
 };
 
-/// A link that gravity does not act on: it is pushed up by its weight.
+/// A link without gravity: a force equal to its weight pushes it up.
 struct WeightlessLink {
   std::size_t link = 0;
   int segment = 0;
   double mass = 0.0;         ///< [kg]
-  Eigen::Vector3d centre_S;  ///< of mass
+  Eigen::Vector3d centre_S;  ///< centre of mass
 };
 
-/// A body that moves.
+/// A moving body.
 struct Member {
   BodyId body;
   std::unique_ptr<Multibody> multibody;
   std::vector<Part> parts;  ///< ascending solids
-  double reach = 0.0;       ///< no part's centre is further from a joint that moves it [m]
-  double furthest_unseen = std::numeric_limits<double>::infinity();  ///< the least of its parts [m]
-  bool is_fast = false;                                              ///< one of its parts is, in this step
+  double reach = 0.0;       ///< greatest distance of a part's centre from a joint that moves it [m]
+  double furthest_unseen = std::numeric_limits<double>::infinity();  ///< minimum over its parts [m]
+  bool is_fast = false;                                              ///< one of its parts is fast in this step
   bool is_active = true;
-  std::uint32_t still_steps = 0;  ///< in a row, and no more than it takes to fall asleep
+  std::uint32_t still_steps = 0;  ///< consecutive, at most as many as it takes to fall asleep
   bool is_asleep = false;
-  std::uint32_t next_asleep = 0;          ///< round all that fell asleep together, this one too
-  bool is_finite = true;                  ///< of the last step: its velocities were
-  bool is_inside = true;                  ///< of the last step: it is still in the world
-  std::unique_ptr<ForceRecord> record{};  ///< null: nobody asked for it
+  std::uint32_t next_asleep = 0;          ///< ring through all members that fell asleep together
+  bool is_finite = true;                  ///< its velocities were finite in the last step
+  bool is_inside = true;                  ///< it was inside the world after the last step
+  std::unique_ptr<ForceRecord> record{};  ///< null: not requested
   std::unique_ptr<FluidBody> fluid{};     ///< null: neither air nor water acts on it
   std::vector<WeightlessLink> weightless{};
 
   bool is_awake() const { return is_active && !is_asleep; }
 };
 
-/// What the solids of a model are made from: of each collision, links in their order.
+/// The data from which the solids of a model are created, for each collision in the order of the links.
 struct ModelParts {
   std::vector<geometry::SolidKindPtr> kinds;
   std::vector<std::shared_ptr<const BulletShape>> shapes;
 };
 
-/// The bodies of a world that move, and all that couples them to each other and to what stands still: what the rows of
-/// an island are made from. Of different members from different threads, unless a function says otherwise.
+/// The moving bodies of a world and everything that couples them to each other and to static solids: the source of the
+/// rows of an island. Threads may work on different members, unless a function says otherwise.
 struct Assembly {
   explicit Assembly(const description::World& world);
   Assembly(const Assembly&) = delete;
@@ -69,60 +69,61 @@ struct Assembly {
 
   double step;                            ///< [s]
   Eigen::Vector3d gravity;                ///< [m/s^2]
-  description::PhysicsSettings settings;  ///< with the lowest point that is meant if the world does not say
+  description::PhysicsSettings settings;  ///< with the default of `lowest` filled in
   SurfacePairs surfaces;
   geometry::Scene scene;
   Anchors anchors;
   Collision collision;
   std::vector<Member> members;
-  std::uint64_t revision = 0;  ///< changes when a member comes, goes, falls asleep or wakes
+  std::uint64_t revision = 0;  ///< changes when a member is added, removed, falls asleep or wakes
   Connections connections;
   Pushes pushes;
   Media media;
-  bool has_records = false;  ///< of any member
-  bool has_belts = false;    ///< the same
+  bool has_records = false;  ///< any member has one
+  bool has_belts = false;    ///< any member has one
   std::map<const Mechanism*, std::shared_ptr<const FluidModel>> fluid_models;
 
-  /// Takes memory for as many solids, so that there is none to spare after they were added.
+  /// Reserves memory for exactly this many solids.
   void reserve(std::size_t solids);
-  /// One thread alone. Its solids come in the order of the model's collisions.
+  /// Adds a static body; its solids follow the order of the model's collisions. One thread only.
   void add_static(BodyId body, const description::Model& model, const Pose& X_WM, const ModelParts& parts);
-  /// One thread alone. Returns the index of the member.
+  /// Adds a moving body and returns its member index. One thread only.
   std::uint32_t add_member(std::unique_ptr<Multibody> multibody, const ModelParts& parts);
-  /// From then on nothing touches it. One thread alone.
+  /// Removes a member; nothing touches it from then on. One thread only.
   void take_out(std::uint32_t member);
-  /// In the world again, as it was, but at rest if it broke or had left the world. One thread alone.
+  /// Puts a member back as it was, but at rest if its state broke or it had left the world. One thread only.
   void put_back(std::uint32_t index);
-  /// At rest at X_WM, with its joints as they are. One thread alone.
+  /// Places a member at X_WM, at rest, with its joints unchanged. One thread only.
   void place(std::uint32_t index, const Pose& X_WM);
   void place_solids_of(const Member& member);
-  /// One thread alone.
+  /// Puts a member to sleep or wakes it. One thread only.
   void set_asleep(std::uint32_t index, bool asleep);
-  /// From the next step on keeps what goes through the member's joints. One thread alone.
+  /// Records the forces through the member's joints from the next step on. One thread only.
   void record(std::uint32_t index);
-  /// Tells the records what acted on their bodies in this step; after it, before anything is released or taken out. One
-  /// thread alone.
+  /// Adds the external forces of this step to the records. Call it after the step, before anything is released or
+  /// removed. One thread only.
   void record_outside();
-  /// Tells belts what they bore in this step; as `record_outside`.
+  /// Adds the loads of this step to the belts; call it like `record_outside`.
   void load_belts();
-  /// Whether an end is on a light part of its body.
+  /// Returns whether an end is on a light part of its body.
   bool is_light(const Connection::End& end) const {
     return end.member != Anchors::nobody && members[end.member].multibody->mechanism().is_light(end.segment);
   }
-  /// X_WS of the segment that an end is on; of the world's none.
+  /// Returns X_WS of the segment that an end is on; the identity for the world.
   Pose pose_of(const Connection::End& end) const {
     return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->motion().segment_pose(end.segment);
   }
 
-  /// Finds which parts of the member are fast. Returns how far the furthest of them goes in the step [m], 0 if none is.
+  /// Determines which parts of the member are fast. Returns the greatest displacement of these parts in the step [m],
+  /// or 0 if there are none.
   double look_ahead(Member& member);
-  /// Finds what the member touches and stands on. `furthest`: that any part of any member goes. The vectors are scratch
-  /// memory.
+  /// Finds the contacts of the member and the ground under its tracks. `furthest`: greatest displacement of any part of
+  /// any member. The vectors are scratch memory.
   void look_around(const Member& member, double furthest, std::vector<std::uint32_t>& near,
                    std::vector<std::uint32_t>& candidates);
 
-  /// Calls `visit(other)` for every member that this one is coupled to by what it reports: its pairs, its connections
-  /// and what its tracks stand on. Some more than once.
+  /// Calls `visit(other)` for every member that this one is coupled to by its own pairs, its connections or the ground
+  /// under its tracks. May visit a member more than once.
   template <class Visit>
   void for_each_coupled(std::uint32_t member, Visit&& visit) {
     for_each_pair(member, [&](const SolidPair& pair) {
@@ -133,7 +134,7 @@ struct Assembly {
     });
     for_each_ground(member, visit);
   }
-  /// The pairs with contact points that the member reports.
+  /// Calls `visit(pair)` for the pairs with contact points that the member reports.
   template <class Visit>
   void for_each_pair(std::uint32_t member, Visit&& visit) {
     for (const Part& part : members[member].parts)
@@ -146,7 +147,7 @@ struct Assembly {
       for (const SolidPair& pair : collision.pairs_of(part.solid))
         if (pair.contact.count > 0) visit(pair);
   }
-  /// The members that the tracks of this one stand on.
+  /// Calls `visit(other)` for the members under the tracks of this one.
   template <class Visit>
   void for_each_ground(std::uint32_t member, Visit&& visit) const {
     for (const TrackRows& treel : members[member].multibody->treels())
@@ -155,29 +156,30 @@ struct Assembly {
       });
   }
 
-  // Rows, of what is in the problem. What a row couples must be set up.
+  // The following functions add rows to a problem. All bodies that a row couples must be set up first.
   void set_up(std::uint32_t member, IslandBodies& bodies);
   void add_own_rows(std::uint32_t member, Problem& problem);
   void add_connection_rows(Connection& connection, Problem& problem);
   void add_contact_rows(SolidPair& pair, Problem& problem) const;
 
-  /// Whether its velocities are such that the step may go on; the member is told.
+  /// Returns whether the member's velocities allow the step to go on, and stores this in the member.
   bool check(std::uint32_t member, const IslandBodies& bodies);
-  /// Of one that a snapshot has: throws SnapshotError if no body that is in the world can be so.
+  /// Validates a restored member; throws SnapshotError if no body in the world can have this state.
   void expect_sound(const Member& member) const;
-  /// Whether nothing but itself, gravity and pushes acts on the member.
+  /// Returns whether only internal forces, gravity and applied forces act on the member.
   bool is_in_flight(std::uint32_t index);
-  /// Whether what is alone in its island touches something or hangs on it, other than by a joint of its tree.
+  /// Returns whether a member that is alone in its island touches something, or is attached to it other than by a joint
+  /// of its tree.
   bool is_held(std::uint32_t index);
-  /// Moves the body by the velocities found. `problem`: the one that has its own rows.
+  /// Moves the body with the solved velocities. `problem`: the one with the body's own rows.
   void integrate(std::uint32_t index, const Problem& problem);
 
  private:
   /// Adds the solid of the collision `index` of the model.
   void add_solid(BodyId body, const ModelParts& parts, std::size_t index, const Pose& X_WC, Anchors::Part part);
-  /// Of a solid: how its surface runs.
+  /// Returns the velocity of a solid's surface (of a belt).
   RunningSurface surface_of(std::uint32_t solid) const;
-  /// Whether it is of a root that nothing pushes.
+  /// Returns whether the solid belongs to a kinematic root, which no force moves.
   bool is_immovable(std::uint32_t solid) const;
   void keep_from_passing_through(Member& member) const;
   bool may_touch(std::uint32_t solid, std::uint32_t other) const;

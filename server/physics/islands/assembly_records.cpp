@@ -1,4 +1,4 @@
-// What acted on the bodies that are recorded.
+// External forces on bodies that are recorded.
 
 #include "server/physics/islands/assembly.hpp"
 
@@ -22,7 +22,7 @@ void Assembly::record_outside() {
   for (std::uint32_t index = 0; index < members.size(); ++index) {
     const Member& member = members[index];
     if (!member.is_awake()) continue;
-    if (!member.is_finite) {  // it took no part
+    if (!member.is_finite) {  // the solver left it out
       if (member.record) member.record->forget();
       continue;
     }
@@ -71,7 +71,8 @@ void Assembly::record_pair(const SolidPair& pair) const {
   }
 }
 
-// The force on a belt along its surface is what it gives to others, turned round. One that sleeps bears what it bore.
+// The load of a belt is the reaction to the force along its surface on others. The belt of a sleeping body keeps its
+// last load.
 void Assembly::load_belts() {
   if (!has_belts) return;
   for (const Member& member : members)

@@ -31,7 +31,8 @@ void ForceRecord::finish(const BodyMotion& body, const double* velocities, bool 
   for (std::size_t i = 0; i < velocities_.size(); ++i) accelerations[i] = (velocities[i] - velocities_[i]) / step;
   if (!in_the_middle) return add_needed(1.0, velocities_, accelerations, gravity);
 
-  // Bias forces are quadratic in the velocities: those of the middle, but for what is of second order in the change.
+  // Bias forces are quadratic in the velocities. The linearly implicit midpoint is the bias force at the middle
+  // velocities without the term of second order in the change.
   std::vector<double> middle(velocities_.size());
   std::vector<double> half_the_change(velocities_.size());
   for (std::size_t i = 0; i < velocities_.size(); ++i) {
@@ -42,7 +43,7 @@ void ForceRecord::finish(const BodyMotion& body, const double* velocities, bool 
   add_needed(-1.0, half_the_change, std::vector<double>(velocities_.size(), 0.0), Vector3d::Zero());
 }
 
-// What each link needs for these velocities and accelerations.
+// Adds the force that each link needs for these velocities and accelerations.
 void ForceRecord::add_needed(double factor, const std::vector<double>& velocities,
                              const std::vector<double>& accelerations, const Vector3d& gravity) {
   find_accelerations(velocities, accelerations);
@@ -64,7 +65,8 @@ void ForceRecord::add_needed(double factor, const std::vector<double>& velocitie
   }
 }
 
-// From the root to the leaves, of the segments' origins (Craig, "Introduction to robotics", section 6.5).
+// Computes accelerations of the segments' origins from the root to the leaves (Craig, "Introduction to robotics",
+// section 6.5).
 void ForceRecord::find_accelerations(const std::vector<double>& velocities, const std::vector<double>& accelerations) {
   segments_.resize(X_WS_.size());
   const Vector3d zero = Vector3d::Zero();
@@ -83,7 +85,7 @@ void ForceRecord::find_accelerations(const std::vector<double>& velocities, cons
       const Vector3d& w = motion.angular_velocity_W;
       motion.acceleration_W += motion.angular_acceleration_W.cross(arm_W) + w.cross(w.cross(arm_W));
     }
-    const Vector3d w = motion.angular_velocity_W;  // of the parent
+    const Vector3d w = motion.angular_velocity_W;  // the parent's
     switch (segment.motion) {
       case Motion::anchored: break;
       case Motion::free: {
@@ -127,7 +129,7 @@ Wrench ForceRecord::joint_wrench(std::size_t index) const {
   Wrench sum{Vector3d::Zero(), Vector3d::Zero()};
   if (!motion_.is_whole()) return sum;
   const description::Joint& joint = mechanism_.model().joints[index];
-  // The child with all that hangs on it: links come after their parents.
+  // Select the child and everything it carries: links come after their parents.
   std::vector<char> is_below(parents_.size(), 0);
   is_below[joint.child] = 1;
   for (std::size_t link = joint.child; link < parents_.size(); ++link) {

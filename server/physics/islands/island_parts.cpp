@@ -18,7 +18,7 @@ void IslandParts::find_neighbours() {
   }
   std::partial_sum(first_neighbour_.begin(), first_neighbour_.end(), first_neighbour_.begin());
   neighbours_.resize(2 * links_.size());
-  // Filling moves each beginning, now one place further on, to where it belongs.
+  // Filling advances each start index by one place, to where it belongs.
   for (const auto& [a, b] : links_) {
     neighbours_[first_neighbour_[a + 1]++] = b;
     neighbours_[first_neighbour_[b + 1]++] = a;
@@ -30,8 +30,8 @@ void IslandParts::cut(std::uint32_t size) {
   const auto count = static_cast<std::uint32_t>(part_of_.size());
   bodies_.clear();
   begin_.assign(1, 0);
-  std::vector<std::uint32_t> waiting;  // beside parts that are full, in the order in which they were met
-  std::vector<std::uint32_t> growing;  // beside this part
+  std::vector<std::uint32_t> waiting;  // neighbours of full parts, in the order of discovery
+  std::vector<std::uint32_t> growing;  // neighbours of this part
   std::size_t next_waiting = 0;
   std::uint32_t lowest = 0;
   while (bodies_.size() < count) {

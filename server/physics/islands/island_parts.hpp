@@ -7,15 +7,15 @@
 
 namespace cohort::physics {
 
-/// Cuts a large island into parts of bodies that hang together, so that each part can be worked on by itself. What the
-/// parts are depends on the links and their order alone.
+/// Cuts a large island into connected parts that can be solved separately. The parts depend only on the links and their
+/// order.
 class IslandParts {
  public:
-  /// Begins anew, with the bodies [0, count).
+  /// Starts again with the bodies [0, count).
   void reset(std::uint32_t count);
   void link(std::uint32_t a, std::uint32_t b) { links_.emplace_back(a, b); }
-  /// After the last link. Parts grow from their first body along the links until they have `size` bodies; only the last
-  /// part has less.
+  /// Cuts the island; call it after the last link. Each part grows from its first body along the links until it has
+  /// `size` bodies; only the last part has fewer.
   void cut(std::uint32_t size);
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(begin_.size()) - 1; }
@@ -31,7 +31,7 @@ class IslandParts {
   void find_neighbours();
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links_;
-  std::vector<std::uint32_t> neighbours_;  // of all bodies, one after the other
+  std::vector<std::uint32_t> neighbours_;  // neighbours of all bodies, one body after the other
   std::vector<std::uint32_t> first_neighbour_;
   std::vector<std::uint32_t> part_of_;
   std::vector<std::uint32_t> bodies_;

@@ -10,14 +10,14 @@ namespace cohort::physics {
 
 namespace {
 
-// Where light links hold heavy bodies sequential impulses give way by millimetres. A few are solved exactly instead;
-// beyond, that takes too long.
+// If light links hold heavy bodies, sequential impulses leave errors of millimetres. Islands of up to this many bodies
+// are solved exactly instead; more bodies would take too long.
 constexpr std::size_t most_solved_as_group = 6;
 constexpr double unsettled = 1e-4;  // [m/s or rad/s]
-// The direct solver and that of groups want symmetric equations, which those of what spins fast are not.
+// Fast-spinning bodies need more passes: their equations are not symmetric, as the direct and the group solver require.
 constexpr std::uint32_t passes_where_fast = 10;
 
-// Whether nothing but other bodies that move keeps it where it is.
+// Returns whether only other moving bodies support it.
 bool is_carried(std::uint32_t member, const Assembly& assembly) {
   const Multibody& multibody = *assembly.members[member].multibody;
   bool stands = !multibody.mechanism().has_free_root();
@@ -64,7 +64,7 @@ void IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> memb
   while (!sound_.empty() && !try_to_solve(assembly)) leave_out_broken(sound_, assembly);
 }
 
-// False, and no body moved, if one of them has no sensible velocities.
+// Returns false, without moving any body, if one of them has invalid velocities.
 bool IslandSolver::try_to_solve(Assembly& assembly) {
   const auto all_are_finite = [&] {
     bool all = true;
@@ -114,7 +114,7 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
   return true;
 }
 
-// All at once, if that is not too dear; by more passes otherwise.
+// Solves all rows at once if that is not too expensive, otherwise by more passes.
 void IslandSolver::settle(std::uint32_t iterations, bool is_symmetric) {
   SequentialImpulses impulses(problem_);
   impulses.take_back();

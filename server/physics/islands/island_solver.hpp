@@ -8,10 +8,10 @@
 
 namespace cohort::physics {
 
-/// Moves the bodies of one island by one step. Keeps its memory from island to island: one for each worker.
+/// Moves the bodies of one island by one step. Each worker has one and reuses its memory for further islands.
 class IslandSolver {
  public:
-  /// A body whose state breaks is left where it is, and the rest of the island solved without it.
+  /// Solves the island. A body whose state breaks keeps its pose, and the rest of the island is solved without it.
   void solve(Assembly& assembly, std::span<const std::uint32_t> members);
 
  private:
@@ -24,20 +24,20 @@ class IslandSolver {
   std::vector<std::uint32_t> sound_;  // members
 };
 
-/// Whether passes, the last of which changed a row's velocity by `change`, ended too early for bodies of which some are
-/// carried by others, as in a stack or between fingers: what is on top of them would wander off.
+/// Returns whether the passes ended too early for bodies that are carried by others, as in a stack or between fingers:
+/// the upper bodies would drift. `change`: greatest change of a row's velocity in the last pass.
 bool is_unsettled_heap(double change, std::span<const std::uint32_t> members, const Assembly& assembly);
-/// Then so many times more passes are made, as long as they change anything.
+/// The number of passes is multiplied by this for such a heap; they end when nothing changes any more.
 inline constexpr std::uint32_t passes_of_heaps = 4;
 
-/// Whether an island of so many bodies is solved by Dantzig's algorithm.
+/// Returns whether an island of this many bodies is solved by Dantzig's algorithm.
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies);
 
-/// Gives each its index in `bodies`.
+/// Assigns to each member its index in `bodies`.
 void number_bodies(std::span<const std::uint32_t> members, Assembly& assembly, IslandBodies& bodies);
-/// Takes those whose state broke out of `members`.
+/// Removes members whose state broke from `members`.
 void leave_out_broken(std::vector<std::uint32_t>& members, Assembly& assembly);
-/// Keeps the impulses for the next step's start.
+/// Keeps the impulses to warm-start the next step.
 void keep_impulses(const Problem& problem);
 
 }  // namespace cohort::physics

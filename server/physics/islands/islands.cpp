@@ -28,7 +28,7 @@ void Islands::finish() {
   const auto count = static_cast<std::uint32_t>(root_.size());
   island_.resize(count);
   begin_.assign(1, 0);
-  // A root is the least of its island, so it comes before its members.
+  // A root is the lowest member of its island, so it comes before the others.
   for (std::uint32_t member = 0; member < count; ++member) {
     root_[member] = find(member);
     if (root_[member] == member) {
@@ -39,7 +39,7 @@ void Islands::finish() {
   }
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   members_.resize(count);
-  std::vector<std::uint32_t>& fill = island_;  // from here on, by root: where the next member goes
+  std::vector<std::uint32_t>& fill = island_;  // reused, by root: index of the next member
   for (std::uint32_t member = 0; member < count; ++member)
     if (root_[member] == member) fill[member] = begin_[fill[member]];
   for (std::uint32_t member = 0; member < count; ++member) members_[fill[root_[member]]++] = member;

@@ -6,21 +6,20 @@
 
 namespace cohort::physics {
 
-/// Groups of things that touch, directly or through others. What an island is depends on the links alone, not on their
-/// order.
+/// Groups of things that touch, directly or through others. The islands depend only on the links, not on their order.
 class Islands {
  public:
-  /// Begins anew, with every member of [0, count) on its own.
+  /// Starts again, with each member of [0, count) in an island of its own.
   void reset(std::uint32_t count);
   void link(std::uint32_t a, std::uint32_t b);
-  /// After the last link: sorts the members.
+  /// Sorts the members; call it after the last link.
   void finish();
-  /// Then: what each of [0, count) is called from now on, ascending.
+  /// Replaces each member of [0, count) by its name, after `finish`. Names are in ascending order.
   void rename(std::span<const std::uint32_t> names) {
     for (std::uint32_t& member : members_) member = names[member];
   }
 
-  /// Islands are in the order of their least members.
+  /// Islands are ordered by their lowest members.
   std::uint32_t count() const { return static_cast<std::uint32_t>(begin_.size()) - 1; }
   /// Ascending.
   std::span<const std::uint32_t> members(std::uint32_t island) const {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t bodies_a_part = 32;
 constexpr std::size_t bodies_a_chunk = 16;
 
-// Seams that find no colour have the last one, whose seams are worked on one after the other.
+// Seams for which no colour is free get this last one; its seams are solved one after the other.
 constexpr unsigned last_colour = 63;
 
 }  // namespace
@@ -24,7 +24,7 @@ void LargeIslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t>
   while (!sound_.empty() && !try_to_solve(assembly)) leave_out_broken(sound_, assembly);
 }
 
-// False, and no body moved, if one of them has no sensible velocities.
+// Returns false, without moving any body, if one of them has invalid velocities.
 bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   number_bodies(sound_, assembly, bodies_);
   workers_.for_each_chunk(sound_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
@@ -82,7 +82,7 @@ void LargeIslandSolver::cut(Assembly& assembly) {
   problem_of_.resize(sound_.size());
 }
 
-// Nothing if the other one is in the same part, or in none: it was left out, or is the world.
+// Returns nothing if the other body is in the same part or in none (it was left out, or is the world).
 std::optional<LargeIslandSolver::Parts> LargeIslandSolver::parts_across(const Assembly& assembly, std::uint32_t part,
                                                                         std::uint32_t other) const {
   if (other == Anchors::nobody || assembly.anchors.index_of_member[other] < 0) return std::nullopt;
@@ -129,7 +129,7 @@ void LargeIslandSolver::add_rows_of_part(Assembly& assembly, std::uint32_t part)
   }
 }
 
-// Crossings of the same parts follow each other, own rows before connections before contacts, as within a part.
+// Crossings of the same parts follow each other: own rows, then connections, then contacts, as within a part.
 void LargeIslandSolver::find_seams() {
   crossings_.clear();
   for (std::uint32_t part = 0; part < parts_.count(); ++part)

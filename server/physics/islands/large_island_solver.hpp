@@ -14,43 +14,44 @@ namespace cohort::physics {
 
 /// Moves the bodies of one large island by one step, with all workers at once.
 ///
-/// The island is cut into parts. Rows within a part are the part's; rows between parts are sorted by the parts that
-/// they couple, one seam for each such set, and seams that share a part get different colours. A pass of the solver
-/// goes over all parts at once, then over all seams of the first colour at once, and so on; every second pass goes the
-/// other way round. So no two workers ever change the same body, and the result depends on neither their number nor
-/// their speed: it is that of sequential impulses in another order of the rows.
+/// The island is cut into parts. Rows within a part belong to that part. Rows between parts are sorted by the set of
+/// parts that they couple, one seam for each set; seams that share a part get different colours. A pass of the solver
+/// goes over all parts at once, then over all seams of the first colour at once, and so on. Every second pass runs in
+/// reverse order. Two workers therefore never change the same body. The result depends on neither their number nor
+/// their speed: it is that of sequential impulses with another order of the rows.
 class LargeIslandSolver {
  public:
-  /// Larger islands are for this solver, whatever the number of workers: the order of the rows is part of the result.
+  /// Islands of at least this size use this solver with any number of workers, because the order of the rows affects
+  /// the result.
   static constexpr std::size_t least_bodies = 96;
 
   explicit LargeIslandSolver(WorkerPool& workers) : workers_(workers) {}
 
-  /// A body whose state breaks is left where it is, and the rest of the island solved without it.
+  /// Solves the island. A body whose state breaks keeps its pose, and the rest of the island is solved without it.
   void solve(Assembly& assembly, std::span<const std::uint32_t> members);
 
  private:
-  /// Of a part or a seam.
+  /// The rows of a part or a seam.
   struct Share {
     explicit Share(IslandBodies& bodies) : problem(bodies) {}
 
     Problem problem;
-    double change = 0.0;  // by the last pass
+    double change = 0.0;  // in the last pass
   };
-  /// Two parts, the lower one first. What couples more than two is `several`.
+  /// Two parts, the lower one first; `several` if more than two are coupled.
   using Parts = std::pair<std::uint32_t, std::uint32_t>;
   static constexpr std::uint32_t no_part = 0xffffffffu;
   static constexpr Parts several{no_part, no_part};
 
-  /// What adds its rows to a seam: the own rows of a member whose tracks stand on another part, a connection or a pair.
+  /// A source of rows in a seam: the own rows of a member whose tracks stand on another part, a connection or a pair.
   struct Crossing {
     Parts parts;
-    std::uint32_t member = 0;  // with its own rows, if it is neither of these:
+    std::uint32_t member = 0;  // its own rows, if both pointers are null
     Connection* connection = nullptr;
     SolidPair* pair = nullptr;
   };
   struct Seam {
-    std::size_t begin = 0;  // of its crossings
+    std::size_t begin = 0;  // range of its crossings
     std::size_t end = 0;
     unsigned colour = 0;
   };
@@ -63,7 +64,7 @@ class LargeIslandSolver {
   void colour_seams();
   void add_rows_of_seam(Assembly& assembly, const Seam& seam, Problem& problem);
   bool all_are_finite(Assembly& assembly);
-  /// Returns the greatest change of a row's velocity by the last of them.
+  /// Returns the greatest change of a row's velocity in the last pass.
   double run_passes(std::uint32_t most);
   template <class Work>
   void for_each_share(std::size_t phase, Work&& work);
@@ -75,9 +76,9 @@ class LargeIslandSolver {
   std::vector<std::vector<Crossing>> crossings_of_part_;
   std::vector<Crossing> crossings_;
   std::vector<Seam> seams_;                 // by colour
-  std::deque<Share> shares_;                // of the parts, then of the seams
-  std::vector<std::size_t> phases_;         // where the shares of each phase begin, and the end
-  std::vector<const Problem*> problem_of_;  // by body: the one with its own rows
+  std::deque<Share> shares_;                // parts, then seams
+  std::vector<std::size_t> phases_;         // start of each phase in shares_, and the end
+  std::vector<const Problem*> problem_of_;  // by body: the problem with its own rows
 };
 
 }  // namespace cohort::physics

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t members_at_once = 16;
 constexpr std::size_t islands_at_once = 8;
 
-// Each thread has one for all worlds, so that many small worlds share memory that stays in the cache.
+// Each thread has one solver for all worlds, so that many small worlds share memory that stays in the cache.
 IslandSolver& solver_of_this_thread() {
   static thread_local IslandSolver solver;
   return solver;
@@ -65,7 +65,7 @@ BodyId MultibodyWorld::add_body(std::size_t model, const Pose& X_WM, Arrival arr
 BodyId MultibodyWorld::create_body(std::size_t model_index, const Pose& X_WM) {
   const BodyId body{bodies_.size()};
   const description::Model& model = description_.models[model_index];
-  if (model_index >= parts_.size()) {  // it has come since
+  if (model_index >= parts_.size()) {  // the model was added later
     mechanisms_.resize(model_index + 1);
     parts_.resize(model_index + 1);
   }
@@ -107,7 +107,7 @@ std::unique_ptr<Multibody> MultibodyWorld::make_multibody(std::size_t model_inde
   }
 }
 
-// Well below everything that was there at first, unless the world says where.
+// Sets the lowest allowed height well below everything that was there at first, unless the world specifies it.
 void MultibodyWorld::find_lowest() {
   constexpr double below_all = 10.0;  // [m]
   double& lowest = assembly_.settings.lowest;
@@ -252,7 +252,7 @@ void MultibodyWorld::find_islands() {
   islands_.rename(awake_);
 }
 
-// Its pairs with what touched it are of this step already, and not its own.
+// The pairs that a sleeper has with the bodies that touched it are already found in this step, except its own.
 void MultibodyWorld::wake_group_of(std::uint32_t sleeper) {
   constexpr double slow = 0.0;
   for (const std::uint32_t member : sleep_.group_of(sleeper)) {
@@ -262,7 +262,7 @@ void MultibodyWorld::wake_group_of(std::uint32_t sleeper) {
   sleep_.wake(sleeper);
 }
 
-// The small ones first, each by one worker; then the large ones, each by all workers.
+// Small islands come first, each solved by one worker, then the large ones, each solved by all workers.
 void MultibodyWorld::solve_islands() {
   const auto is_large = [&](std::uint32_t island) {
     const std::size_t bodies = islands_.members(island).size();
@@ -325,7 +325,7 @@ PlacedBody& MultibodyWorld::wake(BodyId body) {
   return bodies_[body.value];
 }
 
-// Those of what sleeps first: they stay until somebody wakes or falls asleep.
+// Contacts of sleeping bodies come first: they remain until a body wakes or falls asleep.
 void MultibodyWorld::report_contacts() {
   if (reported_at_ != assembly_.revision) {
     reported_at_ = assembly_.revision;
@@ -342,7 +342,7 @@ void MultibodyWorld::report_contacts_of(std::uint32_t member) {
   const geometry::Scene& scene = assembly_.scene;
   assembly_.for_each_pair(member, [&](const SolidPair& pair) {
     for (const ContactPoint& point : pair.contact) {
-      if (point.gap > 0.0 && point.impulse[0] == 0.0) continue;  // near, but it did not touch
+      if (point.gap > 0.0 && point.impulse[0] == 0.0) continue;  // near, but not touching
       contacts_.push_back({scene.solid(pair.a).body, scene.solid(pair.b).body, point.position_W, point.normal_W,
                            point.gap, point.impulse[0], pair.a, pair.b});
     }

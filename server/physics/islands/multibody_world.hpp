@@ -13,12 +13,12 @@
 
 namespace cohort::physics {
 
-/// One step of the bodies of a world: where they touch, which of them hang together, and, island by island, their
-/// velocities under gravity, motors, joints and contacts and the way that these take them. Islands do not know of each
-/// other, so it does not matter which worker has which.
+/// The bodies of a world and their step: it finds contacts and islands, then solves each island for its velocities
+/// under gravity, motors, joints and contacts, and moves the bodies. Islands are independent, so the result does not
+/// depend on which worker solves which.
 class MultibodyWorld final : public World, private WorldConnections {
  public:
-  /// `like` and `X_WM`: as make_world has them.
+  /// `like` and `X_WM`: as in make_world.
   MultibodyWorld(const description::World& description, WorkerPool& workers, const MultibodyWorld* like = nullptr,
                  std::span<const Pose> X_WM = {});
 
@@ -72,10 +72,10 @@ class MultibodyWorld final : public World, private WorldConnections {
   Wrench wrench(ConnectionId connection, ConnectionEnd end) const override;
   std::span<const ConnectionId> broken() const override { return assembly_.connections.broken(); }
 
-  struct Memory {  // of one worker
+  struct Memory {  // scratch memory of one worker
     std::vector<std::uint32_t> near;
     std::vector<std::uint32_t> candidates;
-    double furthest = 0.0;  // way of a part in this step [m]
+    double furthest = 0.0;  // greatest displacement of a part in this step [m]
   };
 
   std::unique_ptr<Multibody> make_multibody(std::size_t model, const Pose& X_WM, BodyId body);
@@ -92,9 +92,9 @@ class MultibodyWorld final : public World, private WorldConnections {
   void report_contacts();
   void report_contacts_of(std::uint32_t member);
   void wake_group_of(std::uint32_t sleeper);
-  // Of a body that moves: it and what sleeps with it.
+  // Wakes a moving body and those that fell asleep with it.
   PlacedBody& wake(BodyId body);
-  // Of a body that moves.
+  // The body must be a moving one.
   Multibody& multibody(BodyId body) { return *assembly_.members[bodies_[body.value].member].multibody; }
   const Multibody& multibody(BodyId body) const { return *assembly_.members[bodies_[body.value].member].multibody; }
   const ForceRecord* record_of(BodyId body) const {
@@ -104,7 +104,7 @@ class MultibodyWorld final : public World, private WorldConnections {
 
   const description::World& description_;
   WorkerPool& workers_;
-  std::vector<std::shared_ptr<const Mechanism>> mechanisms_;  // by model, null for what is static
+  std::vector<std::shared_ptr<const Mechanism>> mechanisms_;  // by model, null for a static one
   std::vector<std::shared_ptr<const ModelParts>> parts_;      // by model, null for one without bodies so far
   geometry::SolidKinds kinds_;
   std::vector<PlacedBody> bodies_;
@@ -116,8 +116,8 @@ class MultibodyWorld final : public World, private WorldConnections {
   Sleep sleep_;
   std::vector<std::uint32_t> awake_;              // members, ascending
   std::vector<std::uint32_t> place_among_awake_;  // by member
-  std::size_t contacts_asleep_ = 0;               // of contacts_, the first
-  // Of the assembly, when awake_ was found and when contacts_ were.
+  std::size_t contacts_asleep_ = 0;               // that many first elements of contacts_
+  // Revision of the assembly for which awake_ was computed, and contacts_.
   static constexpr std::uint64_t never = 0xffffffffffffffff;
   std::uint64_t awake_at_ = never;
   std::uint64_t reported_at_ = never;

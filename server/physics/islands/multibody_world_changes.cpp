@@ -1,4 +1,4 @@
-// What changes in a world between steps, from outside.
+// Changes from outside to a world between steps.
 
 #include "server/physics/islands/multibody_world.hpp"
 

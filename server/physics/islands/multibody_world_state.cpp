@@ -1,4 +1,4 @@
-// The state of a world, hashed, saved and restored: all three see the same numbers.
+// Hashing, saving and restoring the state of a world: all three visit the same numbers.
 
 #include "server/core/state_visitors.hpp"
 #include "server/physics/islands/multibody_world.hpp"

@@ -7,9 +7,10 @@
 namespace cohort::physics {
 namespace {
 
-// So slow that 100 s of it are a tenth of a millimetre, or 0.006 degrees; what rests on its contacts is slower by far.
+// At this speed a body moves a tenth of a millimetre, or 0.006 degrees, in 100 s; bodies at rest on contacts are much
+// slower.
 constexpr double still = 1e-6;  // [m/s] or [rad/s]
-// Longer than anything is so slow on its way, at the top of its flight or between two blows.
+// Longer than any moving body is this slow, at the top of its flight or between two impacts.
 constexpr double long_enough = 0.5;  // [s]
 
 bool is_still(const Member& member) {
@@ -32,8 +33,8 @@ void Sleep::count(std::uint32_t index) {
   member.still_steps = is_still(member) ? std::min(member.still_steps + 1, enough_) : 0;
 }
 
-// Not what air and water act on, what forces are measured of, or what slips in its connection: there more changes than
-// where the body is.
+// Bodies with air or water forces, with measured forces or with a slipping connection do not sleep: more than their
+// pose changes.
 bool Sleep::may_sleep(std::uint32_t index) const {
   const Member& member = assembly_.members[index];
   if (!member.is_awake() || member.still_steps < enough_ || member.fluid || member.record) return false;
@@ -77,7 +78,7 @@ void Sleep::check_groups() const {
     if (!member.is_asleep) continue;
     const std::uint32_t next = member.next_asleep;
     if (next >= members.size() || !members[next].is_asleep || is_next[next])
-      throw SnapshotError("the snapshot has a body that sleeps beside one that does not");
+      throw SnapshotError("snapshot: invalid group of sleeping bodies");
     is_next[next] = true;
   }
 }

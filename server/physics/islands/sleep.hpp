@@ -9,28 +9,29 @@
 
 namespace cohort::physics {
 
-/// Which bodies sleep: those that have been still for a while, with all that they touch and hang together with. Steps
-/// leave them as they are, and the forces between them, until something that is awake touches one of them or one is
-/// changed from outside; then all wake that fell asleep together. Who sleeps is part of the state. It is decided island
-/// by island, so it depends on nothing that an island is not coupled to. One thread alone, but for `count`.
+/// Decides which bodies sleep: islands of which all bodies have been still for a while. Steps leave sleeping bodies and
+/// the forces between them unchanged, until an awake body touches one of them or one is changed from outside. All
+/// bodies that fell asleep together then wake. Sleep is part of the state. It is decided island by island, so it
+/// depends only on bodies that are coupled. One thread only, except for `count`.
 class Sleep {
  public:
   /// The assembly must outlive this.
   explicit Sleep(Assembly& assembly);
 
-  /// After a step of the member: whether it was still, and for how long. Different members from different threads.
+  /// Counts how long the member has been still; call it after each step of the member. Threads may call it for
+  /// different members.
   void count(std::uint32_t index);
-  /// After a step and all that came of it: the islands sleep that have been still for long enough.
+  /// Puts islands to sleep that have been still for long enough; call it after a step and all its consequences.
   void fall_asleep(const Islands& islands);
-  /// All that fell asleep with the member, which sleeps.
+  /// Returns the members that fell asleep together with this sleeping one.
   std::vector<std::uint32_t> group_of(std::uint32_t index) const;
-  /// They are awake; a member that is has not been still until now.
+  /// Wakes them. For a member that is already awake, restarts the count of still steps.
   void wake(std::uint32_t index);
-  /// What a connection holds, if it is there.
+  /// Wakes the bodies at both ends of a connection, if it exists.
   void wake_ends(std::uint32_t number);
-  /// Of a world that was restored. Throws SnapshotError if the groups are none.
+  /// Validates the groups of a restored world; throws SnapshotError if they are invalid.
   void check_groups() const;
-  /// After a change of what stands still.
+  /// Wakes all bodies; call it after a change of static bodies.
   void wake_all();
 
  private:

@@ -7,20 +7,19 @@
 
 namespace cohort::physics {
 
-/// The numbers that say where a body is and how it moves, wherever they are kept: in memory of their own, or in a body
-/// of Bullet.
+/// The state of a body: its pose and velocities. The numbers are kept in memory of its own or in a body of Bullet.
 class BodyState {
  public:
-  /// What is kept elsewhere.
+  /// Pointers to a state that is kept elsewhere.
   struct Memory {
     double* reference = nullptr;         ///< 3: the point where spatial velocities are taken
-    double* rotation = nullptr;          ///< 4, x y z w: of a free root
-    bool is_from_world = false;          ///< whether the rotation turns from the world to the root
+    double* rotation = nullptr;          ///< 4, x y z w: rotation of a free root
+    bool is_from_world = false;          ///< true if the rotation is from the world to the root
     double* velocities = nullptr;        ///< by dof
-    std::vector<double*> coordinates{};  ///< each coordinate; those of a segment stand together
+    std::vector<double*> coordinates{};  ///< each coordinate; those of one segment are contiguous
   };
 
-  /// With all joints at zero.
+  /// Creates a state with all joints at zero.
   explicit BodyState(const Mechanism& mechanism);
   BodyState(const Mechanism& mechanism, Memory memory);
 
@@ -34,7 +33,7 @@ class BodyState {
   double* velocities() { return memory_.velocities; }
   // NOLINTEND(readability-make-member-function-const)
   const double* velocities() const { return memory_.velocities; }
-  /// From this one on, as many as its segment has; nullptr if there is none.
+  /// Returns the coordinates of a segment, whose first one is `first`, or nullptr if it has none.
   double* coordinates(int first) {
     const auto index = static_cast<std::size_t>(first);
     return index < memory_.coordinates.size() ? memory_.coordinates[index] : nullptr;

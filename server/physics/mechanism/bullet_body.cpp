@@ -18,7 +18,7 @@ struct Scratch {
   std::vector<double> response;
 };
 
-// Of one worker, for all the bodies that it works on one after the other.
+// Returns the scratch memory of this worker, for all bodies on which it works one after the other.
 Scratch& scratch_of_thread() {
   static thread_local Scratch scratch;
   return scratch;
@@ -63,7 +63,7 @@ BulletBody::BulletBody(const Mechanism& mechanism)
   body_->setLinearDamping(0.0);
   body_->setAngularDamping(0.0);
   body_->setMaxCoordinateVelocity(std::numeric_limits<double>::max());
-  // The turning of a body on its own is left to `integrate` (dynamics/integration.hpp).
+  // `integrate` (dynamics/integration.hpp) handles the rotation of a free rigid body.
   body_->setUseGyroTerm(!mechanism.is_free_body());
   for (int link = 0; link < links; ++link) {
     const Segment& segment = segments[at(link + first_link_)];
@@ -76,7 +76,7 @@ BulletBody::BulletBody(const Mechanism& mechanism)
 
 BulletBody::~BulletBody() = default;
 
-// What Bullet shows as constant is constant for those who look at its bodies; the state is for us to set.
+// Bullet exposes its state as const to users of its bodies; here the state is written on purpose.
 BodyState::Memory BulletBody::memory() {
   BodyState::Memory memory;
   memory.reference = const_cast<double*>(body_->getBasePos().m_floats);
@@ -89,7 +89,7 @@ BodyState::Memory BulletBody::memory() {
   return memory;
 }
 
-// Bullet's own caches, from poses that are the same on any CPU.
+// Updates Bullet's caches from poses that are the same on any CPU.
 void BulletBody::place_links(const std::vector<Pose>& X_WS) {
   const btQuaternion& base = body_->getWorldToBaseRot();
   for (std::size_t s = at(first_link_); s < X_WS.size(); ++s) {
@@ -109,9 +109,9 @@ void BulletBody::place_links(const std::vector<Pose>& X_WS) {
   }
 }
 
-// Of the base's accelerations to a torque and a force on it, in world axes. Bullet leaves the articulated inertia of
-// the base, in its axes, in the memory that it is given: what forces it takes to turn, to move, and what torques to
-// turn.
+// Returns the response of the base's acceleration to a torque and a force on it, in world axes. Bullet leaves the
+// articulated-body inertia of the base, in its axes, in the memory that it is given. Its blocks are: force per angular
+// acceleration, force per linear acceleration, and torque per angular acceleration.
 Eigen::Matrix<double, 6, 6> BulletBody::response_of_base(const btAlignedObjectArray<btMatrix3x3>& left) const {
   const int first = body_->getNumLinks() + 1;
   const Eigen::Matrix3d R = to_eigen(body_->getWorldToBaseRot()).conjugate().toRotationMatrix();
@@ -151,7 +151,8 @@ void BulletBody::solve(const std::vector<Pose>& X_WS, const Eigen::Vector3d& gra
   for (int i = 0; i < size; ++i) change[i] = velocities[i] - scratch.response[at(i)];
   std::copy_n(scratch.response.data(), size, velocities);
 
-  // Joints one after the other; of the base by its own inertia, for which Bullet would invert it each time anew.
+  // Compute the joints one by one. Those of the base come from its own inertia, which Bullet would otherwise invert for
+  // each column.
   const std::ptrdiff_t stride = mechanism_->stride();
   const int first_joint = base_dofs - first_dof_;
   scratch.force.assign(at(first_dof_ + size), 0.0);

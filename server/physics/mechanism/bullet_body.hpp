@@ -12,11 +12,12 @@ class btAlignedObjectArray;
 
 namespace cohort::physics {
 
-/// A body of Bullet, which owns the state of one of ours, and its Featherstone: velocities by the articulated-body
-/// algorithm, and how they answer impulses. Nothing else of Bullet moves it.
+/// A body of Bullet that owns the state of one of Cohort's bodies. Bullet's articulated-body algorithm (Featherstone)
+/// computes the velocities and how they respond to impulses. Nothing else of Bullet moves it.
 ///
-/// Bullet has the same velocities in the same order: of a free root angular and linear, of its centre of mass, in world
-/// axes, then each joint's. Its frames are those of the segments, with their origins at the centres of mass.
+/// Bullet has the same velocities in the same order: angular and linear velocity of a free root's centre of mass in
+/// world axes, then those of each joint. Its frames are those of the segments, with their origins at the centres of
+/// mass.
 class BulletBody {
  public:
   explicit BulletBody(const Mechanism& mechanism);
@@ -24,12 +25,12 @@ class BulletBody {
   BulletBody(const BulletBody&) = delete;
   BulletBody& operator=(const BulletBody&) = delete;
 
-  /// Of the body, for as long as this is.
+  /// Returns pointers to the body's state, valid as long as this object.
   BodyState::Memory memory();
 
-  /// For the body as it is, with its segments at `X_WS`, under `gravity` [m/s^2] and with the `efforts` of the joints,
-  /// by dof [N] or [N m]: by how much velocities change in one `step` [s] into `change`, and the change by a unit
-  /// impulse along each dof into `responses`, each `stride` after the one before. The state stays as it is.
+  /// Computes the change of the velocities in one `step` [s] into `change`, and the changes by a unit impulse along
+  /// each dof into `responses`, with rows `stride` apart. The body is taken at its present state, with its segments at
+  /// `X_WS`, under `gravity` [m/s^2] and the joint `efforts` by dof [N] or [N m]. Does not change the state.
   void solve(const std::vector<Pose>& X_WS, const Eigen::Vector3d& gravity, const double* efforts, double step,
              double* change, double* responses);
 
@@ -39,8 +40,8 @@ class BulletBody {
 
   const Mechanism* mechanism_;
   std::unique_ptr<btMultiBody> body_;
-  int first_link_;  // segment that is Bullet's link 0: that after a free root, which is its base
-  int first_dof_;   // in Bullet's velocities: the six of a base that is fixed come before ours
+  int first_link_;  // segment that is Bullet's link 0; a free root is Bullet's base
+  int first_dof_;   // in Bullet's velocities, where six of a fixed base come first
 };
 
 }  // namespace cohort::physics

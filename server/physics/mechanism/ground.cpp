@@ -3,7 +3,7 @@
 namespace cohort::physics {
 namespace {
 
-// Cosine of the angle from which on a surface is a wall, not ground.
+// Cosine of the slope angle; a steeper surface is a wall, not ground.
 constexpr double steepest = 0.3;
 
 }  // namespace

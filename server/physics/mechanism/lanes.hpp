@@ -2,16 +2,16 @@
 
 #include <cstddef>
 
-/// Arithmetic on vectors whose length is a multiple of `lanes`, always in that many sums: the same bits whatever the
-/// width of the instructions that a compiler makes of it.
+/// Arithmetic on vectors whose length is a multiple of `lanes`, always in that many partial sums. The result has the
+/// same bits with any vector width of the instructions that a compiler generates.
 namespace cohort::physics {
 
 inline constexpr std::ptrdiff_t lanes = 4;
 
-/// An index of ours as one of the standard library.
+/// Converts a signed index to one of the standard library.
 inline std::size_t at(std::ptrdiff_t index) { return static_cast<std::size_t>(index); }
 
-/// Half of `lanes`, which fits into a register of every x86-64.
+/// Half of `lanes`, which fits into a register of every x86-64 CPU.
 using Half = double __attribute__((vector_size(16)));
 using HalfInMemory = double __attribute__((vector_size(16), aligned(8), may_alias));
 
@@ -29,7 +29,7 @@ inline double dot(const double* a, const double* b, std::ptrdiff_t length) {
   return pair[0] + pair[1];
 }
 
-/// y += factor * x.
+/// Computes y += factor * x.
 inline void add_scaled(double factor, const double* x, double* y, std::ptrdiff_t length) {
   for (std::ptrdiff_t i = 0; i < length; i += lanes) {
     store(load(y + i) + factor * load(x + i), y + i);

@@ -4,22 +4,22 @@
 
 namespace cohort::physics {
 
-/// A square matrix, of no particular form, and what it times a vector is solved for: Gauss's elimination with the
-/// greatest pivot of each column, in sums whose order depends on the size alone.
+/// A system of linear equations with a general square matrix. Solved by Gaussian elimination with partial pivoting; the
+/// order of the sums depends only on the size.
 class LinearSystem {
  public:
-  /// All entries become zero.
+  /// Sets the size and all entries to zero.
   void reset(int size);
   double& operator()(int row, int column);
 
-  /// Before the next one, and after the last entry was set.
+  /// Factorises the matrix. Call it after the last entry was set and before `solve`.
   void factorise();
-  /// In place: the solution of the matrix times it = `x`. Not finite where the matrix cannot be inverted.
+  /// Solves matrix * y = x in place. The result is not finite if the matrix is singular.
   void solve(double* x) const;
 
  private:
   int size_ = 0;
-  std::vector<double> entries_;  // row by row; then the factors, upper and below the diagonal lower
+  std::vector<double> entries_;  // by row: the matrix, then its factors L (below the diagonal) and U
   std::vector<int> pivots_;
 };
 

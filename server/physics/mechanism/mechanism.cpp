@@ -11,7 +11,7 @@ namespace {
 
 using description::JointType;
 
-// The parallel-axis theorem: what a point mass at `offset` adds to the inertia about the origin.
+// Returns the inertia of a point mass at `offset` about the origin (parallel-axis theorem).
 Eigen::Matrix3d inertia_of_point(double mass, const Eigen::Vector3d& offset) {
   return mass * (offset.squaredNorm() * Eigen::Matrix3d::Identity() - offset * offset.transpose());
 }
@@ -111,7 +111,8 @@ void Mechanism::find_outputs() {
   }
 }
 
-// A sphere, so that nothing turns it either. Impulses of a robot's step change its velocity by less than doubles tell.
+// Gives the root such a large mass and spherical inertia that it cannot be moved or turned. The impulses of a robot in
+// one step change its velocity by less than the resolution of a double.
 void Mechanism::make_root_immovable() {
   constexpr double immovable = 1e15;  // [kg], [kg m^2]
   segments_[0].mass = immovable;
@@ -147,7 +148,7 @@ void Mechanism::turn_to_principal_axes() {
 
 void Mechanism::find_light_segments() {
   constexpr double light_share = 0.25;
-  std::vector<double> masses;  // of each segment with all that hangs on it
+  std::vector<double> masses;  // each segment with everything it carries
   for (const Segment& segment : segments_) masses.push_back(segment.mass);
   for (std::size_t s = segments_.size(); s-- > 0;)
     if (segments_[s].parent >= 0) masses[static_cast<std::size_t>(segments_[s].parent)] += masses[s];
@@ -166,7 +167,7 @@ void Mechanism::add_link(std::size_t link, const std::vector<char>& welded) {
 
   const bool to_world = joint->parent == description::Joint::world;
   const int parent = to_world ? -1 : links_[joint->parent].segment;
-  // The parent segment's frame, or the model's, in the model's.
+  // Pose of the parent segment's frame, or the model's frame, in the model's frame.
   const Pose X_MP = to_world ? Pose{} : model_->links[joint->parent].X_ML * links_[joint->parent].X_SL.inverse();
   const Pose X_PL = X_MP.inverse() * described.X_ML;
   const Pose X_PJ = X_PL * joint->X_LJ;

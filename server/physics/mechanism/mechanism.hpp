@@ -10,46 +10,47 @@
 
 namespace cohort::physics {
 
-/// How a segment moves against its parent. `free`: not tied to anything; `anchored`: tied to the world.
+/// The motion of a segment relative to its parent. `free`: six dofs; `anchored`: fixed to the world.
 enum class Motion { free, anchored, revolute, prismatic, ball };
 
-/// Links welded together, which move as one. Frame S: where the joint above is, or the root link, turned to the
-/// principal axes of its mass.
+/// Links that are welded together and move as one. Frame S has its origin at the joint above, or at the root link, and
+/// the principal axes of the segment's mass.
 struct Segment {
   int parent = -1;  ///< -1: none; `X_PS` is then in the model's frame
   Motion motion = Motion::free;
-  Pose X_PS;  ///< where all coordinates are zero
-  /// From the joint above, or the root link, to S.
+  Pose X_PS;  ///< with all coordinates at zero
+  /// Rotation from the frame of the joint above, or of the root link, to S.
   Eigen::Quaterniond principal_axes = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d axis_S;  ///< of a revolute or prismatic joint
+  Eigen::Vector3d axis_S;  ///< for a revolute or prismatic joint
   int first_dof = 0;
   int dofs = 0;
   int first_coordinate = 0;
-  int last_dof = -1;  ///< of its own or, having none, of the segments above; -1: nothing can move it
+  int last_dof = -1;  ///< its own, or that of the nearest segment above that has one; -1: immovable
 
   double mass = 0.0;                                    ///< may be zero: the middle of a universal joint
-  Eigen::Vector3d centre_S = Eigen::Vector3d::Zero();   ///< of mass
+  Eigen::Vector3d centre_S = Eigen::Vector3d::Zero();   ///< centre of mass
   Eigen::Matrix3d inertia_S = Eigen::Matrix3d::Zero();  ///< about the centre of mass, diagonal
 };
 
-/// Where a segment that a joint holds is: `X_WS` with its coordinates at zero, `coordinates` its own.
+/// Returns the pose of a segment that a joint holds; `X_WS` is its pose with `coordinates` at zero.
 Pose moved_by_joint(const Segment& segment, const Pose& X_WS, const double* coordinates);
 
 /// One degree of freedom of a joint, or one of the six of a free root (which has no damping, spring or limit).
 struct Dof {
-  int coordinate = -1;  ///< of a revolute or prismatic joint
+  int coordinate = -1;  ///< for a revolute or prismatic joint
   description::JointAxis axis;
-  double rotor_inertia = 0.0;  ///< of its motor, as the joint feels it [kg m^2] or [kg]
+  double rotor_inertia = 0.0;  ///< rotor inertia reflected to the joint [kg m^2] or [kg]
 };
 
-/// A model as the dynamics sees it: a tree of segments. Constant; shared by all bodies of the model.
+/// A model as the dynamics sees it: a tree of segments. Immutable; shared by all bodies of the model.
 ///
-/// Velocities have the six of a free root first, angular before linear (of the root segment's centre of mass), in world
-/// axes; then each joint's, in the order of the segments: a ball joint's angular velocity in axes of its segment.
-/// Coordinates are those of the joints alone: an angle, a way, or the quaternion x y z w of a ball joint.
+/// The velocity vector starts with the six dofs of a free root in world axes: its angular velocity, then the linear
+/// velocity of its centre of mass. The joints follow in the order of the segments. A ball joint has the angular
+/// velocity in axes of its segment. Only joints have coordinates: an angle, a displacement, or the quaternion x y z w
+/// of a ball joint.
 class Mechanism {
  public:
-  /// Throws std::invalid_argument for tracks that are not on the root link.
+  /// Creates it from a model; throws std::invalid_argument for tracks that are not on the root link.
   Mechanism(const description::Model& model, description::Fidelity fidelity);
 
   struct LinkPlace {
@@ -65,7 +66,7 @@ class Mechanism {
   };
 
   const description::Model& model() const { return *model_; }
-  /// Lets the coordinate of a dof follow that of another one.
+  /// A coupling that makes the coordinate of one dof follow that of another.
   struct Follower {
     int dof = 0;
     int leader = 0;
@@ -73,34 +74,34 @@ class Mechanism {
     double offset = 0.0;
   };
   const std::vector<Follower>& followers() const { return followers_; }
-  /// What devices drive beside joints.
+  /// Returns what the devices drive other than joints.
   const DeviceOutputs& outputs() const { return outputs_; }
 
   const std::vector<Segment>& segments() const { return segments_; }
   const std::vector<Dof>& dofs() const { return dofs_; }
   const LinkPlace& link(std::size_t index) const { return links_[index]; }
   const JointPlace& joint(std::size_t index) const { return joints_[index]; }
-  /// All coordinates where every joint is at zero.
+  /// Returns all coordinates with every joint at zero.
   const std::vector<double>& zero_coordinates() const { return zero_coordinates_; }
-  /// A single rigid body, free to move.
+  /// Returns whether it is a single rigid body that is free to move.
   bool is_free_body() const { return segments_.size() == 1 && segments_[0].motion == Motion::free; }
   bool has_free_root() const { return segments_[0].motion == Motion::free; }
-  /// The root is free, and keeps its velocity whatever pushes it: to the solver it is as heavy as 1e15 kg.
+  /// Returns whether the root is free and keeps its velocity under any force: the solver gives it a mass of 1e15 kg.
   bool has_kinematic_root() const { return has_free_root() && model_->links[0].is_kinematic; }
-  /// Wheels are simulated: what drives is their joints' motors.
+  /// Returns whether wheels are simulated; the motors of their joints then drive the robot.
   bool has_wheels() const { return has_wheels_; }
 
-  /// Whether a segment with all that hangs on it has less than a quarter of the whole mass: what holds on there
-  /// moves it easily and the rest hardly.
+  /// Returns whether a segment and everything it carries have less than a quarter of the total mass. A connection there
+  /// easily moves this part and hardly moves the rest.
   bool is_light(int segment) const { return is_light_[static_cast<std::size_t>(segment)] != 0; }
 
   int dof_count() const { return static_cast<int>(dofs_.size()); }
-  /// Doubles that a vector of velocities takes in the solver, padded with zeros; also what is welded to the world has
-  /// some.
+  /// Returns the length of a velocity vector in the solver, padded with zeros. A mechanism welded to the world has such
+  /// a vector too.
   std::ptrdiff_t stride() const { return (std::max(dof_count(), 1) + lanes - 1) / lanes * lanes; }
-  /// By dof: the next one on the way to the root, -1: none.
+  /// Returns, by dof, the next dof towards the root, or -1 if there is none.
   const std::vector<int>& parents() const { return parents_; }
-  /// Whether the way from each dof to the root is the next lower dof, and so on down to 0.
+  /// Returns whether the parent of each dof is the next lower dof, down to 0.
   bool is_chain() const { return is_chain_; }
 
  private:

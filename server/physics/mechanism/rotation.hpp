@@ -5,12 +5,12 @@
 
 namespace cohort::physics {
 
-/// The rotation by |v| about v, for any v [rad].
+/// Returns the rotation by |v| about v, for any v [rad].
 inline Eigen::Quaterniond rotation_by(const Eigen::Vector3d& v) {
   const double half_squared = 0.25 * v.squaredNorm();
   double cosine = 0.0;
   double sine_over_half = 0.0;  // sin(x) / x of the half angle x
-  // Of the usual turn in one step, less than half a radian, the Taylor series are exact to the last bits.
+  // For the usual rotation in one step, less than half a radian, the Taylor series are exact to the last bits.
   constexpr double small = 0.0625;
   if (half_squared < small) {
     const double x = half_squared;
@@ -27,10 +27,10 @@ inline Eigen::Quaterniond rotation_by(const Eigen::Vector3d& v) {
   return {cosine, axis.x(), axis.y(), axis.z()};
 }
 
-/// The rotation vector of a small rotation.
+/// Returns the rotation vector of a small rotation.
 inline Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) { return (q.w() < 0.0 ? -2.0 : 2.0) * q.vec(); }
 
-/// The rotation by `angle` about a unit vector.
+/// Returns the rotation by `angle` about a unit vector.
 inline Eigen::Quaterniond rotation_about(const Eigen::Vector3d& axis, double angle) {
   const double sine = std::sin(0.5 * angle);
   return {std::cos(0.5 * angle), sine * axis.x(), sine * axis.y(), sine * axis.z()};

@@ -11,7 +11,7 @@ Belts::Belts(const Mechanism& mechanism) {
       const Mechanism::LinkPlace& link = mechanism.link(place.link);
       if (std::ranges::any_of(belts_, [&](const RunningLink& other) { return other.link == place.link; }))
         throw std::invalid_argument("'" + description::name_of(device) + "' drives the link '" +
-                                    mechanism.model().links[place.link].name + "', whose belt is driven already");
+                                    mechanism.model().links[place.link].name + "', which already has a belt");
       belts_.push_back({place.link, static_cast<std::size_t>(link.segment), link.X_SL.orientation * place.axis_L});
     }
 }

@@ -9,24 +9,23 @@
 
 namespace cohort::physics {
 
-/// The belts of one body: links whose surfaces run round them.
+/// The belts of one body: links whose surfaces move around them.
 class Belts {
  public:
   /// Throws std::invalid_argument if two devices drive one link.
   explicit Belts(const Mechanism& mechanism);
 
-  /// Sets the velocity of a belt [m/s]; returns whether it is another one than before. Belts are numbered in the order
-  /// of the devices.
+  /// Sets the velocity of a belt [m/s]; returns whether it changed. Belts are numbered in the order of the devices.
   bool set_velocity(std::size_t belt, double velocity) {
     return std::exchange(belts_[belt].velocity, velocity) != velocity;
   }
   OutputState state(std::size_t belt) const { return {0.0, belts_[belt].velocity, belts_[belt].force}; }
-  /// How the surface of a link runs, which is in its segment at `X_WS`.
+  /// Returns the motion of the surface of a link, whose segment is at `X_WS`.
   RunningSurface of_link(std::size_t link, const std::vector<Pose>& X_WS) const;
 
   bool is_empty() const { return belts_.empty(); }
   void unload();
-  /// Adds a force on a link, where its surface looks towards `outward_W`; nothing if it has no belt [N].
+  /// Adds a force on a link [N] where its surface faces `outward_W`. Does nothing if the link has no belt.
   void load(std::size_t link, const std::vector<Pose>& X_WS, const Eigen::Vector3d& outward_W,
             const Eigen::Vector3d& force_W);
 
@@ -35,8 +34,8 @@ class Belts {
   static void visit_state(Self& self, Visit&& visit) {
     for (auto& belt : self.belts_) visit(belt.velocity);
   }
-  /// The same for what they bore in the last step, which belts that sleep still bear. It decides nothing of how the
-  /// body goes on.
+  /// Calls `visit` for each load of the last step, which the belts of sleeping bodies keep. Loads do not affect the
+  /// further motion.
   template <class Self, class Visit>
   static void visit_loads(Self& self, Visit&& visit) {
     for (auto& belt : self.belts_) visit(belt.force);
@@ -48,7 +47,7 @@ class Belts {
     std::size_t segment = 0;
     Eigen::Vector3d axis_S = Eigen::Vector3d::Zero();
     double velocity = 0.0;
-    double force = 0.0;  // on what it carries, along its surface over the last step [N]
+    double force = 0.0;  // on its load, along its surface over the last step [N]
   };
   std::vector<RunningLink> belts_;
 };

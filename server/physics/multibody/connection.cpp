@@ -11,13 +11,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-// And back, exactly: what does not slip must not creep.
+// Converts the vector back to a rotation, exactly: a connection that does not slip must not creep.
 Eigen::Quaterniond rotation_of(const Vector3d& vector) {
   const Vector3d half = 0.5 * vector;
   return {std::sqrt(std::max(0.0, 1.0 - half.squaredNorm())), half.x(), half.y(), half.z()};
 }
 
-// From P as b carries it to P as a does: the way and, as a vector, the turning, in world axes.
+// Displacement from frame P as b carries it to P as a carries it: translation and rotation vector in world axes.
 Vector3d gap(const Pose& X_WPa, const Pose& X_WPb) { return X_WPa.position - X_WPb.position; }
 Vector3d twist(const Pose& X_WPa, const Pose& X_WPb) {
   return rotation_vector(X_WPa.orientation * X_WPb.orientation.conjugate());
@@ -85,8 +85,8 @@ void Connection::add_rows(Problem& problem, const Anchors& anchors, const Pose& 
   }
 }
 
-// Along the axes of P. A spring k with a damper c, both at the end of the step, is a row with a softness:
-// f = -k (x + h v) - c v, with the impulse i = h f, is v + i / (h (h k + c)) = -k x / (h k + c).
+// Adds rows along the axes of P. A spring k with a damper c, both at the end of the step, exerts f = -k (x + h v) - c
+// v. With the impulse i = h f this is a soft row: v + i / (h (h k + c)) = -k x / (h k + c).
 void Connection::add_yielding_rows(Problem& problem, Anchor a, Anchor b, const Pose& X_WPa, const Pose& X_WPb,
                                    double step) {
   has_rows_ = true;
@@ -120,7 +120,7 @@ void Connection::settle(const Pose& X_WSa, const Pose& X_WSb, double step) {
   if (!has_rows_) return;
   has_rows_ = false;
   impulses_ = turned(axes_W_, row_impulses_);
-  // Where a row gave all that it may, the rest is where the spring holds against just that.
+  // If a row reached its limit, the rest position moves to where the spring gives exactly that force.
   const Pose X_WPa = X_WSa * a_.X_SP;
   const Pose X_WPb = X_WSb * b_.X_SP;
   const Eigen::Matrix3d R = X_WPa.orientation.toRotationMatrix();
@@ -135,7 +135,7 @@ void Connection::settle(const Pose& X_WSa, const Pose& X_WSb, double step) {
     has_slipped = true;
     double& off = axis < 3 ? gap_P[axis] : twist_P[axis - 3];
     const double stretch = std::isinf(stiffness) || stiffness == 0.0 ? 0.0 : -force / stiffness;
-    // Never further away than it is: a damper may have taken its part of the force.
+    // The rest position never moves beyond the present one: a damper may have taken part of the force.
     off = off * stretch <= 0.0 ? 0.0 : std::copysign(std::min(std::abs(off), std::abs(stretch)), off);
   }
   if (!has_slipped) return;

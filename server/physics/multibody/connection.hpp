@@ -8,20 +8,20 @@
 
 namespace cohort::physics {
 
-/// Two segments held together as they were when they were connected, or as they came to be by slipping.
+/// Two segments held together in the relative pose in which they were connected, or to which they slipped.
 class Connection {
  public:
-  /// One end: a segment of a body that moves, or the world if there is no body. `X_SP`: the frame of the connection.
+  /// One end: a segment of a moving body, or the world if there is no body. `X_SP`: the frame of the connection.
   struct End {
     std::uint32_t member = Anchors::nobody;
     int segment = 0;
-    std::uint32_t link = 0;  ///< of the model; several may be one segment
+    std::uint32_t link = 0;  ///< link of the model; several may form one segment
     Pose X_SP;
-    std::uint32_t body = 0;  ///< in the world, also if it does not move
+    std::uint32_t body = 0;  ///< body of the world, moving or not
   };
   using Impulses = std::array<double, 6>;  ///< linear [N s], then angular [N m s]
 
-  /// `a` is on a body that moves.
+  /// `a` must be on a moving body.
   Connection(const End& a, const End& b, const ConnectionLimits& limits) : a_(a), b_(b), limits_(limits) {}
 
   const End& a() const { return a_; }
@@ -31,25 +31,25 @@ class Connection {
   void set_give(const ConnectionGive& give);
   bool holds() const { return holds_; }
   void release();
-  /// Releases it for what the last step did to it, which `wrench` tells until the end of the next.
+  /// Releases it because of its load in the last step, which `wrench` returns until the end of the next step.
   void break_now();
 
-  /// Adds three rows against moving apart and three against turning; X_WS: of the segments of both ends.
+  /// Adds three rows against relative translation and three against rotation. X_WS: poses of the segments of both ends.
   void add_rows(Problem& problem, const Anchors& anchors, const Pose& X_WSa, const Pose& X_WSb, double step);
-  /// Whether it has to be told where its ends are after each step.
+  /// Returns whether `settle` must be called after each step.
   bool may_slip() const { return yields_; }
-  /// After the step: takes over the impulses, and the rest from where it slipped.
+  /// Takes over the impulses of the step and, if it slipped, its new rest pose.
   void settle(const Pose& X_WSa, const Pose& X_WSb, double step);
 
-  /// On a by b over the last step, in world axes, at `point`. For a solver with rows of its own.
+  /// Impulses on a by b over the last step, in world axes, at `point`. For a solver with its own rows.
   Impulses& impulses() { return impulses_; }
   const Impulses& impulses() const { return impulses_; }
-  /// Halfway between the two ends, where the last step took its rows.
+  /// Returns the point of the last step's rows, halfway between the two ends.
   const Eigen::Vector3d& point() const { return point_W_; }
-  /// The sum over the last step at `point`; X_WSa and X_WSb: of the segments of both ends.
+  /// Returns the mean wrench over the last step at `point`. X_WSa and X_WSb: poses of the segments of both ends.
   Wrench wrench_on_a(const Pose& X_WSa, const Pose& X_WSb, double step) const;
   Wrench wrench_on_b(const Pose& X_WSa, const Pose& X_WSb, double step) const;
-  /// Whether the last step took more than it can bear.
+  /// Returns whether the load of the last step exceeded its limits.
   bool is_overloaded(double step) const;
 
   /// Calls `visit` for each number of the state, always in the same order.
@@ -83,11 +83,11 @@ class Connection {
   ConnectionLimits limits_;
   ConnectionGive give_;
   bool holds_ = true;
-  bool yields_ = false;  // it has, or had, a give
+  bool yields_ = false;  // it is or was compliant
   Impulses impulses_{};
-  // Of the last step, no part of the state:
+  // Data of the last step, not part of the state:
   Impulses breaking_{};
-  Impulses row_impulses_{};  // of what yields: along the axes of P
+  Impulses row_impulses_{};  // if compliant: along the axes of P
   Eigen::Matrix3d axes_W_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d point_W_ = Eigen::Vector3d::Zero();
   bool has_rows_ = false;

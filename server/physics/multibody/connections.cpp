@@ -104,9 +104,9 @@ void Connections::restore(SnapshotReader& reader, const std::function<bool(const
     for (const Connection::End& end : {a, b}) expect_placed(end.X_SP);
     if (a.member == Anchors::nobody || !is_there(a) || !is_there(b) || !(limits.force >= 0.0) ||
         !(limits.torque >= 0.0))
-      throw SnapshotError("the snapshot has a connection of a body that is not there");
+      throw SnapshotError("snapshot: invalid connection");
     if (number >= next_ || (!connections_.empty() && number <= connections_.back().number))
-      throw SnapshotError("the snapshot has connections that are out of order");
+      throw SnapshotError("snapshot: the connections are out of order");
     add(number, a, b, limits);
     Connection::visit_state(connections_.back().connection, StateRestorer{reader, StateRestorer::Numbers::limits});
   }

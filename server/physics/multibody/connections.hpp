@@ -9,20 +9,20 @@
 
 namespace cohort::physics {
 
-/// The connections of a world that hold, or broke in the last step, numbered from 0 in the order in which they came.
-/// What was released is forgotten, so that a world in which robots grip and let go for days costs what it did.
+/// The connections of a world that hold or broke in the last step, numbered from 0 in the order of their creation.
+/// Released ones are forgotten, so that the cost of a world stays constant when robots grip and release for days.
 class Connections {
  public:
-  /// Returns its number. `a` is on a body that moves.
+  /// Adds a connection and returns its number. `a` must be on a moving body.
   std::uint32_t add(const Connection::End& a, const Connection::End& b, const ConnectionLimits& limits);
   void release(std::uint32_t connection) {
     if (Connection* const found = find(connection)) found->release();
   }
-  /// Those at either end of a body that moves.
+  /// Releases the connections of a moving body, at either end.
   void release_of(std::uint32_t member);
-  /// Those at either end of any body of the world.
+  /// Releases the connections of any body of the world, at either end.
   void release_of_body(std::uint32_t body);
-  /// After a step, of all that hold and yield: `pose(end)` is X_WS of its segment.
+  /// Settles all compliant connections that hold, after a step. `pose(end)` returns X_WS of its segment.
   template <class PoseOf>
   void settle(PoseOf&& pose, double step) {
     for (auto& [number, connection] : connections_)
@@ -32,20 +32,20 @@ class Connections {
   void set_give(std::uint32_t connection, const ConnectionGive& give) {
     if (Connection* const found = find(connection)) found->set_give(give);
   }
-  /// Releases those that the last step took beyond their limits, and forgets what was released before.
+  /// Releases connections that the last step loaded beyond their limits, and forgets those that were released before.
   void break_overloaded(double step);
-  /// By that, ascending.
+  /// Returns the connections that `break_overloaded` released, in ascending order.
   std::span<const ConnectionId> broken() const { return broken_; }
 
-  /// nullptr if it was released.
+  /// Returns a connection, or nullptr if it was released.
   const Connection* find(std::uint32_t connection) const { return const_cast<Connections&>(*this).find(connection); }
-  /// How many there ever were.
+  /// Returns the number of connections ever made.
   std::uint32_t made() const { return next_; }
   bool holds(std::uint32_t connection) const {
     const Connection* const found = find(connection);
     return found != nullptr && found->holds();
   }
-  /// Calls `visit(connection)` for those that hold and whose end a is on this body, ascending.
+  /// Calls `visit(connection)` in ascending order for those that hold and whose end a is on this body.
   template <class Visit>
   void for_each_of(std::uint32_t member, Visit&& visit) {
     if (member >= of_member_.size()) return;
@@ -55,7 +55,7 @@ class Connections {
 
   void hash(StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
-  /// In the place of what there is. Throws SnapshotError if a connection has an end that is not there.
+  /// Replaces all connections by those of a snapshot. Throws SnapshotError if an end of a connection does not exist.
   void restore(SnapshotReader& reader, const std::function<bool(const Connection::End&)>& is_there);
 
  private:
@@ -69,11 +69,12 @@ class Connections {
 
   std::vector<Numbered> connections_;  // ascending
   std::uint32_t next_ = 0;
-  std::vector<std::vector<std::uint32_t>> of_member_;  // of end a, ascending
+  std::vector<std::vector<std::uint32_t>> of_member_;  // by the member of end a, ascending
   std::vector<ConnectionId> broken_;
 };
 
-/// Whether there is such an end: a link of one of the `bodies`, on its segment `segment_of(body, link)` if it moves.
+/// Returns whether such an end exists: a link of one of the `bodies`, on its segment `segment_of(body, link)` if it
+/// moves.
 template <class Body, class Models, class SegmentOf>
 bool is_there(const Connection::End& end, const std::vector<Body>& bodies, const Models& models,
               SegmentOf&& segment_of) {

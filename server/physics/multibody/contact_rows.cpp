@@ -14,7 +14,7 @@ struct Tangents {
   bool are_along = false;  // the first is along the direction of friction
 };
 
-// A direction that stands on the surface, up to this, is none [rad].
+// A friction direction within this angle of the normal is ignored [rad].
 constexpr double upright = 1e-3;
 
 Tangents tangents_of(const ContactPoints& contact, const Eigen::Vector3d& normal) {
@@ -34,10 +34,10 @@ Tangents tangents_of(const ContactPoints& contact, const Eigen::Vector3d& normal
 
 namespace {
 
-// Where friction starts from. Between two bodies at nothing: what a heap of bodies needed a step ago would rock it, as
-// the solver cannot follow that fast. On the world at what it was, but only the sum over the points, each with its
-// share of the load: they can strain against each other without any effect, and that strain would grow from step to
-// step.
+// Sets the initial impulses of friction. Between two moving bodies they are zero: the friction that a heap needed one
+// step ago would rock it, as the solver cannot follow that fast. On the world, the sum over the points is kept and
+// shared among them by load. Otherwise points could strain against each other without any effect, and this strain would
+// grow from step to step.
 void start_friction(ContactPoints& contact, bool on_the_world) {
   double load = 0.0;
   Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
@@ -54,16 +54,16 @@ void start_friction(ContactPoints& contact, bool on_the_world) {
   }
 }
 
-// A spring with a damper, as in Connection::add_yielding_rows; where there is a gap, it begins when that is closed.
+// A spring with a damper, as in Connection::add_yielding_rows. If there is a gap, it starts when the gap is closed.
 void soften(Row& push, double gap, const SurfacePair& surfaces, double step) {
   const double resistance = step * surfaces.stiffness + surfaces.damping;
   push.target = gap > 0.0 ? -gap / step : -surfaces.stiffness * gap / resistance;
   push.soften(1.0 / (step * resistance));
 }
 
-// Of a rigid track on the ground any share of the load under each of its points would do, and a vehicle that turns
-// wanders with what the solver happens to find. So points under belts give a little, by this share of what they would
-// with no load at all: what is deeper bears more.
+// Compliance of points under belts, as a share of the compliance without any load: deeper points carry more. For a
+// rigid track any distribution of the load would be valid, and a turning vehicle would drift with the one that the
+// solver finds.
 constexpr double give_of_belts = 0.05;
 
 void add_point_rows(Problem& problem, Anchor a, Anchor b, const Tangents& tangents, ContactPoint& point,
@@ -91,7 +91,7 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, const Tangents& tangen
   };
   const bool is_directed = surfaces.directed != SurfacePair::Directed::neither;
   const double friction =
-      is_directed ? std::min(surfaces.friction, surfaces.second_friction) : surfaces.friction;  // of a disc
+      is_directed ? std::min(surfaces.friction, surfaces.second_friction) : surfaces.friction;  // radius of the disc
   const Eigen::Vector3d running_W = running.velocity_at(point.normal_W);
   const auto rub = [&](const Eigen::Vector3d& tangent, double coefficient, double* kept) {
     Row& row = problem.add_force_row(a, b, point.position_W, tangent, kept);

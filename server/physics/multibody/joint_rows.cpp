@@ -10,12 +10,12 @@
 namespace cohort::physics {
 namespace {
 
-// Of what a motor can brake with, the least that is counted on, however much gravity takes of it.
+// The least share of a motor's braking ability to count on, however much gravity takes of it.
 constexpr double least_braking_share = 0.1;
 
-// The greatest velocity from which a joint that has `way` to go comes to rest there, slower by `braking` [1/s^2] times
-// the step in each step: the sum of v, v - b h, v - 2 b h ... times h is `way`. What is left for one step is done in
-// one.
+// Returns the greatest velocity from which a joint can come to rest after `way`. It decelerates by b = `braking`
+// [1/s^2] times the step h in each step: the sum of v, v - b h, v - 2 b h ... times h is `way`. A way that one step can
+// cover is covered in one.
 double velocity_to_rest(double way, double braking, double step) {
   const double last = braking * step * step;
   if (!(way > last)) return way / step;
@@ -48,14 +48,14 @@ void JointRows::apply_efforts(Equations& equations, double step) {
   }
 }
 
-// `row`: of the motor, with the velocities as they are without any impulse of the step.
+// `row`: the motor's row, with velocities before any impulse of the step.
 double JointRows::velocity_towards_target(const Motor& motor, const Row& row, const Problem& problem,
                                           const BodyMotion& body, double step) {
   const Dof& dof = body.mechanism().dofs()[static_cast<std::size_t>(motor.dof)];
   if (dof.coordinate < 0) return 0.0;
   const double way = std::clamp(motor.target, dof.axis.lower, dof.axis.upper) - body.coordinate(dof);
   const double direction = way < 0.0 ? -1.0 : 1.0;
-  // What the motor can do, less what gravity and inertia do to the joint in this direction.
+  // Deceleration by the motor less the acceleration by gravity and inertia in this direction.
   const double by_motor = row.inverse > 0.0 ? motor.max_effort / row.inverse : 0.0;
   const double by_others = direction * (problem.velocity(row) - body.velocities()[motor.dof]) / step;
   const double braking = std::max(by_motor - by_others, least_braking_share * by_motor);
@@ -86,19 +86,19 @@ void JointRows::add_rows(Problem& problem, int index, const BodyMotion& body, do
     Row& row = problem.add_dofs_row(index, dof, leader, -multiplier, &follower_impulses_[i]);
     row.target = -correction_share * (coordinate(dof) - multiplier * coordinate(leader) - offset) / step;
   }
-  // One-sided rows, as a contact is: inactive until a step could pass the limit.
+  // One-sided rows, like a contact: inactive until a step could pass the limit.
   for (Limit& limit : limits_) {
     const Dof& dof = body.mechanism().dofs()[static_cast<std::size_t>(limit.dof)];
     const double position = body.coordinate(dof);
     const double velocity = body.velocities()[limit.dof];
-    // How far this step can take it: by how it moves already, by what acts on it, and by its motor.
+    // Upper bound on the displacement in this step: by the present velocity, by the forces on it, and by its motor.
     const double fastest = std::max(std::abs(velocity), std::abs(problem.equations(index).velocity()[limit.dof]));
     const double by_motor = has_motor(limit.dof) ? motor(limit.dof).most_change : 0.0;
     const double reach = (2.0 * fastest + by_motor) * step + 1e-3;
     // A spring with a damper, as in Connection::add_yielding_rows; infinite where the limit is rigid.
     const double resistance = step * dof.axis.limit_stiffness + dof.axis.limit_damping;
     const bool is_rigid = std::isinf(resistance);
-    // The velocity that just closes the gap, or that takes back a share of an overshoot.
+    // Returns the velocity that closes the gap exactly, or corrects a share of an overshoot.
     const auto target = [&](double gap) {
       if (gap > 0.0) return gap / step;
       return is_rigid ? correction_share * gap / step : dof.axis.limit_stiffness * gap / resistance;

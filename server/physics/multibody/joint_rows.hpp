@@ -18,14 +18,14 @@ class JointRows {
  public:
   explicit JointRows(const Mechanism& mechanism);
 
-  /// What a motor is told.
+  /// The kind of command to a motor.
   using Control = JointTarget::Kind;
 
-  /// A motor on one dof, with a limited force or torque; `max_velocity` is for going to a position. At most one for
-  /// each dof.
+  /// Adds a motor to one dof, with a limited force or torque; at most one for each dof. `max_velocity` applies when it
+  /// moves to a position.
   void add_motor(int dof, double max_effort, double max_velocity);
   bool has_motor(int dof) const { return motor_of_[static_cast<std::size_t>(dof)] >= 0; }
-  /// Whether that is something new.
+  /// Returns whether the command changed.
   bool set_target(int dof, Control control, double target) {
     Motor& told = motor(dof);
     const bool is_new = told.control != control || told.target != target;
@@ -33,10 +33,10 @@ class JointRows {
     told.target = target;
     return is_new;
   }
-  /// Impulse of the motor over the last step [N s] or [N m s].
+  /// Returns the impulse of the motor over the last step [N s] or [N m s].
   double motor_impulse(int dof) const { return motor(dof).impulse; }
 
-  /// Changes the velocities by what motors give that are told an effort; before the rows.
+  /// Changes the velocities by the motors with an effort command; call it before adding rows.
   void apply_efforts(Equations& equations, double step);
   void add_rows(Problem& problem, int index, const BodyMotion& body, double step);
 
@@ -64,7 +64,7 @@ class JointRows {
     Control control = Control::velocity;
     double target = 0.0;
     double impulse = 0.0;
-    double most_change = 0.0;  // of the dof's velocity, by the motor in the present step
+    double most_change = 0.0;  // greatest change of the dof's velocity by the motor in this step
   };
   struct Limit {
     int dof = 0;

@@ -64,7 +64,7 @@ void LoopRows::add_rows(Problem& problem, int index, const BodyMotion& body, dou
     };
     const auto correct = [&](Row& row, double off, double most) {
       row.target = correction(off, most, step);
-      if (row.inverse == 0.0) row.set_limits(0.0, 0.0);  // the tree holds it there already
+      if (row.inverse == 0.0) row.set_limits(0.0, 0.0);  // the tree already constrains it
     };
     const auto hold = [&](const Vector3d& direction_W) {
       correct(problem.add_force_row(child, parent, loop.point_W, direction_W, keep(direction_W)),

@@ -10,19 +10,19 @@ namespace cohort::physics {
 class BodyMotion;
 class Problem;
 
-/// The joints of one body that close loops: rows between two of its segments, in place of what a tree of joints cannot
-/// have. What they come apart by is taken away by a share in each step.
+/// The joints of one body that close kinematic loops: rows between two of its segments, for joints that a tree cannot
+/// have. Each step corrects a share of their position error.
 class LoopRows {
  public:
   explicit LoopRows(const Mechanism& mechanism);
 
   void add_rows(Problem& problem, int index, const BodyMotion& body, double step);
-  /// Whether one of them holds on to the world.
+  /// Returns whether one of them is attached to the world.
   bool reach_the_world() const;
-  /// Whether a joint connects the two segments.
+  /// Returns whether one of these joints connects the two segments.
   bool connect(int segment, int other) const;
   /// Calls `visit(parent, child, point_W, linear_W, angular_W)` for each joint: its two links, and the impulse on the
-  /// child in the last step, at a point [N s, N m s].
+  /// child in the last step at a point [N s, N m s].
   template <class Visit>
   void for_each_impulse(Visit&& visit) const {
     for (const Loop& loop : loops_) {
@@ -50,12 +50,12 @@ class LoopRows {
     std::size_t child_link = 0;
     int parent = -1;  // segment; -1: the world
     int child = 0;
-    Pose X_SP_parent;  // the joint's frame as the parent carries it; of the world, in the model
+    Pose X_SP_parent;  // the joint's frame in the parent; in the model's frame for the world
     Pose X_SP_child;
     Eigen::Vector3d axis_P = Eigen::Vector3d::UnitZ();
     Eigen::Vector3d second_axis_P = Eigen::Vector3d::UnitZ();
     std::array<double, most_rows> impulses{};
-    // Of this step: rows against moving apart, then against turning.
+    // Data of this step: rows against translation, then against rotation.
     std::array<Eigen::Vector3d, most_rows> directions_W{};
     Eigen::Vector3d point_W = Eigen::Vector3d::Zero();
     int linear_count = 0;

@@ -31,7 +31,7 @@ void Multibody::build_devices() {
 
 void Multibody::add_motor(int dof, double max_effort, double max_velocity, const std::string& device) {
   if (joints_.has_motor(dof))
-    throw std::invalid_argument("motor '" + device + "' drives a joint that has a motor already");
+    throw std::invalid_argument("motor '" + device + "' drives a joint that already has a motor");
   joints_.add_motor(dof, max_effort, max_velocity);
 }
 
@@ -52,7 +52,7 @@ bool Multibody::set_target(const DeviceOutputs::Wheels& side, double velocity) {
   return is_new;
 }
 
-// Wheels of one side turn alike but for slip: their mean.
+// Returns the mean over the wheels of one side: they turn alike except for slip.
 OutputState Multibody::state(const DeviceOutputs::Wheels& side) const {
   OutputState state;
   for (const auto& [dof, sense] : side.wheels) {

@@ -13,10 +13,10 @@
 
 namespace cohort::physics {
 
-/// One instance of a model that moves: its motion, its rows, and the devices that drive it.
+/// One moving instance of a model: its motion, its rows, and the devices that drive it.
 class Multibody {
  public:
-  /// The mechanism is shared and must outlive this; X_WM places the model with all its joints at zero. Throws
+  /// Places the model at X_WM with all its joints at zero. The mechanism is shared and must outlive this. Throws
   /// std::invalid_argument for a device that cannot be simulated.
   Multibody(const Mechanism& mechanism, description::Dynamics dynamics, const Pose& X_WM, BodyId body);
   Multibody(const Multibody&) = delete;
@@ -27,12 +27,12 @@ class Multibody {
   BodyMotion& motion() { return motion_; }
   const BodyMotion& motion() const { return motion_; }
 
-  /// Whether that is something new. The joint has to have a motor.
+  /// Sets the command of a joint's motor, which must exist; returns whether it changed.
   bool set_joint_target(std::size_t joint, JointRows::Control control, double target);
-  /// Of the joint's motor over the last step [N m] or [N], 0 if it has none.
+  /// Returns the effort of the joint's motor over the last step [N m] or [N], 0 if it has none.
   double joint_effort(std::size_t joint) const;
 
-  /// Sets the velocity that an output of a device goes to; returns whether it is another one than before.
+  /// Sets the target velocity of a device's output; returns whether it changed.
   bool set_target(const DeviceOutputs::Track& track, double velocity) {
     return treels_[track.pair].set_target(track.side, velocity);
   }
@@ -47,28 +47,28 @@ class Multibody {
   RunningSurface surface_of(std::size_t link) const { return belts_.of_link(link, motion_.segment_poses()); }
 
   bool has_belts() const { return !belts_.is_empty(); }
-  /// Forgets what the belts of this body bear.
+  /// Clears the loads of the belts.
   void unload_belts() { belts_.unload(); }
-  /// Adds what a link with a belt bears, over the last step, where its surface looks towards `outward_W`.
+  /// Adds a force over the last step to the load of a link with a belt, where its surface faces `outward_W`.
   void load_belt(std::size_t link, const Eigen::Vector3d& outward_W, const Eigen::Vector3d& force_W) {
     belts_.load(link, motion_.segment_poses(), outward_W, force_W);
   }
 
   const LoopRows& loops() const { return loops_; }
-  /// Those drives that stand on tracks, not on wheels.
+  /// Returns the track drives that stand on the ground without wheels.
   std::vector<TrackRows>& treels() { return treels_; }
   const std::vector<TrackRows>& treels() const { return treels_; }
 
-  /// Changes the velocities by what motors give that are told an effort.
+  /// Changes the velocities by the motors with an effort command.
   void apply_efforts(Equations& equations, double step) { joints_.apply_efforts(equations, step); }
-  /// Adds the rows of joints and drives; `index`: of this body in the problem.
+  /// Adds the rows of joints and drives. `index`: index of this body in the problem.
   void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
-  /// Takes the velocities that the solver found and moves the body by them.
+  /// Moves the body with the velocities that the solver found.
   void integrate(const double* velocities, double step) {
     last_step_ = step;
     physics::integrate(motion_, velocities, step);
   }
-  /// The same of a body in flight; physics::fly says what the parameters are.
+  /// Moves a body in flight; the parameters are those of physics::fly.
   void fly(const double* velocities, const Eigen::Vector3d& impulse_W, const Eigen::Vector3d& angular_impulse_W,
            const Eigen::Vector3d& gravity, double step) {
     last_step_ = step;
@@ -84,7 +84,7 @@ class Multibody {
     Belts::visit_state(self.belts_, visit);
     visit(self.last_step_);
   }
-  /// The same for what its belts bear, which is saved but not part of the state.
+  /// Calls `visit` for each load of its belts; loads are saved but not part of the state.
   template <class Self, class Visit>
   static void visit_loads(Self& self, Visit&& visit) {
     Belts::visit_loads(self.belts_, visit);

@@ -85,7 +85,7 @@ Row& Problem::add_dofs_row(int body, int dof, int other, double share, double* k
   return finish_row(row, {body}, {});
 }
 
-// What the impulses of a plane give is a symmetric matrix, which has this as its greater eigenvalue.
+// The response to impulses in the plane is a symmetric matrix; this is its greater eigenvalue.
 void Problem::join_to_cone() {
   Row& second = rows_.back();
   Row& first = rows_[rows_.size() - 2];

@@ -9,7 +9,7 @@
 namespace cohort::physics {
 namespace {
 
-// A ground point counts from this far above the surface, so that landing is seen before it happens [m].
+// A ground point is active from this height above the surface, so that a landing is detected before it happens [m].
 constexpr double reach = 0.01;
 
 constexpr std::array sides{Side::left, Side::right};
@@ -34,7 +34,7 @@ void TrackRows::find_ground(const geometry::Scene& scene, const SurfacePairs& su
   std::size_t i = 0;
   for (const Side side : sides) {
     for (const double end : {drive_->half_contact_length, -drive_->half_contact_length}) {
-      // A track that reaches over an edge or a slit stands on the outermost part that has ground.
+      // A track that extends over an edge or a gap stands on its outermost part with ground under it.
       Point& point = points_[i++];
       for (const double share : {1.0, 0.5, 0.0}) {
         point.position_W = centre_W + share * end * R.col(0) + y_of(side) * R.col(1);
@@ -68,10 +68,10 @@ std::optional<std::uint32_t> TrackRows::solid_under(Side side) const {
 void TrackRows::add_rows(Problem& problem, int index, const Anchors& anchors, double step) {
   const Anchor hull{index, 0};
   const int first = problem.row_count();
-  std::array<int, 3> begin{first, first, first};  // of the normal rows of each side, and one past the last
+  std::array<int, 3> begin{first, first, first};  // normal rows of each side, and one past the last
   std::array<double, 2> friction{infinity, infinity};
-  std::array<Anchor, 2> under;               // what each track stands on: of two things the one under its rear
-  std::array<Eigen::Vector3d, 2> running_W;  // how that runs
+  std::array<Anchor, 2> under;               // the ground of each track; of two solids, the rear one
+  std::array<Eigen::Vector3d, 2> running_W;  // its surface velocity
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::size_t side = i / 2;
     Point& point = points_[i];
@@ -121,12 +121,11 @@ void TrackRows::add_rows(Problem& problem, int index, const Anchors& anchors, do
 
 void TrackRows::read_rows(const Problem& problem, double step) {
   for (Track& track : tracks_) {
-    track.state.velocity = track.target;  // a track that slips or hangs in the air turns as commanded
+    track.state.velocity = track.target;  // a slipping or airborne track moves as commanded
     if (track.row >= 0) {
       const Row& row = problem.rows()[static_cast<std::size_t>(track.row)];
       const bool slips = row.upper < row.cap && std::abs(row.impulse) >= row.upper;
-      if (!slips)
-        track.state.velocity = problem.velocity(row) - track.carried;  // one that grips turns as the ground goes by
+      if (!slips) track.state.velocity = problem.velocity(row) - track.carried;  // a gripping track follows the ground
     }
     track.state.position += track.state.velocity * step;
     track.state.effort = track.impulse / step;

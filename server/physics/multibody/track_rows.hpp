@@ -13,52 +13,53 @@ namespace cohort::physics {
 
 class Problem;
 
-/// Both tracks of a robot, without wheels: up to four ground points under the root link that push, one drive row for
-/// each side and one row against sliding sideways, 7 rows in all. Traction is limited by the motor and by friction
-/// under the normal impulses of the same iteration. Against wheels with contacts it needs a quarter of the rows, and a
-/// robot told to stand still stands still.
+/// Both tracks of a robot, without wheels (treels), in 7 rows. Up to four ground points under the root link support it;
+/// each side has one drive row, and one row acts against lateral sliding. Traction is limited by the motor and by
+/// friction under the normal impulses of the same iteration. Simulated wheels need four times as many rows. A robot
+/// with treels that is commanded to stand still does not creep.
 class TrackRows {
  public:
-  /// `X_SL`: the drive's link in the root segment.
+  /// `X_SL`: pose of the drive's link in the root segment.
   TrackRows(const description::Model& model, const description::TrackPair& drive, const Pose& X_SL)
       : drive_(&drive), surface_(surface_of_tracks(model, drive)), X_SL_(X_SL) {}
 
-  /// Whether that is something new.
+  /// Sets the target velocity of a track; returns whether it changed.
   bool set_target(Side side, double velocity) { return std::exchange(side_of(side).target, velocity) != velocity; }
   const OutputState& track(Side side) const { return side_of(side).state; }
 
-  /// Where the ground is looked for. `X_WS`: the root segment.
+  /// Returns the region that is searched for ground. `X_WS`: pose of the root segment.
   geometry::Bounds ground_region(const Pose& X_WS) const;
-  /// Looks for what each ground point stands on. `candidates`: the solids of other bodies in the ground region.
+  /// Finds the ground under each ground point. `candidates`: the solids of other bodies in the ground region.
   void find_ground(const geometry::Scene& scene, const SurfacePairs& surfaces, const Pose& X_WS,
                    std::span<const std::uint32_t> candidates);
-  /// Asks how the surface of what was found runs: `velocity_of(ground)` against its body [m/s].
+  /// Stores the surface velocity of the ground: `velocity_of(ground)` is relative to its body [m/s].
   template <class VelocityOf>
   void find_belts(const VelocityOf& velocity_of) {
     for (Point& point : points_)
       if (point.ground) point.running_W = velocity_of(*point.ground);
   }
-  /// Calls `visit(solid)` for what was found.
+  /// Calls `visit(solid)` for each solid found as ground.
   template <class Visit>
   void for_each_ground(Visit&& visit) const {
     for (const Point& point : points_)
       if (point.ground) visit(point.ground->solid);
   }
 
-  /// The link that the tracks are on.
+  /// Returns the link that carries the tracks.
   std::size_t link() const { return drive_->link; }
-  /// Calls `visit(solid, point_W, impulse_W)` for what each solid under the tracks did to the link in the last step.
+  /// Calls `visit(solid, point_W, impulse_W)` for the impulse of each solid under the tracks on the link in the last
+  /// step.
   template <class Visit>
   void for_each_impulse(Visit&& visit) const;
 
-  /// The mean normal of what was found, up from it; zero if nothing was.
+  /// Returns the mean upward normal of the ground, or zero if there is none.
   Eigen::Vector3d up() const {
     const std::optional<Directions> along = directions();
     return along ? Eigen::Vector3d(along->forward_W.cross(along->left_W)) : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }
 
   void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
-  /// Takes over what the tracks do from the solved rows.
+  /// Reads the state of the tracks from the solved rows.
   void read_rows(const Problem& problem, double step);
 
   /// Calls `visit` for each number of the state, always in the same order.
@@ -79,26 +80,25 @@ class TrackRows {
   struct Track {
     double target = 0.0;
     OutputState state;
-    double impulse = 0.0;  // of the drive row
-    int row = -1;          // of this step, -1 while no ground point of this side touches
-    double carried = 0.0;  // of this step: how fast the surface under it runs forwards [m/s]
+    double impulse = 0.0;  // drive row
+    int row = -1;          // drive row in this step; -1: no ground point of this side touches
+    double carried = 0.0;  // forward velocity of the surface under it in this step [m/s]
   };
   struct Point {
     double impulse = 0.0;
-    // Of this step:
+    // Data of this step:
     Eigen::Vector3d position_W = Eigen::Vector3d::Zero();
     std::optional<Ground> ground;
-    double friction = 0.0;  // against it
+    double friction = 0.0;  // with the ground
     Eigen::Vector3d running_W = Eigen::Vector3d::Zero();
   };
-  /// Directions on the ground in this step, those of a track that rolls forwards and to its left; zero if nothing is
-  /// under the tracks.
+  /// Directions along the ground in this step: forwards and to the left of the tracks.
   struct Directions {
     Eigen::Vector3d forward_W = Eigen::Vector3d::Zero();
     Eigen::Vector3d left_W = Eigen::Vector3d::Zero();
   };
   std::optional<Directions> directions() const;
-  /// What a side stands on: of two things the one under its rear.
+  /// Returns the solid under a side; of two solids, the one under its rear end.
   std::optional<std::uint32_t> solid_under(Side side) const;
   Eigen::Vector3d point_of(Side side) const { return X_WL_ * Eigen::Vector3d(0.0, y_of(side), drive_->ground_height); }
   Eigen::Vector3d middle() const { return X_WL_ * Eigen::Vector3d(0.0, 0.0, drive_->ground_height); }
@@ -106,13 +106,13 @@ class TrackRows {
   const Track& side_of(Side side) const { return tracks_[static_cast<std::size_t>(side)]; }
   double y_of(Side side) const { return side == Side::left ? drive_->half_gauge : -drive_->half_gauge; }
 
-  const description::TrackPair* drive_;  // of the model
+  const description::TrackPair* drive_;  // owned by the model
   description::Surface surface_;
   Pose X_SL_;
   std::array<Track, 2> tracks_;
   std::array<Point, 4> points_;  // left front, left rear, right front, right rear
   double lateral_impulse_ = 0.0;
-  Pose X_WL_;  // of this step
+  Pose X_WL_;  // in this step
 };
 
 template <class Visit>

@@ -12,7 +12,8 @@ struct HalfTurn {
   double cosine;
   double sine;
 };
-// Of half an angle. Of the usual turn in one step the Taylor series are exact to the last bits.
+// Returns sine and cosine of half an angle. For the usual rotation in one step, the Taylor series are exact to the last
+// bits.
 HalfTurn half_turn(double angle) {
   constexpr double small = 0.2;  // [rad]
   const double half = 0.5 * angle;

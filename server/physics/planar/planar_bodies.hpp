@@ -10,14 +10,14 @@
 
 namespace cohort::physics {
 
-/// Where the frame B of a body is, whose origin is at the centre of mass in the plane z = 0 and whose axes were the
-/// world's when the body was placed.
+/// The pose of a body's frame B. Its origin is at the centre of mass in the plane z = 0; its axes were the world's when
+/// the body was placed.
 struct PlanarPlace {
   double x = 0.0;
   double y = 0.0;
-  double turn_w = 1.0;  ///< cosine and sine of half the way it has turned since then
+  double turn_w = 1.0;  ///< cosine and sine of half its rotation since then
   double turn_z = 0.0;
-  double cosine = 1.0;  ///< of the whole, which follow from the half
+  double cosine = 1.0;  ///< cosine and sine of the rotation, computed from the half
   double sine = 0.0;
 
   Eigen::Vector2d rotate(const Eigen::Vector2d& vector_B) const {
@@ -31,23 +31,23 @@ struct PlanarPlace {
   }
 };
 
-/// Of the centre of mass [m/s], and about it [rad/s].
+/// The velocity of the centre of mass [m/s], and the angular velocity [rad/s].
 struct PlanarVelocity {
   double x = 0.0;
   double y = 0.0;
   double spin = 0.0;
 };
 
-/// Zero for what is fixed to the world.
+/// Inverse mass and inertia; zero for a body that is fixed to the world.
 struct PlanarInertia {
   double inverse_mass = 0.0;     ///< [1/kg]
   double inverse_inertia = 0.0;  ///< [1/(kg m^2)]
 };
 
-/// The bodies that move, and how they do: arrays over members, and where their links are.
+/// The moving bodies, as arrays over members: their poses and velocities, and the poses of their links.
 class PlanarBodies {
  public:
-  /// The model must outlive this. Returns the member's index, which counts up.
+  /// Adds a member and returns its index, which counts up. The model must outlive this.
   std::uint32_t add(const PlanarModel& model, const Pose& X_WM);
 
   std::size_t size() const { return members_.size(); }
@@ -68,7 +68,7 @@ class PlanarBodies {
   double joint_position(std::uint32_t member, std::size_t joint) const;
   double joint_velocity(std::uint32_t member, std::size_t joint) const;
 
-  /// Puts the model at X_WM, at rest, with its joints as they are.
+  /// Places the model at X_WM, at rest, with its joints unchanged.
   void place(std::uint32_t member, const Pose& X_WM);
   void stop(std::uint32_t member);
   /// Changes the velocities by an impulse at a point and an angular impulse [N s, N m s].
@@ -77,18 +77,18 @@ class PlanarBodies {
   void set_root_twist(std::uint32_t member, const Twist& twist);
   void set_joint_state(std::uint32_t member, std::size_t joint, std::span<const double> coordinates,
                        std::span<const double> velocities);
-  /// The joint has to have a motor.
+  /// Sets the command of a joint, which must have a motor.
   void set_joint_target(std::uint32_t member, std::size_t joint, JointRows::Control control, double target);
 
-  /// Takes the commands of the motors: from here on they are the velocities of this step, as far as limits let them.
+  /// Sets the joint velocities of this step to those commanded, within the joints' limits.
   void drive_joints(std::uint32_t index, double step);
-  /// Whether any motor turns in this step.
+  /// Returns whether any motor turns in this step.
   bool has_moving_joints(std::uint32_t member) const { return members_[member].has_moving_joints; }
-  /// What the joints in between give a point of a segment: its twist against B.
+  /// Returns the twist relative to B that the joints give to a point of a segment.
   Twist twist_in_body(std::uint32_t index, int segment, const Eigen::Vector3d& point_W) const;
-  /// False if the next step would leave the numbers.
+  /// Returns false if the next step would overflow.
   bool is_sensible(std::uint32_t index) const;
-  /// Moves by the velocities of this step. True if segments moved in the body.
+  /// Moves the body with the velocities of this step. Returns true if segments moved relative to B.
   bool integrate(std::uint32_t index, double step);
 
   /// Calls `visit` for each number of the state, always in the same order.
@@ -112,7 +112,7 @@ class PlanarBodies {
       visit.unusual(self.motors_[info.first_motor + i].control, JointRows::Control::velocity);
     }
   }
-  /// After the state was changed through `visit_state`.
+  /// Updates the poses after the state was changed through `visit_state`.
   void update_poses(std::uint32_t member);
 
  private:

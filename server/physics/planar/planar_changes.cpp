@@ -1,4 +1,4 @@
-// What changes in a planar world between steps, from outside.
+// Changes from outside to a planar world between steps.
 
 #include "server/physics/planar/planar_world.hpp"
 
@@ -58,7 +58,7 @@ void PlanarWorld::place_body(BodyId index, const Pose& X_WM) {
   scene_.update();
 }
 
-// Where there is no ground it stays where it was.
+// Without ground the body keeps its pose.
 void PlanarWorld::place_on_ground(std::uint32_t member, const Pose& X_WM) {
   const bool had_ground = members_[member].has_ground;
   SnapshotWriter before;

@@ -9,12 +9,13 @@
 namespace cohort::physics {
 namespace {
 
-// As in the full model: this near, a point counts for the solver, which lets it close the gap within the step [m].
+// As in the full model, points nearer than this are passed to the solver, which lets the bodies close the gap within
+// the step [m].
 constexpr double contact_margin = 0.005;
 
-// Solids that share less of their heights pass over each other, as what stands on a floor does over the floor [m].
+// Solids whose height ranges overlap by less pass over each other, like a body over the floor on which it stands [m].
 constexpr double least_shared_height = 1e-4;
-// Of a plane or a mesh: what is level up to this is ground, what is upright up to this is a wall [rad] or [m].
+// Tolerance for planes and meshes: level within this is ground, upright within this is a wall [rad] or [m].
 constexpr double level = 1e-3;
 
 constexpr std::size_t colliders_a_chunk = 32;
@@ -45,14 +46,14 @@ PlanarCollision::Outline PlanarCollision::outline_of(const description::Shape& s
       const Eigen::Vector2d normal = normal_W.head<2>().normalized();
       outline = HalfPlane{normal, normal.dot(X_WC.position.head<2>())};
     } else if (normal_W.head<2>().norm() > level) {
-      throw std::invalid_argument("a plane that is neither level nor upright cannot be planar");
+      throw std::invalid_argument("planar physics supports only level and upright planes");
     }
   } else if (const auto footprint = geometry::footprint_of(shape, X_WC)) {
     const auto* mesh = std::get_if<description::Mesh>(&shape);
     if (mesh == nullptr || mesh->convex) {
       outline = *footprint;
     } else if (footprint->highest - footprint->lowest > level) {
-      throw std::invalid_argument("a mesh that is neither flat nor convex cannot be planar");
+      throw std::invalid_argument("planar physics supports only flat and convex meshes");
     }
   }
   return outline;
@@ -96,7 +97,7 @@ void PlanarCollision::detect(WorkerPool& workers) {
   });
 }
 
-// Solids that this member may report.
+// Finds the solids with which this member may report a contact.
 void PlanarCollision::find_near(std::uint32_t index, std::vector<std::uint32_t>& near) const {
   near.clear();
   const Member& member = members_[index];
@@ -189,7 +190,7 @@ void PlanarCollision::restore(SnapshotReader& reader) {
       reader.read(pair.contact.count);
       if (pair.a < member.first_solid || pair.a >= member.first_solid + member.solid_count ||
           pair.b >= outlines_.size() || pair.contact.count < 0 || pair.contact.count > PlanarPoints::most)
-        throw SnapshotError("the snapshot has a contact of a solid that is not there");
+        throw SnapshotError("snapshot: invalid contact");
       pair.member_b = member_of_solid_[pair.b];
       for (PlanarPoint& point : pair.contact) PlanarPoint::visit_state(point, StateRestorer{reader});
     }

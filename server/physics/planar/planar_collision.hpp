@@ -13,17 +13,17 @@
 
 namespace cohort::physics {
 
-/// Two solids that touch, or are about to. `a` is of the member that reports them.
+/// Two solids that touch or are about to. `a` belongs to the member that reports them.
 struct PlanarPair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  std::uint32_t member_b = Anchors::nobody;  ///< `nobody`: b does not move
-  double z = 0.0;                            ///< in the middle of the heights that they share [m]
+  std::uint32_t member_b = Anchors::nobody;  ///< `nobody`: b is static
+  double z = 0.0;                            ///< middle of the common height range [m]
   PlanarPoints contact;
 };
 
-/// Finds where the outlines of bodies touch each other and the walls. Pairs are in the order of `a`, then of `b`, so
-/// nothing depends on the number of workers or on what was near before.
+/// Finds where the outlines of bodies touch each other and walls. Pairs are ordered by `a`, then by `b`, so that
+/// nothing depends on the number of workers or on earlier pairs.
 class PlanarCollision {
  public:
   /// The scene must outlive this.
@@ -33,46 +33,46 @@ class PlanarCollision {
     outlines_.reserve(solids);
     member_of_solid_.reserve(solids);
   }
-  /// Throws std::invalid_argument for a solid that does not move and is neither flat ground nor an upright wall.
+  /// Throws std::invalid_argument for a static solid that is neither flat ground nor an upright wall.
   static void check_static(const description::Shape& shape, const Pose& X_WC);
-  /// Adds the next solid of the scene, one that does not move: a wall, or what nothing can run into. Throws as
-  /// `check_static`.
+  /// Adds the next solid of the scene, a static one: a wall, or one that no body can hit. Throws as `check_static`.
   void add_static();
-  /// The next body that moves, or, `is_fixed`, whose segments do at the most. Its solids follow.
+  /// Adds the next moving body; its solids follow. `is_fixed`: its root is fixed to the world, and at most its segments
+  /// move.
   void add_member(bool is_fixed);
-  /// The next solid of the scene, one of the last member.
+  /// Adds the next solid of the scene to the last member.
   void add_moving();
-  /// After a solid that does not move was put elsewhere. Throws as `add_static`.
+  /// Updates a static solid that was placed elsewhere. Throws as `add_static`.
   void place_static(std::uint32_t solid) { outlines_[solid] = outline_of_static(solid); }
   /// Forgets a member that is no longer in the scene.
   void remove(std::uint32_t member);
-  /// Takes it in again.
+  /// Adds a removed member again.
   void put_back(std::uint32_t member) { members_[member].is_active = true; }
-  /// Forgets what a member touches.
+  /// Forgets the contacts of a member.
   void forget(std::uint32_t member);
 
-  /// Where a solid that moves is now; different ones from any thread.
+  /// Moves a solid of a moving body; threads may call it for different solids.
   void move(std::uint32_t solid, const Eigen::Vector2d& centre_W, const Eigen::Vector2d& axis_W) {
     auto& outline = std::get<geometry::Footprint>(outlines_[solid]);
     outline.centre = centre_W;
     outline.axis = axis_W;
   }
-  /// As `move`, with its shape and heights too.
+  /// Sets the outline of a solid: its pose, shape and heights; threads may call it as `move`.
   void set_outline(std::uint32_t solid, const geometry::Footprint& outline_W) { outlines_[solid] = outline_W; }
-  /// Where a member is now; its solids lie within `radius` of there and between two heights.
+  /// Moves a member; its solids lie within `radius` of this point and between two heights.
   void move_member(std::uint32_t member, const Eigen::Vector2d& centre_W) { places_[member].centre_W = centre_W; }
   void set_extent(std::uint32_t member, double radius, double lowest, double highest) {
     places_[member] = {places_[member].centre_W, radius, lowest, highest};
   }
 
-  /// Points that were there before keep their impulses.
+  /// Finds all pairs and points. Points that existed before keep their impulses.
   void detect(WorkerPool& workers);
 
-  /// The pairs that a member reports: with solids that do not move, and of members above it.
+  /// Returns the pairs that a member reports: with static solids, and with members of a higher index.
   std::span<PlanarPair> pairs_of(std::uint32_t member) { return members_[member].pairs; }
   std::span<const PlanarPair> pairs_of(std::uint32_t member) const { return members_[member].pairs; }
 
-  /// All points.
+  /// Saves and restores all points.
   void save(SnapshotWriter& writer) const;
   void restore(SnapshotReader& reader);
 
@@ -91,7 +91,7 @@ class PlanarCollision {
     double lowest = 0.0;
     double highest = 0.0;
   };
-  struct Memory {  // of one chunk
+  struct Memory {  // scratch memory of one chunk
     std::vector<std::uint32_t> near;
     std::vector<PlanarPair> pairs;
   };
@@ -107,7 +107,7 @@ class PlanarCollision {
   std::vector<Member> members_;
   std::vector<Place> places_;  // by member
   std::vector<PlanarGrid::Disc> discs_;
-  PlanarGrid grid_;             // of the active members that have solids
+  PlanarGrid grid_;             // holds the active members that have solids
   std::vector<Memory> memory_;  // by worker
 };
 

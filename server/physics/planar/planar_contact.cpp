@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 using geometry::Footprint;
 
-// Nearer than this two points have no direction between them [m].
+// The direction between two points nearer than this is undefined [m].
 constexpr double coincident = 1e-12;
 
 bool is_disc(const Footprint& footprint) { return footprint.half.x() == 0.0 && footprint.half.y() == 0.0; }
@@ -24,7 +24,7 @@ std::array<Vector2d, 4> corners_of(const Footprint& footprint) {
   return {footprint.centre - x - y, footprint.centre + x - y, footprint.centre + x + y, footprint.centre - x + y};
 }
 
-// From a rectangle without its rounding to a point: unit `normal`, and `distance`, negative inside.
+// The offset from a rectangle without its rounding to a point: unit `normal`, and `distance`, negative inside.
 struct Offset {
   Vector2d normal;
   double distance;
@@ -63,11 +63,11 @@ void find_disc_disc(const Footprint& a, const Footprint& b, double margin, Plana
 struct Face {
   double separation = -std::numeric_limits<double>::infinity();
   Vector2d normal = Vector2d::UnitX();  // outward
-  Vector2d middle = Vector2d::Zero();   // of the edge
+  Vector2d middle = Vector2d::Zero();   // middle of the edge
   double half_length = 0.0;
 };
 
-// The face of `of` that `other` is furthest out from.
+// Returns the face of `of` with the greatest separation from `other`.
 Face furthest_face(const Footprint& of, const Footprint& other) {
   Face best;
   const Vector2d between = other.centre - of.centre;
@@ -83,11 +83,11 @@ Face furthest_face(const Footprint& of, const Footprint& other) {
   return best;
 }
 
-// The two corners of a rectangle's edge that faces `direction`.
+// Returns the two corners of the rectangle's edge that faces `direction`.
 std::array<Vector2d, 2> facing_edge(const Footprint& rectangle, const Vector2d& direction) {
   const double along_x = rectangle.axis.dot(direction);
   const double along_y = across(rectangle).dot(direction);
-  // A segment has edges along it only.
+  // A segment has edges along its length only.
   const bool is_x = rectangle.half.y() > 0.0 && (rectangle.half.x() == 0.0 || std::abs(along_x) > std::abs(along_y));
   const Vector2d normal = is_x ? Vector2d(along_x < 0.0 ? -rectangle.axis : rectangle.axis)
                                : Vector2d(along_y < 0.0 ? -across(rectangle) : across(rectangle));
@@ -96,7 +96,7 @@ std::array<Vector2d, 2> facing_edge(const Footprint& rectangle, const Vector2d& 
   return {middle - half, middle + half};
 }
 
-// Cuts off what lies further than `limit` along `direction`. False if nothing is left.
+// Clips the part of an edge beyond `limit` along `direction`. Returns false if nothing is left.
 bool clip(std::array<Vector2d, 2>& edge, const Vector2d& direction, double limit) {
   const double first = direction.dot(edge[0]) - limit;
   const double second = direction.dot(edge[1]) - limit;
@@ -106,7 +106,7 @@ bool clip(std::array<Vector2d, 2>& edge, const Vector2d& direction, double limit
   return true;
 }
 
-// Of rectangles that are apart: two corners that face each other, where that is nearer than any edge.
+// Finds, for separated rectangles, the two corners that face each other, if they are nearer than any edge.
 bool find_corner_corner(const Footprint& a, const Footprint& b, double margin, PlanarPoints& found) {
   double nearest = std::numeric_limits<double>::infinity();
   bool is_corner = false;
@@ -137,7 +137,7 @@ void find_edges(const Footprint& a, const Footprint& b, double margin, PlanarPoi
   if (separation >= reach) return;
   if (separation > 0.0 && a.radius + b.radius > 0.0 && find_corner_corner(a, b, margin, found)) return;
 
-  // A little in favour of a, lest rounding swaps the two from step to step.
+  // Prefer a slightly, so that rounding does not swap the two from step to step.
   constexpr double favour = 1e-6;
   const bool is_on_a = face_a.separation >= face_b.separation - favour;
   const Face& face = is_on_a ? face_a : face_b;

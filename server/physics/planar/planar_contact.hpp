@@ -6,13 +6,13 @@
 
 namespace cohort::physics {
 
-/// Where two outlines touch, or are about to.
+/// A point at which two outlines touch or are about to.
 struct PlanarPoint {
   Eigen::Vector2d position_W = Eigen::Vector2d::Zero();  ///< halfway between the outlines
   Eigen::Vector2d normal_W = Eigen::Vector2d::Zero();    ///< unit, from b towards a
-  double gap = 0.0;                                      ///< [m], negative: they overlap
+  double gap = 0.0;                                      ///< [m]; negative if they overlap
 
-  // What the solver keeps from step to step [N s].
+  // Impulses that the solver keeps between steps for warm starting [N s].
   double normal_impulse = 0.0;
   double friction_impulse = 0.0;  ///< on a, along the normal turned left
 
@@ -27,7 +27,7 @@ struct PlanarPoint {
   }
 };
 
-/// The points of one pair of outlines; two hold any edge on any other.
+/// The points of one pair of outlines; two support any edge on any other.
 struct PlanarPoints {
   static constexpr int most = 2;
 
@@ -43,14 +43,14 @@ struct PlanarPoints {
   const PlanarPoint* end() const { return points.data() + count; }
 };
 
-/// What is behind an upright wall without end.
+/// The half-plane behind an infinite upright wall.
 struct HalfPlane {
   Eigen::Vector2d normal_W = Eigen::Vector2d::UnitX();  ///< unit, outward
-  double offset = 0.0;                                  ///< of the surface along the normal [m]
+  double offset = 0.0;                                  ///< position of the surface along the normal [m]
 };
 
-/// Adds the points where two outlines come nearer than `margin` [m]; heights do not matter. Exact for discs and
-/// rectangles. Of two rounded rectangles that both have edges, beyond their corners the nearest points count.
+/// Adds the points where two outlines are nearer than `margin` [m]; heights are ignored. Exact for discs and
+/// rectangles. For two rounded rectangles, both with edges, the nearest points are used beyond their corners.
 void find_planar_contact(const geometry::Footprint& a, const geometry::Footprint& b, double margin,
                          PlanarPoints& found);
 void find_planar_contact(const geometry::Footprint& a, const HalfPlane& b, double margin, PlanarPoints& found);

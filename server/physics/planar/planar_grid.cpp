@@ -13,7 +13,7 @@ void PlanarGrid::build(std::span<const Disc> discs) {
   const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(16, 2 * discs.size()));
   mask_ = buckets - 1;
 
-  // Counting sort into buckets: sizes, then ends, then discs from the last to the first.
+  // Counting sort into buckets: count, then prefix sums, then insert the discs from the last to the first.
   begin_.assign(buckets + 1, 0);
   bucket_of_disc_.resize(discs.size());
   for (std::size_t i = 0; i < discs.size(); ++i) {

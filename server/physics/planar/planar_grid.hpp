@@ -8,9 +8,9 @@
 
 namespace cohort::physics {
 
-/// Discs in the plane, in a hashed grid without an edge, each in the cell of its centre. The cells of a row lie side by
-/// side in memory, and so do the discs in them: a search reads three short stretches. Built at once; queries may then
-/// run from any thread.
+/// Discs in the plane, in an unbounded hashed grid, each in the cell of its centre. The cells of a row, and the discs
+/// in them, are contiguous in memory: a search reads three short ranges. Built at once; threads may then query it
+/// concurrently.
 class PlanarGrid {
  public:
   struct Disc {
@@ -20,13 +20,13 @@ class PlanarGrid {
     std::uint32_t item = 0;
   };
 
-  /// Equal input gives an equal grid, whatever was in it before.
+  /// Builds the grid; equal input gives an equal grid, regardless of its earlier content.
   void build(std::span<const Disc> discs);
 
-  /// Calls `visit(item)` once for each disc nearer to `disc` than `margin`, itself among them.
+  /// Calls `visit(item)` once for each disc nearer to `disc` than `margin`, including itself.
   template <class Visit>
   void for_each_near(const Disc& disc, double margin, Visit&& visit) const {
-    // No two radii together are more than a cell wide.
+    // The sum of any two radii is at most the width of a cell.
     const std::int64_t column = cell_of(disc.x - margin);
     const std::int64_t last_column = cell_of(disc.x + margin) + 1;
     const std::int64_t row = cell_of(disc.y - margin);
@@ -58,10 +58,10 @@ class PlanarGrid {
     return static_cast<std::size_t>((start + static_cast<std::uint64_t>(column)) & mask_);
   }
 
-  double inverse_ = 1.0;  // of the width of a cell [1/m]
+  double inverse_ = 1.0;  // 1 / width of a cell [1/m]
   std::uint64_t mask_ = 0;
-  std::vector<std::uint32_t> begin_;  // of each bucket in entries_, and one past the last
-  std::vector<Entry> entries_;        // in their order within a bucket
+  std::vector<std::uint32_t> begin_;  // start of each bucket in entries_, and one past the last
+  std::vector<Entry> entries_;        // in the order of discs within a bucket
   std::vector<std::uint32_t> bucket_of_disc_;
 };
 

@@ -100,7 +100,7 @@ double PlanarGround::solve_row(std::size_t index, double target, const Vector2d&
 
 double PlanarGround::solve_patch(const PlanarInertia& inertia, PlanarVelocity& velocity) {
   if (inertia.inverse_mass == 0.0 || rows_[0].limit == 0.0) return 0.0;
-  // What would stop it, cut down to what the ground can bear.
+  // The impulse that would stop the body, reduced to what the ground can give.
   std::array<double, 3> wanted{impulse_[0] - velocity.x / inertia.inverse_mass,
                                impulse_[1] - velocity.y / inertia.inverse_mass,
                                impulse_[2] - velocity.spin / inertia.inverse_inertia};
@@ -129,7 +129,7 @@ void PlanarGround::finish(const PlanarVelocity& velocity, double step) {
   for (std::size_t side = 0; side < tracks_.size(); ++side) {
     Track& track = tracks_[side];
     const Row& row = rows_[side];
-    // As in the full model: one that slips turns as commanded, one that grips as the ground goes by.
+    // As in the full model, a slipping track moves as commanded and a gripping one follows the ground.
     const bool slips = row.limit < motor_limit_ && std::abs(impulse_[side]) >= row.limit;
     track.state.velocity = slips ? track.target : speed_along(forward_W_, row.lever, velocity);
     track.state.position += track.state.velocity * step;

@@ -12,19 +12,22 @@ PlanarModel::PlanarModel(const description::Model& model)
   for (std::size_t s = 0; s < segments.size(); ++s)
     if (segments[s].parent < 0 &&
         (s > 0 || (segments[s].motion != Motion::free && segments[s].motion != Motion::anchored)))
-      throw std::invalid_argument("a joint that moves against the world cannot be planar");
-  if (!model.fins.empty()) throw std::invalid_argument("fin '" + model.fins[0].name + "' cannot be planar");
-  if (!model.drags.empty()) throw std::invalid_argument("drag '" + model.drags[0].name + "' cannot be planar");
-  if (!model.loop_joints.empty()) throw std::invalid_argument("joints that close loops cannot be planar");
+      throw std::invalid_argument("planar physics does not support moving joints to the world");
+  if (!model.fins.empty())
+    throw std::invalid_argument("planar physics does not support fin '" + model.fins[0].name + "'");
+  if (!model.drags.empty())
+    throw std::invalid_argument("planar physics does not support drag '" + model.drags[0].name + "'");
+  if (!model.loop_joints.empty())
+    throw std::invalid_argument("planar physics does not support joints that close loops");
   if (!mechanism_.followers().empty())
-    throw std::invalid_argument("joints that follow others, and screws, cannot be planar");
+    throw std::invalid_argument("planar physics does not support mimic and screw joints");
   for (const description::Device& device : model.devices) {
     for (const description::MotorLimits& motor : description::motor_limits(device))
       add_motor(motor, description::name_of(device));
     if (const std::string reason = description::reason_against_planar(device); !reason.empty())
       throw std::invalid_argument(reason);
     if (const description::TrackPair* const drive = description::tracks_of(device)) {
-      if (drive_) throw std::invalid_argument("more than one treel drive cannot be planar");
+      if (drive_) throw std::invalid_argument("planar physics supports only one treel drive for each robot");
       drive_ = drive;
     }
   }
@@ -38,10 +41,10 @@ void PlanarModel::add_motor(const description::MotorLimits& motor, const std::st
   const Dof& dof = mechanism_.dofs()[static_cast<std::size_t>(place.first_dof)];
   if (dof.coordinate < 0)
     throw std::invalid_argument("motor '" + name + "' drives the ball joint '" + joint.name +
-                                "', which cannot be planar");
+                                "', which planar physics does not support");
   if (motor_of_joint_[motor.joint] != no_motor)
-    throw std::invalid_argument("motor '" + name + "' drives a joint that has a motor already");
-  // The first axis of a universal joint is that of the segment in its middle.
+    throw std::invalid_argument("motor '" + name + "' drives a joint that already has a motor");
+  // The first axis of a universal joint belongs to the segment in its middle.
   int segment = place.segment;
   while (mechanism_.segments()[static_cast<std::size_t>(segment)].first_coordinate != dof.coordinate)
     segment = mechanism_.segments()[static_cast<std::size_t>(segment)].parent;

@@ -7,11 +7,11 @@
 
 namespace cohort::physics {
 
-/// A model as the planar physics sees it: one mass, and links that joints with motors move by command. Constant; shared
+/// A model as planar physics sees it: one mass, and links that joints with motors move as commanded. Immutable; shared
 /// by all bodies of the model.
 class PlanarModel {
  public:
-  /// A joint that a motor drives.
+  /// A joint with a motor.
   struct Motor {
     int segment = 0;
     std::size_t coordinate = 0;
@@ -21,24 +21,24 @@ class PlanarModel {
   };
   static constexpr int no_motor = -1;
 
-  /// Throws std::invalid_argument for what cannot be planar.
+  /// Throws std::invalid_argument for a model that cannot be planar.
   explicit PlanarModel(const description::Model& model);
 
   const Mechanism& mechanism() const { return mechanism_; }
   std::size_t link_count() const { return mechanism_.model().links.size(); }
-  /// Tied to the world.
+  /// Returns whether the root is fixed to the world.
   bool is_fixed() const { return !mechanism_.has_free_root(); }
-  /// Nothing that touches it changes how it moves.
+  /// Returns whether no contact can change its motion.
   bool is_immovable() const { return is_fixed() || mechanism_.has_kinematic_root(); }
   const std::vector<Motor>& motors() const { return motors_; }
   int motor_of_joint(std::size_t joint) const { return motor_of_joint_[joint]; }
   int motor_of_segment(int segment) const { return motor_of_segment_[static_cast<std::size_t>(segment)]; }
-  /// Null if it has none.
+  /// Returns the track drive, or null if it has none.
   const description::TrackPair* drive() const { return drive_; }
 
-  // Of the whole model with all its joints at zero.
+  // Mass properties of the whole model with all joints at zero:
   double mass() const { return mass_; }
-  const Eigen::Vector3d& centre() const { return centre_M_; }    ///< of mass, in M
+  const Eigen::Vector3d& centre() const { return centre_M_; }    ///< centre of mass, in M
   const Eigen::Matrix3d& inertia() const { return inertia_M_; }  ///< about the centre of mass, in M
 
  private:

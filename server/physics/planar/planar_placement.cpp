@@ -1,4 +1,4 @@
-// How the bodies of a planar world are made and what each stands on.
+// Creation of the bodies of a planar world and of the ground under each.
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +13,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// What leans by less is upright, and ground level [rad].
+// A body that leans by less is upright, and ground that leans by less is level [rad].
 constexpr double most_lean = 1e-3;
 
-// The mean distance of the points of a rectangle with rounded corners from a point in the plane.
+// Returns the mean distance of the points of a rounded rectangle from a point in the plane.
 double mean_distance(const geometry::Footprint& outline, const Eigen::Vector2d& point) {
   constexpr int points_across = 32;
   const Eigen::Vector2d half = outline.half_extent();
@@ -53,8 +53,8 @@ PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& work
   }
   const Vector3d& gravity = description.gravity;
   if (gravity.head<2>().norm() > -most_lean * gravity.z())
-    throw std::invalid_argument("planar physics needs gravity along -z");
-  if (description.water) throw std::invalid_argument("planar physics has no water");
+    throw std::invalid_argument("planar physics requires gravity along -z");
+  if (description.water) throw std::invalid_argument("planar physics does not support water");
   for (unsigned worker = 0; worker < workers.threads(); ++worker)
     memory_.push_back({PlanarSolver(planar_, grounds_), {}, {}});
   bodies_.reserve(description.instances.size());
@@ -75,7 +75,8 @@ BodyId PlanarWorld::add_body(std::size_t model, const Pose& X_WM, Arrival arriva
   return body;
 }
 
-// Throws as create_body and put_on_ground would, for a body that is not there yet: they leave parts of one behind.
+// Throws as create_body and put_on_ground would, before the body exists: if these two throw, they leave it half
+// created.
 void PlanarWorld::check_new(const description::Model& described, const Pose& X_WM) const {
   try {
     check_placed(described, X_WM);
@@ -111,10 +112,10 @@ void PlanarWorld::check_new(const description::Model& described, const Pose& X_W
 void PlanarWorld::check_placed(const description::Model& model, const Pose& X_WM) const {
   const double lean = (X_WM.orientation * Vector3d::UnitZ()).head<2>().norm();
   if (model.is_robot() && (lean > most_lean || (X_WM.orientation * Vector3d::UnitZ()).z() < 0.0))
-    throw std::invalid_argument("a robot that leans cannot be planar");
+    throw std::invalid_argument("planar physics requires upright robots");
   const auto feels_wind = [](const description::Link& link) { return link.feels_wind; };
   if (description_.air.wind != Vector3d::Zero() && std::any_of(model.links.begin(), model.links.end(), feels_wind))
-    throw std::invalid_argument("what feels the wind cannot be planar");
+    throw std::invalid_argument("planar physics does not support links with wind");
 }
 
 bool PlanarWorld::needs_ground(const PlanarModel& model) const {
@@ -124,7 +125,7 @@ bool PlanarWorld::needs_ground(const PlanarModel& model) const {
 BodyId PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM) {
   const BodyId body{bodies_.size()};
   const description::Model& model = description_.models[model_index];
-  if (model_index >= models_.size()) models_.resize(model_index + 1);  // it has come since
+  if (model_index >= models_.size()) models_.resize(model_index + 1);  // the model was added later
   try {
     if (!model.is_static && !models_[model_index]) models_[model_index] = std::make_shared<const PlanarModel>(model);
     check_placed(model, X_WM);
@@ -199,7 +200,7 @@ void PlanarWorld::put_on_ground(std::uint32_t index) {
   const auto is_lower = [](const Part& a, const Part& b) { return a.outline_B.lowest < b.outline_B.lowest; };
   const auto lowest = std::min_element(parts.begin(), parts.end(), is_lower);
 
-  // From the middle of the body: it may be placed a little into the ground.
+  // Search from the middle of the body: it may be placed slightly below the surface.
   double highest = planar_.segment_in_body(index, 0).position.z();
   for (const Part& part : parts) highest = std::max(highest, part.outline_B.highest);
   const double from = lowest != parts.end() ? 0.5 * (lowest->outline_B.lowest + highest) : highest;
@@ -223,16 +224,16 @@ void PlanarWorld::put_on_ground(std::uint32_t index) {
   }
 }
 
-// The first solid below a point that does not move.
+// Returns the first static solid below a point.
 std::uint32_t PlanarWorld::ground_under(const Vector3d& origin_W) const {
   constexpr double depth = 10.0;  // [m]
   std::vector<std::uint32_t> below;
   scene_.for_each_static_overlap({origin_W - depth * Vector3d::UnitZ(), origin_W},
                                  [&](std::uint32_t solid) { below.push_back(solid); });
   const auto hit = scene_.cast_ray_among(below, origin_W, -Vector3d::UnitZ(), depth);
-  if (!hit || hit->distance == 0.0) throw std::invalid_argument("there is no ground under it, so it cannot be planar");
+  if (!hit || hit->distance == 0.0) throw std::invalid_argument("planar physics requires ground under it");
   if (hit->normal_W.head<2>().norm() > most_lean)
-    throw std::invalid_argument("the ground under it is not level, so it cannot be planar");
+    throw std::invalid_argument("planar physics requires level ground under it");
   return hit->solid;
 }
 

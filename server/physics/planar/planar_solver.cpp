@@ -13,7 +13,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// A pass that changes no velocity by more ends the iteration [m/s or rad/s].
+// The iteration ends after a pass that changes no velocity by more than this [m/s or rad/s].
 constexpr double tolerance = 1e-9;
 
 double along(const Vector2d& direction, double lever, const PlanarVelocity& velocity) {
@@ -77,7 +77,7 @@ void PlanarSolver::add_contact(const Anchors::Part& part_a, const Anchors::Part&
   rows.normal_target = target - rows.normal_W.dot(by_joints);
   rows.side_target = -side_W.dot(by_joints);
   rows.normal_impulse = point.normal_impulse;
-  // As in the full model friction between two bodies starts at nothing, on the world at what it was.
+  // As in the full model, friction between two moving bodies starts from zero, and on the world from its last impulse.
   rows.side_impulse = part_b.member == Anchors::nobody ? point.friction_impulse : 0.0;
 }
 
@@ -136,7 +136,7 @@ void PlanarSolver::push(ConnectionRows& rows, const Vector3d& impulse) {
   push_side(rows.b, -1.0, rows.from_b_W);
 }
 
-// Both return by how much they changed a velocity at the most.
+// Both functions return the greatest change of a velocity.
 double PlanarSolver::solve(ContactRows& rows) {
   const Vector2d side_W = left_of(rows.normal_W);
   const double slip =
@@ -182,7 +182,7 @@ void PlanarSolver::solve(std::uint32_t iterations) {
     double change = 0.0;
     for (const std::uint32_t member : members_)
       change = std::max(change, grounds_[member].solve(bodies_.inertia(member), bodies_.velocity(member)));
-    // To and fro, so that what pulls at one end of a chain is felt at the other within two passes.
+    // Alternate the direction, so that a pull at one end of a chain reaches the other end within two passes.
     if (i % 2 == 0) {
       for (ConnectionRows& rows : connections_) change = std::max(change, solve(rows));
     } else {

@@ -9,22 +9,22 @@
 
 namespace cohort::physics {
 
-/// The rows between the bodies of one island, solved by sequential impulses together with what the ground does to each.
-/// One object serves one worker, island after island. Changes velocities only; impulses are kept when `keep` is
-/// called; those of the ground always are.
+/// The rows between the bodies of one island, solved by sequential impulses together with the ground under each body.
+/// Each worker has one for all its islands. Solving changes velocities only. `keep` stores the impulses, except those
+/// of the ground, which are always stored.
 class PlanarSolver {
  public:
-  /// All arrays by member, and they must outlive this.
+  /// All arrays are by member and must outlive this.
   PlanarSolver(PlanarBodies& bodies, std::vector<PlanarGround>& grounds) : bodies_(bodies), grounds_(grounds) {}
 
   void clear();
   void add_member(std::uint32_t member) { members_.push_back(member); }
-  /// A point of two segments of members, `Anchors::nobody`: of the world.
+  /// Adds a contact point between segments of two members; `Anchors::nobody` is the world.
   void add_contact(const Anchors::Part& a, const Anchors::Part& b, PlanarPoint& point, double z,
                    const SurfacePair& surfaces, double step);
   void add_connection(Connection& connection, double step);
   void solve(std::uint32_t iterations);
-  /// Takes over impulses and tracks, after a solution that is good.
+  /// Stores impulses and the state of tracks; call it after a valid solution.
   void keep(double step);
 
  private:
@@ -53,7 +53,7 @@ class PlanarSolver {
     Connection* connection = nullptr;
   };
   Side side_of(std::uint32_t member);
-  /// Velocity that the joints in between give a point of the body: x, y and the turning.
+  /// Returns the velocity that the joints give to a point of the body: x, y and rotation.
   Eigen::Vector3d joint_velocity(const Anchors::Part& part, const Eigen::Vector3d& point_W) const;
   void begin();
   static void push(ContactRows& rows, double along_normal, double sideways);

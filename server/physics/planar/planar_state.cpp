@@ -1,4 +1,4 @@
-// The state of a planar world, hashed, saved and restored: all three see the same numbers.
+// Hashing, saving and restoring the state of a planar world: all three visit the same numbers.
 
 #include "server/core/state_visitors.hpp"
 #include "server/physics/planar/planar_world.hpp"
@@ -42,7 +42,7 @@ void PlanarWorld::save(SnapshotWriter& writer) const {
 void PlanarWorld::expect_sound(std::uint32_t member) const {
   const Member& its = members_[member];
   if (!its.is_finite || !its.is_inside || !planar_.is_sensible(member))
-    throw SnapshotError("the snapshot has a body that moves as none can");
+    throw SnapshotError("snapshot: invalid velocities of a body");
   for (std::uint32_t i = 0; i < its.part_count; ++i)
     expect_placed(planar_.segment_pose(member, parts_[its.first_part + i].segment));
 }

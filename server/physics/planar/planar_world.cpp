@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t members_a_chunk = 64;
 constexpr std::size_t islands_a_chunk = 32;
 
-// The links of one body, as a MotionRecord looks at them.
+// The links of one body, in the form that MotionRecord requires.
 struct LinksOf {
   const PlanarBodies& bodies;
   std::uint32_t member;
@@ -58,7 +58,7 @@ void PlanarWorld::set_joint_state(BodyId body, JointId joint, std::span<const do
   scene_.update();
 }
 
-// Tracks are all that can be planar.
+// Tracks are the only outputs in a planar world.
 Side PlanarWorld::side_of(std::uint32_t member, DeviceId device, std::size_t output) const {
   return std::get<DeviceOutputs::Track>(planar_.model(member).mechanism().outputs().at(device, output)).side;
 }
@@ -135,7 +135,7 @@ void PlanarWorld::find_islands() {
   islands_.finish();
 }
 
-// Whose state breaks is left out, and the rest of the island is solved without it.
+// A body whose state breaks is left out, and the rest of the island is solved without it.
 void PlanarWorld::solve_island(std::span<const std::uint32_t> members, Memory& memory) {
   std::vector<std::uint32_t>& sound = memory.members;
   sound.clear();
@@ -149,7 +149,7 @@ void PlanarWorld::solve_island(std::span<const std::uint32_t> members, Memory& m
     std::erase_if(sound, [&](std::uint32_t member) { return !members_[member].is_finite; });
 }
 
-// False, and nothing changed, if a body has no sensible velocities then: its member says so.
+// Returns false, without any change, if a body's velocities are invalid; its member is marked.
 bool PlanarWorld::try_island(const std::vector<std::uint32_t>& members, Memory& memory) {
   PlanarSolver& solver = memory.solver;
   solver.clear();
@@ -210,7 +210,7 @@ void PlanarWorld::find_parts_in_body(const Member& member, std::uint32_t index) 
   for (std::uint32_t i = member.first_part; i < member.first_part + member.part_count; ++i) {
     Part& part = parts_[i];
     const Pose X_BC = planar_.segment_in_body(index, part.segment) * part.X_SC;
-    // Nothing that moves is a plane or a height map, so it has one.
+    // A moving solid is never a plane or a height map, so it has a footprint.
     const geometry::Footprint outline = *geometry::footprint_of(scene_.solid(part.solid).shape(), X_BC);
     part.outline_B = outline;
     parts_in_body_[i] = {X_BC, outline.centre, outline.axis};
@@ -238,7 +238,7 @@ void PlanarWorld::report_contacts() {
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     for (const PlanarPair& pair : collision_.pairs_of(member)) {
       for (const PlanarPoint& point : pair.contact) {
-        if (point.gap > 0.0 && point.normal_impulse == 0.0) continue;  // near, but it did not touch
+        if (point.gap > 0.0 && point.normal_impulse == 0.0) continue;  // near, but not touching
         contacts_.push_back({scene_.solid(pair.a).body, scene_.solid(pair.b).body,
                              Eigen::Vector3d(point.position_W.x(), point.position_W.y(), pair.z),
                              Eigen::Vector3d(point.normal_W.x(), point.normal_W.y(), 0.0), point.gap,

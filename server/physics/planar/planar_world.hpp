@@ -17,28 +17,29 @@
 
 namespace cohort::physics {
 
-/// Bodies on flat ground, each with a position and a heading only: for large swarms. Height, roll and pitch stay as
-/// they were when the body was placed. Against the full model:
+/// Bodies on flat ground, each with a position and a heading only, for large swarms. Height, roll and pitch stay as the
+/// body was placed. Differences from the full model:
 ///
 /// - A body has the mass and the inertia of its model with all joints at zero. A VelocityMotor turns its joint as
-///   commanded, within the joint's limits, whatever it meets; other joints stay where they are.
-/// - Bodies run into each other and into walls by the outlines of their collisions, seen from above
-///   (geometry::footprint_of), where these share heights. What is no upright prism, such as an ellipsoid or a mesh,
-///   has the outline of geometry::Footprint. Links of one body do not touch each other.
-/// - The ground is what was under the centre of mass when the body was placed, for ever: it gives friction, by half the
-///   weight to each track, or by all of it to the lowest collision of a body without a drive, and is no contact.
-///   Nothing falls, tips or climbs; a ball slides and does not roll; rolling resistance has no meaning.
-/// - Connections hold in the plane: their wrench is a force in x and y and a torque about z. They are rigid, whatever
-///   their ConnectionGive.
-/// - Joints and motors have no force to tell; a motor that is told an effort stays where it is.
+///   commanded within the joint's limits, regardless of obstacles. Other joints do not move.
+/// - Bodies collide with each other and with walls if their heights overlap. Outlines are those of the collisions
+///   seen from above (geometry::footprint_of). A shape that is not an upright prism, such as an ellipsoid or a mesh,
+///   has the outline of geometry::Footprint. Links of one body do not collide with each other.
+/// - The ground is the solid under the centre of mass when the body was placed, and never changes. It gives friction
+///   under half the weight to each track. A body without a drive has it under the whole weight at its lowest
+///   collision. The ground reports no contact. Nothing falls, tips or climbs. A ball slides and does not roll.
+///   Rolling resistance has no effect.
+/// - Connections hold in the plane. Their wrench is a force in x and y and a torque about z. They are rigid, with or
+///   without a ConnectionGive.
+/// - Joints and motors report no effort. A motor with an effort command does not move.
 /// - There is no water, no wind, and nothing that flies or swims.
 /// - The solver is always the iterative one.
 class PlanarWorld final : public World, private WorldConnections {
  public:
-  /// Throws std::invalid_argument for a world or a model that cannot be planar: gravity that is not along -z, water,
-  /// ground that is not level, none under a body, a joint that moves against the world, a belt, a rotor, a fin, drag,
-  /// a link that feels a wind, or a robot that leans by more than a milliradian. `like` and `X_WM`: as make_world has
-  /// them.
+  /// Throws std::invalid_argument for a world or a model that cannot be planar. A world cannot if it has gravity not
+  /// along -z, water, ground that is not level, or a body without ground. A model cannot if it has a joint to the world
+  /// that moves, a belt, a rotor, a fin, drag, or a link that feels wind. A robot cannot lean by more than a
+  /// milliradian. `like` and `X_WM`: as in make_world.
   PlanarWorld(const description::World& description, WorkerPool& workers, const PlanarWorld* like = nullptr,
               std::span<const Pose> X_WM = {});
 
@@ -89,33 +90,33 @@ class PlanarWorld final : public World, private WorldConnections {
   Wrench wrench(ConnectionId connection, ConnectionEnd end) const override;
   std::span<const ConnectionId> broken() const override { return connections_.broken(); }
 
-  struct Member {  // a body that moves
+  struct Member {  // a moving body
     BodyId body;
     std::uint32_t first_part = 0;
     std::uint32_t part_count = 0;
     bool is_active = true;
     bool has_ground = false;  // or needs none
-    // Of this step:
+    // State of this step:
     bool is_finite = true;
     bool is_inside = true;
-    std::unique_ptr<MotionRecord> record{};  // null: nobody asked for it
+    std::unique_ptr<MotionRecord> record{};  // null: not requested
   };
-  struct Part {  // a solid of a body that moves
+  struct Part {  // a solid of a moving body
     std::uint32_t solid = 0;
     int segment = 0;
     Pose X_SC;
     geometry::Footprint outline_B;
   };
-  struct PartInBody {  // what is read in every step
+  struct PartInBody {  // data that is read in every step
     Pose X_BC;
-    Eigen::Vector2d centre_B = Eigen::Vector2d::Zero();  // of the outline
+    Eigen::Vector2d centre_B = Eigen::Vector2d::Zero();  // centre of the outline
     Eigen::Vector2d axis_B = Eigen::Vector2d::UnitX();
   };
-  struct Before {  // what a solution changes at once, for the case that it is not good
+  struct Before {  // data that a solution overwrites, restored if it is invalid
     PlanarVelocity velocity;
     std::array<double, 3> ground_impulse{};
   };
-  struct Memory {  // of one worker
+  struct Memory {  // scratch memory of one worker
     PlanarSolver solver;
     std::vector<std::uint32_t> members;
     std::vector<Before> before;
@@ -153,12 +154,12 @@ class PlanarWorld final : public World, private WorldConnections {
   double step_;
   SurfacePairs surfaces_;
   geometry::Scene scene_;
-  std::vector<std::shared_ptr<const PlanarModel>> models_;  // null for what is static
+  std::vector<std::shared_ptr<const PlanarModel>> models_;  // null for static models
   geometry::SolidKinds kinds_;
   std::vector<PlacedBody> bodies_;
   std::vector<Member> members_;
   std::vector<Part> parts_;
-  std::vector<PartInBody> parts_in_body_;  // of parts_
+  std::vector<PartInBody> parts_in_body_;  // by part, as parts_
   std::vector<Anchors::Part> part_of_solid_;
   PlanarBodies planar_;
   std::vector<PlanarGround> grounds_;  // by member

@@ -64,12 +64,12 @@ class Guessing {
 
  private:
   static constexpr int most_guesses = 6;
-  // Each row gives way by this share of its own response: four legs on the floor have no unique loads without.
+  // Compliance of each row as a share of its own response; without it, four legs on the floor have no unique loads.
   static constexpr double give = 1e-5;
   static constexpr double velocity_tolerance = 1e-10;  // [m/s or rad/s]
   static constexpr double impulse_tolerance = 1e-12;   // [N s or N m s]
 
-  // Velocity of row i by a unit impulse in row j.
+  // Returns the velocity of row i by a unit impulse in row j.
   double gain(int i, int j) const {
     const Row& other = row_at(j);
     return dot(problem_.numbers() + row_at(i).numbers, problem_.numbers() + other.numbers + other.stride_a,
@@ -77,7 +77,7 @@ class Guessing {
   }
   const Row& row_at(int i) const { return rows_[static_cast<std::size_t>(i)]; }
 
-  // From the impulses as they are. False if that moved the limit of a row that is at it.
+  // Computes limits from the present impulses. Returns false if that moved the limit of a row that is at it.
   bool set_limits() {
     bool hold = true;
     for (int i = 0; i < count_; ++i) {
@@ -108,17 +108,17 @@ class Guessing {
       }
     }
   }
-  // Of a row in between: the velocity that the others at their limits leave to it.
+  // Returns the velocity that remains for a free row after the rows at their limits have acted.
   double left_for(int row) const {
     double left = wanted_[row];
     for (int j = 0; j < bound_count_; ++j) left -= gains_[row][bound_[j]] * impulses_[bound_[j]];
     return left;
   }
 
-  // The impulses of the rows in between: factors L D L' of their gains.
+  // Solves for the impulses of the free rows by the factors L D L' of their gains.
   void solve() {
     std::array<double, most_rows> x{};
-    std::array<double, most_rows> inverse{};  // of D
+    std::array<double, most_rows> inverse{};  // inverse of D
     for (int i = 0; i < free_count_; ++i) {
       const auto& gains = gains_[free_[i]];
       double right = left_for(free_[i]);
@@ -146,7 +146,7 @@ class Guessing {
     }
   }
 
-  // The same of gains that are not symmetric.
+  // Does the same for gains that are not symmetric.
   void solve_skew() {
     LinearSystem system;
     system.reset(free_count_);
@@ -160,7 +160,7 @@ class Guessing {
     for (int i = 0; i < free_count_; ++i) impulses_[free_[i]] = x[i];
   }
 
-  // Whether the impulses agree with the guess; if not, moves the rows that do not.
+  // Returns whether the impulses agree with the guess; otherwise moves the rows that do not.
   bool places_hold() {
     bool hold = true;
     for (int i = 0; i < count_; ++i) {
@@ -193,7 +193,7 @@ class Guessing {
   int bound_count_ = 0;
   std::array<std::array<double, most_rows>, most_rows> gains_;  // velocity of row i by a unit impulse in row j
   std::array<std::array<double, most_rows>, most_rows> factors_;
-  std::array<int, most_rows> free_;   // rows in between
+  std::array<int, most_rows> free_;   // rows between their limits
   std::array<int, most_rows> bound_;  // rows at a limit
   std::array<double, most_rows> wanted_;
   std::array<double, most_rows> impulses_;

@@ -24,18 +24,18 @@ class DirectSolver {
   }
 
  private:
-  // Solutions, each with the friction limits that follow from the normal impulses of the one before: after the first
-  // few, which may go to and fro, half way to them.
+  // Number of solutions, each with friction limits from the normal impulses of the previous one. After the first few,
+  // which may oscillate, the limits move only halfway.
   static constexpr int undamped_solutions = 8;
   static constexpr int most_solutions = 64;
   static constexpr double limit_tolerance = 1e-9;  // [N s or N m s]
-  // Each row gives way by this share of its own response, or redundant rows would have no solution.
+  // Compliance of each row as a share of its own response; without it, redundant rows have no solution.
   static constexpr double give = 1e-6;
 
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   const Row& row_at(int i) const { return problem_.rows()[index(i)]; }
 
-  // Velocity of row i by a unit impulse in row j: the sum over the bodies that both act on.
+  // Returns the velocity of row i by a unit impulse in row j: the sum over the bodies on which both act.
   double gain(const Row& i, const Row& j) const {
     const double* jacobian_a = problem_.numbers() + i.numbers;
     const double* jacobian_b = jacobian_a + 2 * i.stride_a;
@@ -67,7 +67,7 @@ class DirectSolver {
     }
   }
 
-  // By this share of the way to what follows from the impulses as they are. False if that moved a limit.
+  // Moves the limits by this share towards those that follow from the present impulses. Returns false if a limit moved.
   bool set_limits(double share) {
     bool hold = true;
     for (int i = 0; i < count_; ++i) {

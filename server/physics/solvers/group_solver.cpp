@@ -6,14 +6,14 @@
 namespace cohort::physics {
 namespace {
 
-// Solutions, each with the friction limits that follow from the loads of the one before, and guesses for one of them.
+// Number of solutions, each with friction limits from the loads of the previous one, and of guesses for each solution.
 constexpr int most_solutions = 12;
 constexpr int most_guesses = 12;
 constexpr double limit_tolerance = 1e-7;  // [N s or N m s]
-// Multiplications of one factorisation, above which sequential impulses are cheaper.
+// Multiplications of one factorisation; above this number, sequential impulses are cheaper.
 constexpr double most_work = 3e6;
-// Each row gives way by this share of its own response. Legs on the floor have no unique loads without; and where
-// connections form a loop, what they ask of each other differs by what their gaps add up to.
+// Compliance of each row as a share of its own response. Without it, legs on the floor have no unique loads, and
+// connections that form a loop contradict each other by the sum of their gaps.
 constexpr double give = 1e-5;
 constexpr double give_between_bodies = 1e-4;
 constexpr double velocity_tolerance = 1e-9;  // [m/s or rad/s]
@@ -38,10 +38,10 @@ bool GroupSolver::solve(Problem& problem) {
   return true;
 }
 
-// With the limits as they are, which is a linear complementarity problem: all rows that disagree with their place move
-// at once while that mends something, and one at a time where it does not (Judice and Pires, "A block principal
-// pivoting algorithm for large-scale strictly monotone linear complementarity problems", Computers and Operations
-// Research 21, 1994).
+// Solves with fixed limits: a linear complementarity problem. All rows that disagree with their place move at once
+// while that reduces their number, otherwise one at a time. Source: Judice and Pires, "A block principal pivoting
+// algorithm for large-scale strictly monotone linear complementarity problems", Computers and Operations Research 21,
+// 1994.
 bool GroupSolver::solve_within_limits() {
   constexpr int most_blocks_in_vain = 3;
   int fewest = count_ + 1;
@@ -68,7 +68,8 @@ bool GroupSolver::solve_within_limits() {
   return false;
 }
 
-// Cuthill and McKee: breadth first from a body with few neighbours, so that what couples has ranks near each other.
+// Orders the bodies by Cuthill and McKee: breadth first from a body with few neighbours, so that coupled bodies have
+// similar ranks.
 void GroupSolver::order_bodies(const Problem& problem) {
   const int bodies = problem.body_count();
   if (neighbours_.size() < at(bodies)) neighbours_.resize(at(bodies));
@@ -106,13 +107,13 @@ void GroupSolver::order_bodies(const Problem& problem) {
   }
 }
 
-// By the later of the two bodies of each.
+// Orders rows by the later of their two bodies.
 void GroupSolver::order_rows(const Problem& problem) {
   const auto rank_of = [&](const Row& row) {
     return std::max(rank_[at(row.body_a)], row.body_b < 0 ? -1 : rank_[at(row.body_b)]);
   };
   row_of_.clear();
-  queue_.assign(at(problem.body_count()) + 1, 0);  // from here on: where the rows of each rank begin
+  queue_.assign(at(problem.body_count()) + 1, 0);  // reused: start of the rows of each rank
   for (const Row& row : *rows_) ++queue_[at(rank_of(row)) + 1];
   for (std::size_t rank = 1; rank < queue_.size(); ++rank) queue_[rank] += queue_[rank - 1];
   row_of_.resize(at(count_));
@@ -124,7 +125,7 @@ void GroupSolver::order_rows(const Problem& problem) {
   }
 }
 
-// False if the factors would cost too much.
+// Returns false if the factorisation would cost too much.
 bool GroupSolver::find_envelope(const Problem& problem) {
   first_position_.assign(at(problem.body_count()), count_);
   for (int p = 0; p < count_; ++p) {
@@ -191,7 +192,7 @@ void GroupSolver::place_by_last_impulses() {
   }
 }
 
-// From the impulses as they are. The greatest change of the limit of a row that is at it.
+// Computes limits from the present impulses. Returns the greatest change of the limit of a row that is at it.
 double GroupSolver::set_limits() {
   double greatest = 0.0;
   for (int p = 0; p < count_; ++p) {
@@ -202,11 +203,11 @@ double GroupSolver::set_limits() {
       upper_[at(p)] = row->upper;
       continue;
     }
-    if (row->limits == Row::Limits::coned) --row;  // its limit is that of the row before
+    if (row->limits == Row::Limits::coned) --row;  // it shares the limit of the row before
     double load = 0.0;
     for (int j = row->load_begin; j < row->load_end; ++j) load += impulses_[at(position_of_[at(j)])];
     const double limit = std::max(0.0, std::min(row->cap, row->friction * load));
-    // What is between its limits may be beyond the new ones.
+    // A row between its old limits may be beyond the new ones.
     if (places_[at(p)] != Place::between || std::abs(impulses_[at(p)]) > limit)
       greatest = std::max(greatest, std::abs(limit - upper_[at(p)]));
     lower_[at(p)] = -limit;
@@ -215,12 +216,12 @@ double GroupSolver::set_limits() {
   return greatest;
 }
 
-// L D L' of the rows in between.
+// Computes the factors L D L' of the free rows.
 void GroupSolver::factorise() {
   inverse_.assign(at(count_), 0.0);
   for (int p = 0; p < count_; ++p) {
     const int start = start_[at(p)];
-    double* const factors = factors_.data() + begin_[at(p)];  // first L D, then L; of column q at q - start
+    double* const factors = factors_.data() + begin_[at(p)];  // first L D, then L; column q is at q - start
     if (places_[at(p)] != Place::between) {
       std::fill_n(factors, p - start + 1, 0.0);
       continue;
@@ -248,7 +249,7 @@ void GroupSolver::factorise() {
   is_factorised_ = true;
 }
 
-// The impulses of the rows in between, with the others at their limits.
+// Computes the impulses of the free rows, with the others at their limits.
 void GroupSolver::solve_between() {
   x_ = wanted_;
   for (int p = 0; p < count_; ++p)
@@ -267,7 +268,7 @@ void GroupSolver::solve_between() {
     const double* const factors = factors_.data() + begin_[at(p)];
     for (int q = start_[at(p)]; q < p; ++q) x_[at(p)] -= factors[q - start_[at(p)]] * x_[at(q)];
   }
-  for (int p = 0; p < count_; ++p) x_[at(p)] *= inverse_[at(p)];  // zero for what is at a limit
+  for (int p = 0; p < count_; ++p) x_[at(p)] *= inverse_[at(p)];  // zero for rows at a limit
   for (int p = count_ - 1; p >= 0; --p) {
     if (places_[at(p)] != Place::between) continue;
     impulses_[at(p)] = x_[at(p)];
@@ -276,9 +277,9 @@ void GroupSolver::solve_between() {
   }
 }
 
-// How many rows disagree with their place, and where each is to be instead.
+// Returns the number of rows that disagree with their place, and finds the new place of each.
 int GroupSolver::find_wrong_places() {
-  x_ = wanted_;  // what is missing
+  x_ = wanted_;  // the velocity error
   for (int p = 0; p < count_; ++p) {
     x_[at(p)] -= gain(p, p) * impulses_[at(p)];
     for (int q = start_[at(p)]; q < p; ++q) {

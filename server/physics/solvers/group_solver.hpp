@@ -8,17 +8,18 @@
 
 namespace cohort::physics {
 
-/// Solves the rows of bodies that hold each other at once: guesses which rows are at a limit, at first those that were
-/// so in the last step, solves the others as linear equations, and mends the guess until every row agrees with it, as
-/// solve_by_active_set does for one body. For connections at light links, such as an arm that lifts a robot, where
-/// sequential impulses need hundreds of passes. Friction in a disc is a pyramid here, as in solve_directly.
+/// Solves the rows of connected bodies at once by an active-set method, as solve_by_active_set does for one body. It
+/// guesses which rows are at a limit, starting with those of the last step, and solves the others as linear equations.
+/// The guess is corrected until every row agrees with it. It is for connections at light links, such as an arm that
+/// lifts a robot, where sequential impulses need hundreds of passes. Friction in a disc is a pyramid here, as in
+/// solve_directly.
 ///
 /// The equations are factorised within their envelope (George and Liu, "Computer solution of large sparse positive
-/// definite systems", 1981, chapter 4), with the bodies in the order of Cuthill and McKee: the cost grows with the
-/// number of rows where bodies form a chain or a tree. Keeps its memory: one for each worker.
+/// definite systems", 1981, chapter 4). The bodies are in the order of Cuthill and McKee. The cost grows linearly with
+/// the number of rows if bodies form a chain or a tree. Reuses its memory; each worker has one.
 class GroupSolver {
  public:
-  /// False, and nothing changed, if it would cost too much or no guess held.
+  /// Returns false, without any change, if it would cost too much or no guess was right.
   bool solve(Problem& problem);
 
  private:
@@ -45,13 +46,13 @@ class GroupSolver {
   std::vector<int> rank_;
   std::vector<int> queue_;
   std::vector<int> first_position_;
-  // By position, that of a row in the order in which they are eliminated:
+  // By position: a row's place in the order of elimination:
   std::vector<int> row_of_;
   std::vector<int> position_of_;  // by row
-  std::vector<int> start_;        // the first position that it has anything to do with
+  std::vector<int> start_;        // first position coupled to it
   std::vector<std::size_t> begin_;
   std::vector<double> gains_;    // the envelope of the lower triangle
-  std::vector<double> factors_;  // likewise
+  std::vector<double> factors_;  // the same envelope
   std::vector<double> wanted_;
   std::vector<double> impulses_;
   std::vector<double> lower_;

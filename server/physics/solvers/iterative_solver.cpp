@@ -58,7 +58,7 @@ inline double SequentialImpulses::velocity(const Row& row) const {
   return sum;
 }
 
-// The impulse with which the row would be met, were there no limits.
+// Returns the impulse that would satisfy the row if it had no limits.
 inline double SequentialImpulses::wanted(const Row& row) const {
   return row.impulse + (row.target - velocity(row)) * row.inverse;
 }
@@ -78,8 +78,9 @@ inline void SequentialImpulses::apply(const Row& row, double impulse) {
     add_scaled(impulse, response + row.stride_a + row.stride_b, row.velocity_b, row.stride_b);
 }
 
-// Both directions of the tangent plane at once. What slides is held against its motion: so both take the same step per
-// velocity, that of the direction that gives way most, and what is too much is shortened, not turned.
+// Solves both directions of the tangent plane at once. Friction must oppose the sliding motion. Both directions
+// therefore use the same gain, that of the more compliant one, and an impulse beyond the limit is shortened without a
+// change of direction.
 double SequentialImpulses::turn_cone(Row& first, Row& second) {
   const double limit = limit_of(first);
   const double inverse = first.cone_inverse;

@@ -4,22 +4,22 @@
 
 namespace cohort::physics {
 
-/// A pass that changes no row's velocity by more ends the iterative solver [m/s or rad/s].
+/// The iterative solver ends after a pass that changes no row's velocity by more than this [m/s or rad/s].
 inline constexpr double negligible_change = 1e-9;
 
-/// Sequential impulses (projected Gauss-Seidel), started from the impulses of the last step. Leaves the impulses in the
-/// rows and the bodies' velocities changed by them.
+/// Sequential impulses (projected Gauss-Seidel), warm-started with the impulses of the last step. Changes the impulses
+/// in the rows and the velocities of the bodies.
 class SequentialImpulses {
  public:
-  /// For the rows that the problem has now; it must outlive this.
+  /// Takes the rows that the problem has now; the problem must outlive this.
   explicit SequentialImpulses(Problem& problem) : rows_(problem.rows()), numbers_(problem.numbers()) {}
 
-  /// Once, before the first pass: from this share of the last step's impulses.
+  /// Applies this share of the last step's impulses; call it once before the first pass.
   void start(double share);
-  /// Takes the impulses out of the velocities, or puts them in again.
+  /// Removes the impulses from the velocities, or applies them again.
   void take_back();
   void put_in();
-  /// One pass over the rows, forwards or backwards. Returns the greatest change of a row's velocity.
+  /// Makes one pass over the rows, forwards or backwards. Returns the greatest change of a row's velocity.
   double pass(bool forwards);
 
  private:
@@ -35,11 +35,13 @@ class SequentialImpulses {
   const double* numbers_;
 };
 
-/// What an island with connections starts from. Where passes end before the impulses are right, what is wrong with them
-/// would otherwise add up from step to step: light links between heavy ones then gain energy without end.
+/// Share of the last impulses with which an island with connections is warm-started. If the passes end before
+/// convergence, the remaining errors would otherwise accumulate from step to step: light links between heavy ones would
+/// gain energy without bound.
 inline constexpr double start_of_connected = 0.9;
 
-/// At most `iterations` passes, there and back. Returns the greatest change of a row's velocity by the last one.
+/// Makes at most `iterations` passes in alternating directions. Returns the greatest change of a row's velocity in the
+/// last one.
 double solve_iteratively(Problem& problem, std::uint32_t iterations, double share_of_last);
 
 }  // namespace cohort::physics

@@ -30,7 +30,7 @@ bool LinearComplementarity::solve(std::span<const double> matrix, std::span<cons
   return true;
 }
 
-// Moves x of `row` from zero until it may stay, and with it all that are in between.
+// Moves x of `row`, and of all free rows with it, from zero until the row satisfies its condition.
 bool LinearComplementarity::drive(std::size_t row) {
   while (!may_stay(row)) {
     const double sense = excess_[row] < 0.0 ? 1.0 : -1.0;
@@ -46,7 +46,7 @@ bool LinearComplementarity::drive(std::size_t row) {
   return true;
 }
 
-// At a limit, with an excess that keeps it there: then that is its place.
+// A row at a limit, with an excess that keeps it there, stays at this limit.
 bool LinearComplementarity::may_stay(std::size_t row) {
   const bool at_lower = excess_[row] >= 0.0 && x_[row] <= lower_[row];
   const bool at_upper = excess_[row] <= 0.0 && x_[row] >= upper_[row];
@@ -90,7 +90,7 @@ bool LinearComplementarity::make(const Change& change) {
   return true;
 }
 
-// How x of the rows in between, and the excess of all others, change with x of `row`.
+// Computes how x of the free rows, and the excess of all others, change with x of `row`.
 void LinearComplementarity::find_directions(std::size_t row, double sense) {
   const std::size_t count = between_.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -127,7 +127,7 @@ bool LinearComplementarity::insert(std::size_t row) {
   return true;
 }
 
-// What is below the row moves up; turning pairs of columns makes it a triangle again (Golub and Van Loan, "Matrix
+// The rows below move up; Givens rotations of pairs of columns restore the triangle (Golub and Van Loan, "Matrix
 // computations", 1996, section 12.5.3).
 void LinearComplementarity::remove(std::size_t position) {
   between_.erase(between_.begin() + static_cast<std::ptrdiff_t>(position));

@@ -6,26 +6,26 @@
 
 namespace cohort::physics {
 
-/// Finds x between `lower` and `upper` so that each row of A x - b is zero where x is between its limits, not negative
-/// where it is at the lower and not positive where it is at the upper one: Dantzig's algorithm (Baraff, "Fast contact
-/// force computation for nonpenetrating rigid bodies", SIGGRAPH 1994). One after the other, each row is driven to where
-/// it may be, and those before it are kept where they may be. The rows in between are kept factorised (Cholesky) as
-/// they come and go. The cost grows with the third power of the number of rows.
+/// Finds x between `lower` and `upper` by Dantzig's algorithm. Each row of A x - b is zero if its x is between the
+/// limits, not negative at the lower limit, and not positive at the upper one. Source: Baraff, "Fast contact force
+/// computation for nonpenetrating rigid bodies", SIGGRAPH 1994. The rows are driven one after the other until they
+/// satisfy their condition, and those before stay satisfied. The free rows are kept in factorised form (Cholesky) as
+/// rows join and leave. The cost grows with the third power of the number of rows.
 ///
-/// Keeps its memory. Nothing is shared between objects.
+/// Reuses its memory. Nothing is shared between objects.
 class LinearComplementarity {
  public:
-  /// `matrix`: symmetric and positive definite, row by row. Limits may be infinite; lower <= 0 <= upper. `x`: the
-  /// result. False if no solution is found: the matrix is not definite.
+  /// Solves into `x`. `matrix`: symmetric and positive definite, by rows. Limits may be infinite; lower <= 0 <= upper.
+  /// Returns false if it finds no solution because the matrix is not positive definite.
   bool solve(std::span<const double> matrix, std::span<const double> b, std::span<const double> lower,
              std::span<const double> upper, std::span<double> x);
 
  private:
   enum class Place : unsigned char { later, between, lower, upper };
 
-  /// The first row that has to change its place while x of another one moves.
+  /// The first row that must change its place while x of another row moves.
   struct Change {
-    double way = 0.0;  ///< of that x until then
+    double way = 0.0;  ///< displacement of that x until then
     std::size_t row = 0;
     Place becomes = Place::between;
   };
@@ -47,9 +47,9 @@ class LinearComplementarity {
   std::span<double> x_;
   std::vector<double> excess_;            // A x - b, by row
   std::vector<Place> places_;             // by row
-  std::vector<std::size_t> between_;      // rows, in the order of the factors
+  std::vector<std::size_t> between_;      // free rows, in the order of the factors
   std::vector<double> factors_;           // the lower triangle, by position in between_
-  std::vector<double> change_of_x_;       // by position in between_, for a unit change of the row that is driven
+  std::vector<double> change_of_x_;       // by position in between_, per unit change of the driven row
   std::vector<double> change_of_excess_;  // by row
   std::size_t moves_left_ = 0;
 };

@@ -11,16 +11,16 @@ struct Anchor {
   int segment = 0;
 };
 
-/// Where the solids of the scene are in the problems of this step.
+/// Maps the solids of the scene to the bodies of this step's problems.
 struct Anchors {
   static constexpr std::uint32_t nobody = 0xffffffffu;
   struct Part {
-    std::uint32_t member = nobody;  ///< whose it is among the bodies that move; `nobody`: it is part of the world
+    std::uint32_t member = nobody;  ///< `nobody`: part of the world
     int segment = 0;
   };
 
   std::vector<Part> part_of_solid;
-  std::vector<int> index_of_member;  ///< in its island's problem, -1 while it is out of it
+  std::vector<int> index_of_member;  ///< index in its island's problem, or -1 if it is not in one
 
   bool moves(std::uint32_t solid) const { return part_of_solid[solid].member != nobody; }
   std::uint32_t member(std::uint32_t solid) const { return part_of_solid[solid].member; }

@@ -7,11 +7,12 @@
 
 namespace cohort::physics {
 
-/// How the links of one body moved over its last step: kept for those bodies alone of which somebody asked for it, and
-/// no part of the state.
+/// The motion of the links of one body over its last step. Kept only for bodies for which it was requested, and not
+/// part of the state.
 class MotionRecord {
  public:
-  /// Call `before` and `after` around the integration of a step. `Body` has link_pose and link_twist of a link.
+  /// Records the motion; call `before` and `after` around the integration of a step. `Body` has link_pose and
+  /// link_twist of a link.
   template <class Body>
   void before(const Body& body, std::size_t links) {
     keep(before_, body, links);
@@ -22,13 +23,13 @@ class MotionRecord {
     keep(after_, body, links);
     is_whole_ = true;
   }
-  /// The last step is no longer known: the body was put elsewhere, or was not in it.
+  /// Forgets the last step: the body was placed elsewhere or did not take part in it.
   void forget() { is_whole_ = false; }
   bool is_whole() const { return is_whole_; }
 
   const Pose& pose_before(std::size_t link) const { return before_[link].X_WL; }
-  /// Mean acceleration over the step of a point that is fixed to the link, in world axes [m/s^2]; zero if the last step
-  /// is not known.
+  /// Returns the mean acceleration over the step of a point fixed to the link, in world axes [m/s^2]; zero if the last
+  /// step is not known.
   Eigen::Vector3d acceleration(std::size_t link, const Eigen::Vector3d& p_LP, double step) const {
     if (!is_whole_) return Eigen::Vector3d::Zero();
     return (velocity(after_[link], p_LP) - velocity(before_[link], p_LP)) / step;

@@ -9,18 +9,18 @@
 
 namespace cohort::physics {
 
-/// An instance of a model, and what was done to it from outside since the world began.
+/// An instance of a model, and the changes from outside since the world began.
 struct PlacedBody {
-  Pose X_WM;  ///< where it was placed; a static body is there
+  Pose X_WM;  ///< pose at which it was placed; a static body stays there
   std::uint32_t model = 0;
-  std::uint32_t member = Anchors::nobody;  ///< `nobody`: it is static
-  std::uint32_t first_solid = 0;           ///< of a static one
-  std::uint32_t end_of_solids = 0;         ///< the same; one past its last
-  bool is_placed_again = false;            ///< X_WM is not what the description says
-  bool is_out = false;                     ///< of a static one: it was removed
+  std::uint32_t member = Anchors::nobody;  ///< `nobody`: static
+  std::uint32_t first_solid = 0;           ///< for a static body
+  std::uint32_t end_of_solids = 0;         ///< for a static body, one past its last
+  bool is_placed_again = false;            ///< X_WM differs from the description
+  bool is_out = false;                     ///< a static body was removed
 };
 
-/// Adds nothing for a body that was left alone.
+/// Hashes these changes; adds nothing for a body without any.
 inline void hash_changes(const PlacedBody& body, StateHash& hash) {
   if (body.is_placed_again) visit_pose(body.X_WM, StateHasher{hash});
   if (body.is_out) StateHasher{hash}(body.is_out);
@@ -36,8 +36,8 @@ inline void save_changes(const std::vector<PlacedBody>& bodies, SnapshotWriter& 
   }
 }
 
-/// Does the same again to the bodies of `engine`, all of which are in the world afterwards but for static ones that
-/// were removed.
+/// Repeats the changes on the bodies of `engine`. Afterwards all bodies are in the world except static ones that were
+/// removed.
 template <class Engine>
 void restore_changes(SnapshotReader& reader, Engine& engine) {
   const StateRestorer restore{reader};

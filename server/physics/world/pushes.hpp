@@ -8,7 +8,7 @@
 
 namespace cohort::physics {
 
-/// The forces from outside that act during the next step.
+/// External forces that act during the next step.
 class Pushes {
  public:
   struct Push {
@@ -24,7 +24,7 @@ class Pushes {
   }
   void clear() { pushes_.clear(); }
 
-  /// Calls `visit(push)` for those on one body, in the order in which they were added. From any thread.
+  /// Calls `visit(push)` for those on one body, in the order in which they were added. Thread-safe.
   template <class Visit>
   void for_each_of(std::uint32_t member, Visit&& visit) const {
     if (pushes_.empty()) return;

@@ -39,7 +39,7 @@ SurfacePair of_coefficients(const description::Surface& a, const description::Su
 
 SurfacePair SurfacePairs::of(const description::Surface& a, const description::Surface& b) const {
   SurfacePair both = of_coefficients(a, b);
-  if (a.material >= materials_ || b.material >= materials_) return both;  // came later
+  if (a.material >= materials_ || b.material >= materials_) return both;  // added later
   if (const auto& pair = pairs_[a.material * materials_ + b.material]) {
     both.friction = pair->friction;
     both.directed = SurfacePair::Directed::neither;

@@ -9,9 +9,9 @@
 
 namespace cohort::physics {
 
-/// What two surfaces do to each other.
+/// The contact parameters of two surfaces.
 struct SurfacePair {
-  /// From here on a contact is rigid: it would give less than is ever seen [N/m].
+  /// A contact at least this stiff is rigid: its deflection would be invisible [N/m].
   static constexpr double rigid = 1e9;
 
   double friction = 0.0;
@@ -20,12 +20,12 @@ struct SurfacePair {
   double spinning_resistance = 0.0;  ///< [m]
   double second_friction = 0.0;      ///< across the direction of friction
   enum class Directed : std::uint8_t { neither, by_first, by_second } directed = Directed::neither;
-  double stiffness = rigid;                ///< of each point [N/m]
-  double damping = 0.0;                    ///< of each that is not rigid [N s/m]
+  double stiffness = rigid;                ///< per contact point [N/m]
+  double damping = 0.0;                    ///< per contact point that is not rigid [N s/m]
   double bounce_threshold = least_bounce;  ///< [m/s]
 };
 
-/// Combines surfaces, with the world's pairs of materials before the rule for the rest.
+/// Combines surfaces: a material pair of the world takes precedence over the general rule.
 class SurfacePairs {
  public:
   explicit SurfacePairs(const description::World& world);
@@ -36,8 +36,8 @@ class SurfacePairs {
   std::vector<std::optional<description::MaterialPair>> pairs_;  // materials_ x materials_
 };
 
-/// Tracks are made of what the first wheel that they stand for is made of or, if they name none, their link: the first
-/// collision of it says so.
+/// Returns the surface of tracks: that of the first wheel that they replace or, if they name none, that of their link,
+/// given by the link's first collision.
 description::Surface surface_of_tracks(const description::Model& model, const description::TrackPair& drive);
 
 }  // namespace cohort::physics

@@ -15,19 +15,20 @@ struct Wrench {
   Eigen::Vector3d torque_W;  ///< [N m]
 };
 
-/// What a connection bears before it breaks.
+/// The load at which a connection breaks.
 struct ConnectionLimits {
   double force = std::numeric_limits<double>::infinity();   ///< [N]
   double torque = std::numeric_limits<double>::infinity();  ///< [N m]
 };
 
-/// How a connection yields; with the defaults not at all. Axes are those of P on body a. Springs and dampers are
-/// implicit, and so stable at any stiffness and step; what exceeds a limit slips: where it came to is its new rest.
+/// The compliance of a connection; rigid by default. Axes are those of P on body a. Springs and dampers are implicit,
+/// and so stable at any stiffness and step. A connection slips beyond its holding limits and then has a new rest
+/// position.
 struct ConnectionGive {
   static constexpr double rigid = std::numeric_limits<double>::infinity();
 
   double linear_stiffness = rigid;  ///< [N/m]
-  double linear_damping = 0.0;      ///< beside a stiffness that is not rigid [N s/m]
+  double linear_damping = 0.0;      ///< only with a stiffness that is not rigid [N s/m]
   double holding_force = rigid;     ///< along each axis [N]
   Eigen::Vector3d angular_stiffness = Eigen::Vector3d::Constant(rigid);  ///< about each axis [N m/rad]
   Eigen::Vector3d angular_damping = Eigen::Vector3d::Zero();             ///< [N m s/rad]
@@ -42,23 +43,24 @@ struct BodyLink {
 
 enum class ConnectionEnd : std::uint8_t { a, b };
 
-/// The connections of a world: each holds a link of one body to a link of another. Those that change something are
-/// called between steps.
+/// The connections of a world: each holds a link of one body to a link of another. Functions that change something must
+/// be called between steps.
 class WorldConnections {
  public:
-  /// Holds a link of a body that moves, `a`, to another, `b`, as they are now, around the frame P of link a; from the
-  /// next step on. Returns the connection, whose number counts up from 0.
+  /// Connects a link of a moving body `a` to a link of `b` in their present relative pose, at the frame P of link a,
+  /// from the next step on. Returns the connection, whose number counts up from 0.
   virtual ConnectionId connect(const BodyLink& a, const Pose& X_LP, const BodyLink& b,
                                const ConnectionLimits& limits = {}) = 0;
   virtual void disconnect(ConnectionId connection) = 0;
-  /// From the next step on.
+  /// Sets the compliance from the next step on.
   virtual void set_give(ConnectionId connection, const ConnectionGive& give) = 0;
 
-  /// Returns how many there ever were.
+  /// Returns the number of connections ever made.
   virtual std::uint32_t made() const = 0;
   virtual bool holds(ConnectionId connection) const = 0;
-  /// Returns the wrench on one end's link by the other's, about the origin of P as that link carries it, over the last
-  /// step; what broke the connection if that was in the last step, otherwise zero if it does not hold.
+  /// Returns the wrench of the last step on one end's link by the other's, about the origin of P as that link carries
+  /// it. If the connection broke in the last step, this is the wrench that broke it; it is zero if the connection was
+  /// released earlier.
   virtual Wrench wrench(ConnectionId connection, ConnectionEnd end = ConnectionEnd::a) const = 0;
   /// Returns the connections that broke in the last step, ascending.
   virtual std::span<const ConnectionId> broken() const = 0;

@@ -7,19 +7,19 @@
 
 namespace cohort::physics {
 
-/// What sensors measure of forces and accelerations. A world keeps it only for the bodies that it was told to record.
+/// Forces and accelerations that sensors measure. A world keeps them only for recorded bodies.
 class WorldRecords {
  public:
-  /// Keeps, from the next step on, what `joint_wrench` and `link_acceleration` tell of a body that moves, which are
-  /// zero otherwise. Called between steps. None of the three is part of the state: after `restore`, and where a body
-  /// was put elsewhere or is not in the world, both are zero until the end of the next step. A static body has neither.
+  /// Records `joint_wrench` and `link_acceleration` of a moving body from the next step on; they are zero otherwise.
+  /// Called between steps. Nothing of this is part of the state. After `restore`, and for a body that was placed
+  /// elsewhere or is not in the world, both are zero until the end of the next step. A static body has neither.
   virtual void record(BodyId body) = 0;
   /// Returns the wrench on the joint's child by its parent over the last step, about the joint's origin, both as they
-  /// were when the step began: all that goes through the joint, of motor, friction, damping, spring, limits and what
-  /// the joint does not let move; also of a fixed joint. Zero for a planar body.
+  /// were at the beginning of the step. It is the total of motor, friction, damping, spring, limits and constraint
+  /// forces, also for a fixed joint. Zero for a planar body.
   virtual Wrench joint_wrench(BodyId body, JointId joint) const = 0;
-  /// Returns the mean acceleration over the last step of a point that is fixed to a link, in world axes, gravity not
-  /// taken out [m/s^2]: zero at rest, `gravity` in free fall.
+  /// Returns the mean acceleration over the last step of a point fixed to a link, in world axes [m/s^2]. It includes
+  /// gravity: zero at rest, `gravity` in free fall.
   virtual Eigen::Vector3d link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const = 0;
 
  protected:

@@ -6,18 +6,19 @@
 
 namespace cohort::physics {
 
-/// The state of a world: all that decides how it goes on. Used between steps.
+/// The state of a world: everything that determines its further course. Used between steps.
 class WorldState {
  public:
-  /// Adds all that decides how `body` goes on: pose, velocities, joints, tracks, targets, warm-start impulses.
+  /// Hashes everything that determines the further course of `body`: pose, velocities, joints, tracks, targets,
+  /// warm-start impulses.
   virtual void hash_body(BodyId body, StateHash& hash) const = 0;
-  /// Adds every contact point and every connection with what the solver's warm start takes from it.
+  /// Hashes every contact point and every connection with their warm-start impulses.
   virtual void hash_contacts(StateHash& hash) const = 0;
 
   /// Writes the whole state.
   virtual void save(SnapshotWriter& writer) const = 0;
-  /// Reads it into a world as it is after its construction, of the same description. Throws SnapshotError if the
-  /// snapshot is of something else; the world is then not to be used.
+  /// Restores the state into a newly constructed world of the same description. Throws SnapshotError if the snapshot
+  /// belongs to something else; the world must not be used then.
   virtual void restore(SnapshotReader& reader) = 0;
 
  protected:

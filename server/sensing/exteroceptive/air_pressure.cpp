@@ -6,21 +6,21 @@
 namespace cohort::sensing {
 namespace {
 
-// In Pa at `height` above the sea [m]; 0 where the formula has no air.
+// Returns the pressure [Pa] at `height` above the sea [m]; 0 where the formula has no air.
 double standard_pressure(double height) {
   constexpr double at_sea = 101325.0;       // p0 [Pa]
   constexpr double temperature = 288.15;    // T0 [K]
   constexpr double lapse_rate = 0.0065;     // L [K/m]
   constexpr double gravity = 9.80665;       // g [m/s^2]
   constexpr double molar_mass = 0.0289644;  // M [kg/mol]
-  constexpr double gas_constant = 8.31432;  // R, as the standard has it [J/(mol K)]
+  constexpr double gas_constant = 8.31432;  // R of the standard [J/(mol K)]
   const double base = 1.0 - lapse_rate * height / temperature;
   if (base <= 0.0) return 0.0;
   return at_sea * std::exp(gravity * molar_mass / (gas_constant * lapse_rate) * std::log(base));
 }
 
-/// The pressure of the air at the height of S above the sea, as of the International Standard Atmosphere (ICAO Doc
-/// 7488, its lowest layer, continued above and below): p = p0 (1 - L h / T0)^(g M / (R L)).
+/// Air pressure at the height of S above the sea, p = p0 (1 - L h / T0)^(g M / (R L)). It is that of the International
+/// Standard Atmosphere (ICAO Doc 7488, its lowest layer, continued above and below).
 class AirPressureSensor final : public SensorOf<description::AirPressureSensor> {
  public:
   using SensorOf::SensorOf;

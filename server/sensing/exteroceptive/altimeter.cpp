@@ -4,8 +4,8 @@
 namespace cohort::sensing {
 namespace {
 
-/// Height of the origin of S above where it was at first, and its velocity upwards, both along the world's z axis.
-/// "At first" is when this is made: before the first step of a run, also of one that is then restored.
+/// Height of the origin of S relative to its initial height, and its upward velocity, both along the world's z axis.
+/// The initial height is that at construction: before the first step of a run, also if the run is then restored.
 class Altimeter final : public SensorOf<description::Altimeter> {
  public:
   Altimeter(const description::Altimeter& altimeter, const Mount& mount)

@@ -6,7 +6,7 @@
 namespace cohort::sensing {
 namespace {
 
-/// The world's temperature and humidity and what the sources around add (description::ClimateSource).
+/// Temperature and humidity of the world, plus those of nearby sources (description::ClimateSource).
 class ClimateSensor final : public SensorOf<description::ClimateSensor> {
  public:
   using SensorOf::SensorOf;

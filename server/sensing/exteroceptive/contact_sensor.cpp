@@ -3,8 +3,8 @@
 namespace cohort::sensing {
 namespace {
 
-/// Whether one collision touched anything in the last step, and how hard it was pressed: the sum of the normal impulses
-/// of its contact points, over the duration of the step.
+/// Contact of one collision in the last step, and its force: the sum of the normal impulses of its contact points,
+/// divided by the duration of the step.
 class ContactSensor final : public SensorOf<description::ContactSensor> {
  public:
   using SensorOf::SensorOf;

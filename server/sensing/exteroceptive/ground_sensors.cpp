@@ -4,7 +4,7 @@ namespace cohort::sensing {
 namespace {
 
 /// Infrared sensors under a robot, each a ray along -z of the link. The reading is 1 - d / range for a surface at
-/// distance d, 0 if there is none within range, as over a hole (thesis, section 3.2.2).
+/// distance d, and 0 if there is none within range, as over a hole (thesis, section 3.2.2).
 class GroundSensors final : public SensorOf<description::GroundSensors> {
  public:
   using SensorOf::SensorOf;

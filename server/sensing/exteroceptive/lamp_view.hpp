@@ -10,25 +10,25 @@
 
 namespace cohort::sensing {
 
-/// Which rings of light sensors see which lamps. Many rings are served lamp by lamp, before the robots sense, with what
-/// stands around the lamp sorted once for all of them; few rings by a ray for each question. The answers are the same,
-/// bit for bit: a lamp is seen if the segment from it to the middle of the ring meets nothing but the two bodies that
-/// carry them.
+/// Visibility of lamps from rings of light sensors. For many rings it is computed lamp by lamp before the robots sense,
+/// with the solids around the lamp sorted once for all of them. For few rings it is a ray for each query. The results
+/// are the same, bit for bit. A lamp is visible if the segment from it to the middle of the ring hits nothing but the
+/// two bodies that carry them.
 class LampView final : public SharedView {
  public:
   /// Keeps references to both.
   LampView(const physics::World& world, const emission::Emitters& emitters) : world_(world), emitters_(emitters) {}
 
-  /// A ring whose middle is at p_LS of a link. Returns its number: they count from 0.
+  /// Adds a ring whose middle is at p_LS of a link. Returns its index, starting at 0.
   std::uint32_t add_ring(BodyId body, LinkId link, const Eigen::Vector3d& p_LS);
   std::uint32_t ring_count() const { return static_cast<std::uint32_t>(rings_.size()); }
 
-  /// The ring will be asked for after the next update.
+  /// Requests the ring for the next update.
   void ask(std::uint32_t ring) { asking_.push_back(ring); }
-  /// Looks from all lamps that are on, for the rings that have asked.
+  /// Computes the visibility of all active lamps for the requested rings.
   void update(WorkerPool& workers) override;
 
-  /// `lamp`: place in `Emitters::lit_lamps()`, of one that is neither directional nor on the ring's own body. From any
+  /// `lamp`: index in `Emitters::lit_lamps()` of a lamp that is neither directional nor on the ring's own body. For any
   /// thread between two updates.
   bool is_in_sight(std::uint32_t lamp, std::uint32_t ring) const;
 
@@ -49,9 +49,9 @@ class LampView final : public SharedView {
   const physics::World& world_;
   const emission::Emitters& emitters_;
   std::vector<Ring> rings_;
-  std::vector<std::uint32_t> asking_;        // rings
+  std::vector<std::uint32_t> asking_;        // requested rings
   std::vector<Answer> answers_;              // by lamp, then by ring
-  std::vector<geometry::SightLines> lines_;  // of each worker
+  std::vector<geometry::SightLines> lines_;  // by worker
 };
 
 }  // namespace cohort::sensing

@@ -8,21 +8,21 @@
 namespace cohort::sensing {
 namespace {
 
-// The i-th of n.
+// Returns the i-th of n angles.
 double angle(double least, double greatest, std::size_t i, std::size_t n) {
   if (n == 1) return 0.5 * (least + greatest);
   return least + static_cast<double>(i) * (greatest - least) / static_cast<double>(n - 1);
 }
 
-/// Ranges by one ray each, from the origin of S through what is the robot's own. The ray of bearing b and elevation e
-/// goes along (cos e cos b, cos e sin b, sin e) in S; in n columns or rows the i-th is at
-/// min + i (max - min) / (n - 1). What is nearer than the least range reads as that, and nothing within the greatest
-/// one as the greatest, which noise leaves as it is.
+/// Ranges by one ray each, from the origin of S, through the robot's own bodies. The ray of bearing b and elevation e
+/// has the direction (cos e cos b, cos e sin b, sin e) in S. In n columns or rows the i-th is at min + i (max - min) /
+/// (n - 1). A distance below the least range reads as the least range. Without a hit the reading is the greatest range,
+/// which noise does not change.
 class Lidar final : public SensorOf<description::Lidar> {
  public:
   Lidar(const description::Lidar& lidar, const Mount& mount)
       : SensorOf(lidar, mount),
-        // Noise leaves the infinite as it is, and the signal chain then brings it into the range of the channel.
+        // Noise does not change infinity, and the signal chain then clamps it to the range of the channel.
         nothing_(lidar.readout.noises.empty() ? lidar.max_range : infinity) {
     for (std::size_t row = 0; row < lidar.rows; ++row) {
       const double elevation = angle(lidar.min_elevation, lidar.max_elevation, row, lidar.rows);
@@ -53,8 +53,8 @@ class Lidar final : public SensorOf<description::Lidar> {
 
  private:
   std::vector<Eigen::Vector3d> directions_S_;
-  bool is_flat_ = true;  // all in the xy plane of S
-  double nothing_;       // what is measured where nothing is
+  bool is_flat_ = true;  // all rays are in the xy plane of S
+  double nothing_;       // measured value without a hit
 };
 
 }  // namespace

@@ -13,14 +13,14 @@ namespace {
 
 using description::Light;
 
-// A lamp is no nearer than this [m]: at no distance it would be infinitely bright.
+// Minimum distance of a lamp [m], as its light would be infinite at distance 0.
 constexpr double least_distance = 1e-3;
-// From where a directional light comes [m].
+// Distance of a directional light [m].
 constexpr double far_away = infinity;
 
 double brightness(const emission::Lamp& lamp) { return lamp.light.intensity * lamp.light.color.sum() / 3.0; }
 
-// 1 of all but spots.
+// Returns 1 for all lamps except spots.
 double within_cone(const emission::Lamp& lamp, const Eigen::Vector3d& direction_W) {
   if (lamp.light.kind != Light::Kind::spot) return 1.0;
   const double along = -direction_W.dot(lamp.direction_W);
@@ -31,7 +31,7 @@ double within_cone(const emission::Lamp& lamp, const Eigen::Vector3d& direction_
   return std::exp(lamp.light.falloff * std::log((along - outer) / (inner - outer)));
 }
 
-// What arrives at a place of a lamp in sight [1]; `direction_W`: from there to the lamp, unit.
+// Returns the light of a visible lamp at a point [1]; `direction_W`: unit vector from the point to the lamp.
 double arriving_light(const emission::Lamp& lamp, const Eigen::Vector3d& direction_W, double distance) {
   const Light& light = lamp.light;
   if (light.kind == Light::Kind::directional) return brightness(lamp);
@@ -41,12 +41,11 @@ double arriving_light(const emission::Lamp& lamp, const Eigen::Vector3d& directi
   return arriving * within_cone(lamp, direction_W);
 }
 
-/// Light from all lamps that are on and in sight, as one ray between the lamp and the middle of the ring decides
-/// (LampView; thesis, section 3.2.3). Of what arrives there (description::Light; a colour counts by the mean of its
-/// three parts) a sensor gets the share of the cosine of the angle between its axis and the lamp (Lambert's law),
-/// nothing from behind. The reading is the sum over the lamps times the gain, saturated. With samples, the table's
-/// readings for the lamp's distance and bearing, times what a lamp as bright gives at 1 m, take the place of distance
-/// and cosine.
+/// Light from all active, visible lamps. One ray between the lamp and the middle of the ring decides the visibility
+/// (LampView; thesis, section 3.2.3). A sensor receives the light at its place times the cosine of the angle between
+/// its axis and the lamp (Lambert's law), and nothing from behind. A colour counts by the mean of its three parts
+/// (description::Light). The reading is the sum over the lamps times the gain, saturated. With samples, distance and
+/// cosine are replaced by the table's readings for the lamp's distance and bearing, times the light of the lamp at 1 m.
 class LightSensors final : public SensorOf<description::LightSensors> {
  public:
   LightSensors(const description::LightSensors& sensors, const Mount& mount)
@@ -99,7 +98,7 @@ class LightSensors final : public SensorOf<description::LightSensors> {
 
  private:
   LampView& lamp_view_;
-  std::uint32_t ring_;  // number in the lamp view
+  std::uint32_t ring_;  // index in the lamp view
   std::vector<Eigen::Vector3d> directions_S_;
   std::optional<SampleTable> table_;
 };

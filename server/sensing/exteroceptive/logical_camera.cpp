@@ -16,9 +16,9 @@ struct Seen {
   friend auto operator<=>(const Seen&, const Seen&) = default;
 };
 
-/// Which objects have the origin of their root link within a frustum along the x axis of S, whatever hides it: y/x and
-/// z/x there are at most tan(fov / 2), and that over the aspect ratio (as Gazebo's logical camera). The nearest ones
-/// are reported, with their poses in S; of two as near, the one with the lower index first.
+/// Objects whose root link's origin is within a frustum along the x axis of S, even if occluded. There y/x is at most
+/// tan(fov / 2), and z/x that over the aspect ratio (as in Gazebo's logical camera). The nearest ones are reported,
+/// with their poses in S; of two at the same distance, the one with the lower index comes first.
 class LogicalCamera final : public SensorOf<description::LogicalCamera> {
  public:
   LogicalCamera(const description::LogicalCamera& camera, const Mount& mount)
@@ -65,8 +65,8 @@ class LogicalCamera final : public SensorOf<description::LogicalCamera> {
            std::abs(p_S.z()) <= height_ * p_S.x();
   }
 
-  double width_;   // half of what is seen at 1 m [m]
-  double height_;  // the same
+  double width_;   // half the width of the frustum at 1 m [m]
+  double height_;  // half the height likewise
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 namespace cohort::sensing {
 namespace {
 
-/// The magnetic field of the world, which is the same everywhere, in S.
+/// The world's uniform magnetic field, in S.
 class Magnetometer final : public SensorOf<description::Magnetometer> {
  public:
   using SensorOf::SensorOf;

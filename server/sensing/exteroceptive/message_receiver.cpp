@@ -8,10 +8,10 @@
 namespace cohort::sensing {
 namespace {
 
-/// Messages of the robots around (description::RangeAndBearing) and where they came from. A message is heard if its
-/// sender's range reaches here and a ray to the sender meets nothing but the two robots themselves. What is heard
-/// between two deliveries adds up, the newest tick first; of one tick the nearest first, and of two at the same
-/// distance the one with the lower beacon. What exceeds the capacity is lost.
+/// Messages of nearby robots (description::RangeAndBearing), with the positions of the senders. A message is received
+/// if the receiver is within the sender's range and a ray to the sender hits nothing but the two robots. Messages
+/// between two deliveries accumulate, the newest tick first. Within a tick the nearest comes first, and of two at the
+/// same distance the one with the lower beacon. Messages beyond the capacity are lost.
 class MessageReceiver final : public SensorOf<description::RangeAndBearing> {
  public:
   using SensorOf::SensorOf;
@@ -27,7 +27,7 @@ class MessageReceiver final : public SensorOf<description::RangeAndBearing> {
   std::size_t size_of_one() const { return 3 + device_.message_size; }
 
   std::vector<double> heard_;   // range, bearing, elevation and message of each, in the order of the report
-  std::vector<double> before_;  // of these, those of ticks before `noted_tick_`
+  std::vector<double> before_;  // those of ticks before `noted_tick_`
   std::uint64_t noted_tick_ = ~std::uint64_t{0};
 };
 
@@ -108,7 +108,7 @@ void MessageReceiver::restore(SnapshotReader& reader) {
   for (std::vector<double>* const messages : {&heard_, &before_}) {
     messages->resize(reader.read_count(sizeof(double)));
     if (messages->size() > device_.capacity * size_of_one())
-      throw SnapshotError("the snapshot has more messages than a robot hears");
+      throw SnapshotError("snapshot: more messages than a robot can receive");
     reader.read_all(messages->data(), messages->size());
   }
 }

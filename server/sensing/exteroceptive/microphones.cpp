@@ -9,10 +9,10 @@
 namespace cohort::sensing {
 namespace {
 
-/// Sounds within bands of frequency, from everywhere: nothing reflects or hides a sound (thesis, section 3.2.4). What
-/// arrives at a distance d [m] is the intensity of the source / d^2. The reading is the sum over the sources times the
-/// gain, saturated. With samples, the table's readings for the source's distance from the link's origin and its bearing
-/// from the link's x axis, times its intensity, take the place of the distance. A robot does not hear itself.
+/// Sounds within frequency bands, from all directions, without reflection or occlusion (thesis, section 3.2.4). The
+/// sound at a distance d [m] is the intensity of the source / d^2. The reading is the sum over the sources times the
+/// gain, saturated. With samples, the distance is replaced by the table's readings for the source's distance from the
+/// link's origin and its bearing from the link's x axis, times its intensity. A robot does not receive its own sounds.
 class Microphones final : public SensorOf<description::Microphones> {
  public:
   Microphones(const description::Microphones& microphones, const Mount& mount) : SensorOf(microphones, mount) {
@@ -26,7 +26,7 @@ class Microphones final : public SensorOf<description::Microphones> {
     return channels;
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    constexpr double least_squared = 1e-6;  // [m^2]: at no distance a source would be infinitely loud
+    constexpr double least_squared = 1e-6;  // [m^2]: the intensity would be infinite at distance 0
     const Pose X_WL = mount_.world.link_pose(mount_.body, LinkId{device_.link});
     std::vector<Eigen::Vector3d> places_W;
     places_W.reserve(device_.places_L.size());

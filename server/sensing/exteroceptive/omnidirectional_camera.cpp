@@ -8,8 +8,8 @@
 namespace cohort::sensing {
 namespace {
 
-/// Coloured spots all round (description::OmnidirectionalCamera), as `markers_in_sight` finds them: what the s-bot's
-/// camera makes of its image in the end.
+/// Coloured spots in all directions (description::OmnidirectionalCamera), as found by `markers_in_sight`: the processed
+/// image of the s-bot's camera.
 class OmnidirectionalCamera final : public SensorOf<description::OmnidirectionalCamera> {
  public:
   using SensorOf::SensorOf;

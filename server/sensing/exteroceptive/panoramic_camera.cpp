@@ -14,9 +14,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double ambient = 0.4;
-constexpr double spot_radius = 5e-3;  // of a marker [m]
+constexpr double spot_radius = 5e-3;  // radius of a drawn marker [m]
 
-// Of the middle of each row, the highest first.
+// Returns the elevation of the middle of each row, the highest first.
 std::vector<double> elevations_of(const description::PanoramicCamera& camera) {
   const double height = (camera.max_elevation - camera.min_elevation) / static_cast<double>(camera.height);
   std::vector<double> elevations;
@@ -34,11 +34,10 @@ void paint(std::span<double> image, std::size_t pixel, const Eigen::Vector3d& co
   std::copy(color.begin(), color.end(), image.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
 }
 
-/// An image of all round (description::PanoramicCamera), one ray for each pixel, through its middle. A surface has the
-/// colour of its link times 0.4 + 0.6 max(0, n . l), where n is its normal and l the direction (2, 1, 3) / sqrt(14) of
-/// a light that is always the same and throws no shadows (Lambert's law). Markers that are in sight (markers_in_sight)
-/// are drawn over it as spots with a radius of 5 mm and their own colour, at least the pixel that they are in, the
-/// nearest last. Lamps light nothing up.
+/// A panoramic image (description::PanoramicCamera), with one ray for each pixel, through its middle. A surface has the
+/// colour of its link times 0.4 + 0.6 max(0, n . l). Here n is its normal and l the direction (2, 1, 3) / sqrt(14) of a
+/// fixed light without shadows (Lambert's law). Visible markers (markers_in_sight) are drawn over it as spots with a
+/// radius of 5 mm and their own colour, at least the pixel that they are in, the nearest last. Lamps have no effect.
 class PanoramicCamera final : public SensorOf<description::PanoramicCamera> {
  public:
   PanoramicCamera(const description::PanoramicCamera& camera, const Mount& mount);
@@ -93,7 +92,7 @@ void PanoramicCamera::draw_markers(const Pose& X_WS, std::span<double> image) co
         integer_floor((device_.max_elevation - spot.elevation) * rows_a_radian), 0, height - 1);
     const double half_angle = std::asin(std::min(1.0, spot_radius / std::max(spot.distance, spot_radius)));
     const double cosine = std::cos(half_angle);
-    // Towards a pole a column is narrower.
+    // Columns are narrower near a pole.
     const double narrow = std::max(std::cos(std::min(std::abs(spot.elevation) + half_angle, 0.5 * pi)), 1e-6);
     const std::int64_t rows_aside = integer_floor(half_angle * rows_a_radian) + 1;
     const std::int64_t columns_aside = integer_floor(std::min(half_angle / narrow, pi) * columns_a_radian) + 1;

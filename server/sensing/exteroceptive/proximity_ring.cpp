@@ -27,7 +27,7 @@ double heading_of(const Pose& X_WS) {
   return std::atan2(x_W.y(), x_W.x());
 }
 
-// From a point, seen from above; zero if the point is inside.
+// Returns the vector from a point, seen from above; zero if the point is inside.
 Vector2d to_nearest_point(const geometry::Outline& outline, const Vector2d& p_W) {
   const Vector2d offset = outline.centre_W - p_W;
   if (outline.is_round()) {
@@ -40,21 +40,21 @@ Vector2d to_nearest_point(const geometry::Outline& outline, const Vector2d& p_W)
   return gap(axis.dot(offset), outline.half.x()) * axis + gap(side.dot(offset), outline.half.y()) * side;
 }
 
-/// Infrared proximity. The real sensor sees a cone of 40 degrees and 20 cm (thesis, section 3.2.1). What a ray of
-/// length `range` meets at distance d counts 1 - d / range, and 0 if it meets nothing; a sensor that gathers what comes
-/// back from its whole cone reads the mean of that over the cone. The techniques of the thesis are ways to it:
-///  - ray: the ray along the sensor's axis stands for all.
-///  - random_ray: at each tick another ray, with equal probability anywhere in the cone (in solid angle): the mean over
-///    many ticks is right, and nothing small stays hidden.
-///  - five_rays: the mean of the ray along the axis and four at sqrt(5/8) of half the cone from it, to both sides, up
-///    and down. At that angle the mean of the five is that over a small cone for every function of up to third order
-///    (equal second moments: 4/5 t^2 = R^2 / 2).
-///  - shadow: the mean over the directions of a ShadowRing of 360 that end in the mouth of the sensor's cone. They
-///    start in the middle of the ring, and count from `ring_radius` on; so they lie within
-///    atan2(range sin c, ring_radius + range cos c) of the axis, for half a cone c.
-///  - samples: the readings of a table for each solid that reaches through the plane of the ring and is no ground, by
-///    the distance of its nearest point from the middle of the ring and that point's bearing, seen from above and
-///    through all else; the greatest counts.
+/// Infrared proximity. The real sensor covers a cone of 40 degrees and 20 cm (thesis, section 3.2.1). A ray of length
+/// `range` that hits something at distance d has the value 1 - d / range, and 0 without a hit. The reading is the mean
+/// value over the cone, which the techniques of the thesis approximate.
+/// `ray`: the ray along the sensor's axis alone.
+/// `random_ray`: another ray at each tick, uniformly distributed in the cone (in solid angle). The mean over many ticks
+/// is correct, and even small objects are detected.
+/// `five_rays`: the mean of the ray along the axis and four at sqrt(5/8) of half the cone from it, to both sides, up
+/// and down. At that angle the mean of the five equals that over a small cone for every function of up to third order
+/// (equal second moments: 4/5 t^2 = R^2 / 2).
+/// `shadow`: the mean over the directions of a ShadowRing of 360 that end in the mouth of the sensor's cone. They start
+/// in the middle of the ring, and count from `ring_radius` on. So they are within
+/// atan2(range sin c, ring_radius + range cos c) of the axis, for half a cone c.
+/// `samples`: the readings of a table for each solid that intersects the plane of the ring and is not ground. They
+/// depend on the distance of its nearest point from the middle of the ring, and on that point's bearing, seen from
+/// above and without occlusion. The greatest reading counts.
 class ProximityRing final : public SensorOf<description::ProximityRing> {
  public:
   ProximityRing(const description::ProximityRing& ring, const Mount& mount);
@@ -74,7 +74,7 @@ class ProximityRing final : public SensorOf<description::ProximityRing> {
   std::vector<Eigen::Vector3d> directions_S_;
   RandomStream random_;
   std::optional<geometry::ShadowRing> shadows_;
-  double shadow_width_ = 0.0;  // half the angle at the middle of the ring that a sensor's directions are in
+  double shadow_width_ = 0.0;  // half the angle of a sensor's directions at the middle of the ring
   std::optional<SampleTable> table_;
 };
 
@@ -129,7 +129,7 @@ void ProximityRing::cast_axes(const Pose& X_WS, std::span<double> values) const 
   for (std::size_t i = 0; i < device_.count; ++i) values[i] = reading(fan, X_WS, i, directions_S_[i]);
 }
 
-// A sensor's axis, turned towards its left and upwards. [rad]
+// Returns a sensor's axis, rotated to its left and upwards [rad].
 Vector3d ProximityRing::turned(std::size_t sensor, double aside, double up) const {
   const Vector3d& axis = directions_S_[sensor];
   const Vector3d left(-axis.y(), axis.x(), 0.0);

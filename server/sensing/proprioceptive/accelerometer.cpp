@@ -4,8 +4,8 @@
 namespace cohort::sensing {
 namespace {
 
-/// What a mass on springs measures along the axes of S: the acceleration of its origin, the mean over the last step,
-/// less gravity. At rest it is g upwards, in free fall 0.
+/// Proper acceleration along the axes of S: the acceleration of its origin, the mean over the last step, minus gravity.
+/// At rest it is g upwards, in free fall 0.
 class Accelerometer final : public SensorOf<description::Accelerometer> {
  public:
   using SensorOf::SensorOf;

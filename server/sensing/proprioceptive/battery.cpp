@@ -7,8 +7,8 @@
 namespace cohort::sensing {
 namespace {
 
-/// Charge and power of a robot's battery (description::Battery). Over each step it gives its idle power and the
-/// mechanical power of all that the robot drives / efficiency; a motor that brakes gives nothing back.
+/// Charge and power of a robot's battery (description::Battery). Over each step it supplies its idle power, plus the
+/// mechanical power of all actuators of the robot / efficiency; a braking motor returns nothing.
 class Battery final : public SensorOf<description::Battery> {
  public:
   Battery(const description::Battery& battery, const Mount& mount);
@@ -30,7 +30,7 @@ class Battery final : public SensorOf<description::Battery> {
   }
 
   double step_ = 0.0;    // [s]
-  double energy_ = 0.0;  // that is left [J]
+  double energy_ = 0.0;  // remaining energy [J]
   double power_ = 0.0;   // over the last step [W]
   std::uint64_t noted_tick_ = 0;
 };

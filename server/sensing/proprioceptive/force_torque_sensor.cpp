@@ -4,9 +4,8 @@
 namespace cohort::sensing {
 namespace {
 
-/// What goes through a joint, over the last step: force, and torque about the origin of the joint, on its parent by its
-/// child or the other way round, in the axes of the child, the parent or S (SDF 1.9, <force_torque>). Zero for a planar
-/// body.
+/// Wrench of a joint over the last step: force, and torque about the origin of the joint. It acts on the parent by the
+/// child or vice versa, in the axes of the child, the parent or S (SDF 1.9, <force_torque>). Zero for a planar body.
 class ForceTorqueSensor final : public SensorOf<description::ForceTorqueSensor> {
  public:
   ForceTorqueSensor(const description::ForceTorqueSensor& sensor, const Mount& mount)

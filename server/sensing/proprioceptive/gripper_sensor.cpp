@@ -3,7 +3,7 @@
 namespace cohort::sensing {
 namespace {
 
-/// What a gripper knows of itself: its opening, whether it holds something, with what force, and its light barrier.
+/// State of a gripper: its opening, whether it holds an object, the force, and its light barrier.
 class GripperSensor final : public SensorOf<description::Gripper> {
  public:
   GripperSensor(const description::Gripper& gripper, const Mount& mount)

@@ -7,9 +7,9 @@
 namespace cohort::sensing {
 namespace {
 
-/// How S leans, from the direction u that is up, against gravity, in S: roll = atan2(u_y, u_z) and
-/// pitch = atan2(-u_x, sqrt(u_y^2 + u_z^2)), those of the rotation yaw-pitch-roll from the world to S whatever its yaw
-/// (third row of the matrix: Diebel, "Representing attitude", 2006, section 5.6). Both are 0 where there is no gravity.
+/// Inclination of S, from the direction u that is up, against gravity, in S: roll = atan2(u_y, u_z) and pitch =
+/// atan2(-u_x, sqrt(u_y^2 + u_z^2)). These are the angles of the yaw-pitch-roll rotation from the world to S, for any
+/// yaw (third row of the matrix: Diebel, "Representing attitude", 2006, section 5.6). Both are 0 without gravity.
 class Inclinometer final : public SensorOf<description::Inclinometer> {
  public:
   using SensorOf::SensorOf;

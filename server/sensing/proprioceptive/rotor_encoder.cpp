@@ -3,7 +3,7 @@
 namespace cohort::sensing {
 namespace {
 
-/// Velocity of a propeller, as the electronics of its motor tell it.
+/// Velocity of a propeller, as reported by its motor controller.
 class RotorEncoder final : public SensorOf<description::Rotor> {
  public:
   using SensorOf::SensorOf;

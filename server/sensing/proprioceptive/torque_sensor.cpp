@@ -3,7 +3,7 @@
 namespace cohort::sensing {
 namespace {
 
-/// What the motor of a joint gave over the last step.
+/// Torque or force of a joint's motor over the last step.
 class TorqueSensor final : public SensorOf<description::TorqueSensor> {
  public:
   using SensorOf::SensorOf;

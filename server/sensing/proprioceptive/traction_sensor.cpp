@@ -6,7 +6,7 @@
 namespace cohort::sensing {
 namespace {
 
-/// The force of a joint's child on its parent over the last step, in the xy plane of the parent (thesis, section 1.1).
+/// Force of a joint's child on its parent over the last step, in the xy plane of the parent (thesis, section 1.1).
 class TractionSensor final : public SensorOf<description::TractionSensor> {
  public:
   TractionSensor(const description::TractionSensor& sensor, const Mount& mount)

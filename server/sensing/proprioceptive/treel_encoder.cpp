@@ -3,8 +3,8 @@
 namespace cohort::sensing {
 namespace {
 
-/// Way and velocity of both tracks of a treel drive, exact. A track that slips counts its own motion, as an encoder on
-/// its motor does.
+/// Distance and velocity of both tracks of a treel drive, exact. A slipping track counts its own motion, like an
+/// encoder on its motor.
 class TreelEncoder final : public SensorOf<description::TreelEncoder> {
  public:
   using SensorOf::SensorOf;

@@ -24,7 +24,7 @@ SampleTable::SampleTable(std::shared_ptr<const description::Samples> samples) : 
   if (!are_ascending(distances) || !are_ascending(angles) || distances.front() < 0.0 ||
       angles.back() - angles.front() >= full_turn || units.empty() ||
       readings.size() != distances.size() * angles.size() * units.size())
-    throw std::invalid_argument("samples must be a full grid over ascending distances and angles of less than a turn");
+    throw std::invalid_argument("samples must be a full grid of ascending distances and angles within one turn");
 }
 
 SampleTable::Cell SampleTable::cell_of(double distance, double angle) const {
@@ -40,7 +40,7 @@ SampleTable::Cell SampleTable::cell_of(double distance, double angle) const {
   if (cell.far_row > cell.near_row)
     cell.far_share = (distance - distances[cell.near_row]) / (distances[cell.far_row] - distances[cell.near_row]);
 
-  // Into the turn that begins at the first angle; fmod is exact.
+  // Maps the angle to the turn that starts at the first angle; fmod is exact.
   double around = std::fmod(angle - angles.front(), full_turn);
   if (around < 0.0) around += full_turn;
   const double within = angles.front() + around;

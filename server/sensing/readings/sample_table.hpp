@@ -7,30 +7,30 @@
 
 namespace cohort::sensing {
 
-/// Readings of a real sensor by where an object is (thesis, section 2.3.2), between the places that were sampled too.
-/// With several objects, proximity keeps the greatest reading of each sensor, light and sound their sum
-/// (sections 3.2.1, 3.2.3 and 3.2.4). Const, and callable from any thread.
+/// Sampled readings of a real sensor by the position of an object (thesis, section 2.3.2), interpolated between the
+/// sampled positions. With several objects, proximity uses the greatest reading of each sensor, light and sound their
+/// sum (sections 3.2.1, 3.2.3 and 3.2.4). All functions are const, and for any thread.
 class SampleTable {
  public:
-  /// Throws std::invalid_argument if the samples are not a full grid as `Samples` says.
+  /// Throws std::invalid_argument if the samples are not a full grid as specified by `Samples`.
   explicit SampleTable(std::shared_ptr<const description::Samples> samples);
 
-  /// Beyond this distance every reading is 0 [m].
+  /// Returns the distance beyond which all readings are 0 [m].
   double range() const { return samples_->distances.back(); }
-  std::size_t count() const { return samples_->count(); }  ///< of readings at each place
+  std::size_t count() const { return samples_->count(); }  ///< readings at each position
 
-  /// Reading number `index` of an object at this distance [m] and angle [rad] from the robot's front: bilinear between
-  /// the four places around it. Angles go round, whatever turns they have. Nearer than the first distance the reading
-  /// is as there; beyond the last one it is 0. Both must be finite.
+  /// Returns reading number `index` of an object at this distance [m] and angle [rad] from the robot's front, by
+  /// bilinear interpolation of the four surrounding samples. Angles may have any number of turns. Below the first
+  /// distance the reading is that at the first one; beyond the last one it is 0. Both arguments must be finite.
   double reading(double distance, double angle, std::size_t index) const;
 
-  /// Makes each of `count()` values the greater of itself and the object's reading.
+  /// Sets each of `count()` values to the greater of itself and the object's reading.
   void keep_greatest(double distance, double angle, std::span<double> values) const;
   /// Adds the object's readings, times `factor`, to `count()` values.
   void add(double distance, double angle, double factor, std::span<double> values) const;
 
  private:
-  /// Places around, and the share of the second and of the farther ones.
+  /// Surrounding samples, and the weights of the second and of the farther ones.
   struct Cell {
     std::size_t near_row = 0, far_row = 0;
     std::size_t first = 0, second = 0;  // angles

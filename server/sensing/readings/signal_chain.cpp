@@ -8,10 +8,10 @@
 namespace cohort::sensing {
 namespace {
 
-// What is drawn; each value has draws of its own.
+// Kinds of random draws; each value has draws of its own.
 enum Draw : std::uint32_t { gaussian = 0, uniform = 1, drop_out = 2, bias = 3, drift = 4 };
 constexpr std::uint32_t most_values = 1u << 24;
-// What is drawn once is drawn at no tick.
+// The tick of draws that are made only once.
 constexpr std::uint64_t never = ~std::uint64_t{0};
 
 std::uint32_t draw_of(Draw what, std::size_t value) {
@@ -78,9 +78,9 @@ int SignalPlan::noise_on(const Channel& channel, std::uint32_t element) const {
   return place;
 }
 
-// The bias that wanders is a first-order Gauss-Markov process, stepped exactly: its deviation is the given one at all
-// times but the first ones, and it forgets itself by 1/e in `drift_time` (Gelb, "Applied Optimal Estimation", 1974,
-// section 3.6).
+// The bias drift is a first-order Gauss-Markov process, stepped exactly. Its standard deviation is the given one,
+// except at the start, and its autocorrelation decreases by 1/e in `drift_time` (Gelb, "Applied Optimal Estimation",
+// 1974, section 3.6).
 void SignalChain::disturb(std::uint64_t tick, std::span<double> values) {
   const std::vector<description::Noise>& noises = plan_->readout_.noises;
   if (noises.empty()) return;
@@ -156,8 +156,7 @@ void SignalChain::save(SnapshotWriter& writer) const {
 void SignalChain::restore(SnapshotReader& reader) {
   constexpr std::size_t least_bytes = sizeof(std::uint64_t);
   const std::size_t reports = reader.read_count(least_bytes);
-  if (reports > 0 && plan_->is_immediate_)
-    throw SnapshotError("the snapshot has a report of a sensor that delays none");
+  if (reports > 0 && plan_->is_immediate_) throw SnapshotError("snapshot: a delayed reading of a sensor without delay");
   if (!memory_) return;
   memory_->under_way.assign(reports, {0, std::vector<double>(plan_->values_.size())});
   visit_state(*memory_, StateRestorer{reader});

@@ -14,8 +14,8 @@
 
 namespace cohort::sensing {
 
-/// What decides how the readings of one sensor come out and is the same for all robots of a model. Constant, and shared
-/// by their signal chains.
+/// Constant parameters of one sensor's signal chain, which are the same for all robots of a model and shared by their
+/// chains.
 class SignalPlan {
  public:
   SignalPlan(const description::Readout& readout, const std::vector<Channel>& channels, std::chrono::nanoseconds step);
@@ -23,8 +23,8 @@ class SignalPlan {
  private:
   friend class SignalChain;
   struct Value {
-    int noise = -1;         // place in the readout's, -1: none
-    double constant = 0.0;  // bias and mean of the noise
+    int noise = -1;         // index in the readout's noises, -1: none
+    double constant = 0.0;  // bias plus mean of the noise
     double lower = 0.0;
     double upper = 0.0;
     double neutral = 0.0;
@@ -41,8 +41,8 @@ class SignalPlan {
   double sample_time_ = 0.0;   // from one measurement to the next [s]
 };
 
-/// How the readings of one sensor of one robot come out: what description::Readout says, at work. Draws depend on seed,
-/// robot, device, tick and value alone. One robot's is used by one thread at a time.
+/// The signal chain of one sensor of one robot, which implements description::Readout. Draws depend only on seed,
+/// robot, device, tick and value. Each robot's chains are for one thread at a time.
 class SignalChain {
  public:
   /// `robot`: scoped name.
@@ -52,37 +52,37 @@ class SignalChain {
               const std::string& robot, const std::string& device, std::chrono::nanoseconds step)
       : SignalChain(std::make_shared<const SignalPlan>(readout, channels, step), seed, robot, device) {}
 
-  /// Whether readings are as old as the tick and need no memory; then `disturb` is all that there is to it.
+  /// Returns true if readings have no delay and need no memory; then only `disturb` is needed.
   bool is_immediate() const { return plan_->is_immediate_; }
-  /// Whether the sensor measures at this tick, for someone who asks it at `is_due` ticks.
+  /// Returns true if the sensor measures at this tick, for a robot that is due if `is_due`.
   bool measures_at(std::uint64_t tick, bool is_due) const {
     return plan_->is_immediate_ ? is_due || plan_->wanders_ : tick % plan_->period_ == 0;
   }
-  /// Adds all errors to what has been measured at this tick. What is infinite, where nothing was there to be measured,
-  /// becomes the bound of its channel, if there is noise on the device at all. As `take` and `report`, it may be called
-  /// again at the same tick, when something has been changed from outside; what it did before is then undone.
+  /// Adds all errors to the values measured at this tick. Infinite values, which mean that there was nothing to
+  /// measure, become the bound of their channel if the device has noise. Like `take` and `report`, it may be called
+  /// again at the same tick after a change from outside, and then replaces its previous result.
   void disturb(std::uint64_t tick, std::span<double> values);
-  /// Takes what was measured at this tick, with its errors.
+  /// Takes the values measured at this tick, with their errors.
   void take(std::uint64_t tick, std::span<const double> values);
-  /// What is reported at this tick, after all that was measured until then has been taken.
+  /// Returns the reading that is reported at this tick, after all previous measurements were taken.
   void report(std::uint64_t tick, std::span<double> values);
 
-  /// What decides later readings, beyond the observation itself; nothing if there is no such thing.
+  /// Adds the state that determines later readings, besides the observation itself; nothing if there is none.
   void hash(StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
   void restore(SnapshotReader& reader);
 
  private:
   struct Report {
-    std::uint64_t due = 0;  // the tick at which it arrives
+    std::uint64_t due = 0;  // tick of arrival
     std::vector<double> values;
   };
   struct Memory {
-    std::vector<double> constants;     // of each value, if a bias is drawn
-    std::vector<double> drift;         // of each value, if any wanders
-    std::vector<double> drift_before;  // before `drift_tick`
+    std::vector<double> constants;     // by value, if a bias is drawn
+    std::vector<double> drift;         // by value, if any drifts
+    std::vector<double> drift_before;  // values before `drift_tick`
     std::uint64_t drift_tick = ~std::uint64_t{0};
-    std::vector<double> reported;   // that holds now, unless it is immediate
+    std::vector<double> reported;   // current reading, unless it is immediate
     std::vector<Report> under_way;  // oldest first
   };
   template <class Memories, class Visit>

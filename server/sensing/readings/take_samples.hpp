@@ -7,17 +7,17 @@
 
 namespace cohort::sensing {
 
-/// An upright cylinder, and where it is put around a ring of sensors.
+/// An upright cylinder, and its positions around a ring of sensors.
 struct SampleGrid {
-  double radius = 0.058;       ///< of the cylinder: by default an s-bot's [m]
-  double height = 0.5;         ///< of the cylinder, whose middle is in the plane of the ring [m]
-  std::size_t distances = 21;  ///< evenly from `ring_radius` to `range` beyond it, of its nearest point; at least 2
-  std::size_t angles = 72;     ///< evenly all round, from the ring's x axis counter-clockwise
+  double radius = 0.058;       ///< radius of the cylinder [m]; by default an s-bot's
+  double height = 0.5;         ///< height of the cylinder [m], whose middle is in the plane of the ring
+  std::size_t distances = 21;  ///< evenly from `ring_radius` to `range` beyond it, at least 2
+  std::size_t angles = 72;     ///< evenly spaced over the circle, from the ring's x axis counter-clockwise
 };
 
-/// What a ring of proximity sensors reads, with the technique that it has and without errors, of a cylinder around the
-/// robot, which stands alone at the origin; of random rays the mean of 256 ticks. `device`: index in `model`, of a
-/// proximity ring.
+/// Returns the readings of a ring of proximity sensors for a cylinder around the robot, which is alone at the origin.
+/// They use the ring's technique, without errors; for random rays they are the mean of 256 ticks. `device`: index in
+/// `model` of a proximity ring.
 description::Samples take_samples(const description::Model& model, std::size_t device, const SampleGrid& grid);
 
 }  // namespace cohort::sensing

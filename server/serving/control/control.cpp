@@ -21,8 +21,8 @@ using wire::SimulationState;
 
 constexpr std::size_t most_waiting_bytes = std::size_t{64} << 20;
 constexpr std::size_t most_waiting_of_account = 64;
-constexpr std::size_t most_kept_bytes = std::size_t{256} << 20;        // to go back to
-constexpr std::size_t most_kept_for_clients = std::size_t{256} << 20;  // of snapshots, uploads and recordings
+constexpr std::size_t most_kept_bytes = std::size_t{256} << 20;        // for snapshots that a run can go back to
+constexpr std::size_t most_kept_for_clients = std::size_t{256} << 20;  // for snapshots, uploads and recordings
 constexpr std::size_t longest_message = 4096;
 constexpr std::chrono::milliseconds last_reply{500};
 
@@ -51,7 +51,7 @@ bool ends_the_run(const Request& request) {
          code == OperationCode::go_back;
 }
 
-// It takes no time, and who wants the run to stop must be able to say so.
+// Returns true for requests that take no time; a client must always be able to stop the run.
 bool takes_no_time(const Request& request) {
   if (const auto* set = std::get_if<wire::SetSimulationState>(&request.operation))
     return set->state != SimulationState::stopped;
@@ -67,17 +67,20 @@ void Control::begin(ControlledRun run) {
   first_tick_ = run_->simulation.tick();
   ending_.reset();
   playback_ = Playback(run_->monitor.options().state);
+  time_holders_.begin_run();
   queries_.begin(*run_);
   texts_.begin(run_->experiment.read_model);
-  if (!std::exchange(goes_back_, false))
+  const auto& from = run_->monitor.options().from;
+  if (!std::exchange(goes_back_, false)) {
     kept_ =
         KeptSnapshots(static_cast<std::uint64_t>(run_->monitor.options().keep_interval / run_->experiment.world.step),
                       most_kept_bytes);
-  const auto& from = run_->monitor.options().from;
+    if (from && kept_.interval() > 0) kept_.keep(from);  // the beginning of this run
+  }
   for (const Request& request : std::exchange(answered_by_next_run_, {}))
     answer(request, ResultCode::ok,
-           "run " + std::to_string(run_->number) + " stands at tick " + std::to_string(run_->simulation.tick()) +
-               ", with seed " + std::to_string(run_->experiment.seed) +
+           "run " + std::to_string(run_->number) + " is at tick " + std::to_string(run_->simulation.tick()) +
+               ", seed " + std::to_string(run_->experiment.seed) +
                (from ? left_out_text(*from, run_->experiment) : std::string()));
 }
 
@@ -85,8 +88,12 @@ void Control::end(RunResult::End how) {
   const std::string at = "the run has ended at tick " + std::to_string(run_->simulation.tick());
   answer_steps(playback_.set(PlaybackState::playing), ResultCode::operation_failed, at);
   for (const Request& request : std::exchange(ledger_.waiting(), {}))
-    if (!is_query(request)) answer(request, ResultCode::incorrect_state, at);  // these come again
+    if (!is_query(request)) answer(request, ResultCode::incorrect_state, at);  // queries are repeated by their clients
   const bool goes_on = how == RunResult::End::reset || how == RunResult::End::restored;
+  if (!goes_on)
+    for (const TimeHolders::Grant& each : time_holders_.take_requests())
+      answer({.client = each.client, .number = each.number, .operation = wire::AdvanceTime{}},
+             ResultCode::incorrect_state, at);
   if (!goes_on)  // the server may be gone soon
     for (auto& [id, requester] : requesters_) requester.replies.wait_until_received(last_reply);
   run_.reset();
@@ -126,15 +133,15 @@ void Control::take(const ReceivedRequest& received) {
   const Request& request = received.request;
   const auto reject = [&](const std::string& text) { run_->monitor.add_event("rejected", text); };
   if (request.client == 0 || !ledger_.is_in_own_name(request.client, received.sender.participant))
-    return reject("foreign: a Request comes in another's name, or in nobody's");
+    return reject("foreign: a Request has the id of another client, or id 0");
   if (requester_of(received) == nullptr)
-    return reject("flood: more clients control this run than may, and none of them is idle");
+    return reject("flood: too many clients control this run, and none of them is idle");
   if (const auto& identity = received.participant->identity(); identity && !may_ask(*identity, request.code())) {
     reject("forbidden: " + label_of(request.client) + " may not control the run");
     Reply reply = reply_to(request);
     reply.result = ResultCode::not_permitted;
     reply.error_message = "the identity '" + identity->name +
-                          "' may not control the run: 'cohort security' gives that right as 'control'";
+                          "' may not control the run; 'cohort security' grants this right as 'control'";
     return send(std::move(reply), false);
   }
   const RequestBudget::Time began = now();
@@ -149,26 +156,28 @@ void Control::receive(const Request& request) {
     reply.error_message = text;
     send(std::move(reply), false);
   };
-  if (request.number == 0) return refuse(ResultCode::malformed, "requests are numbered from 1");
+  if (request.number == 0) return refuse(ResultCode::malformed, "request numbers start at 1");
   if (const std::string wrong = what_is_wrong(request); !wrong.empty())
     return refuse(wire::name_of(request.code()).empty() ? ResultCode::feature_unsupported : ResultCode::malformed,
                   wrong);
   if (is_query(request)) return may_be_done(request) ? answer_query(request) : put_off(request);
   switch (ledger_.receive(request.client, request.number)) {
-    case RequestLedger::Receipt::under_way: return;  // its reply comes
+    case RequestLedger::Receipt::under_way: return;  // a reply will follow
     case RequestLedger::Receipt::answered: return send(ledger_.remembered(request.client, request.number), false);
     case RequestLedger::Receipt::forgotten:
-      return refuse(ResultCode::forgotten, "request " + std::to_string(request.number) +
-                                               " is older than what is remembered: numbers have to ascend");
+      return refuse(ResultCode::forgotten,
+                    "request " + std::to_string(request.number) + " is too old: request numbers must increase");
     case RequestLedger::Receipt::too_many:
-      return refuse(ResultCode::operation_failed,
-                    "more than " + std::to_string(wire::requests_under_way) + " requests of one client wait already");
+      return refuse(ResultCode::operation_failed, "more than " + std::to_string(wire::requests_under_way) +
+                                                      " requests of this client are already waiting");
     case RequestLedger::Receipt::fresh: break;
   }
+  if (const auto* const advance = std::get_if<wire::AdvanceTime>(&request.operation))
+    return advance_time(request, *advance);  // does not change the world
   put_off(request);
 }
 
-// Until a boundary, and until its account's turn. What is not there any more is asked for again, if it is a question.
+// Postpones a request until a boundary, and until its account's turn. A dropped query is repeated by its client.
 void Control::put_off(const Request& request) {
   std::size_t bytes = size_of(request);
   std::size_t of_account = 0;
@@ -179,11 +188,11 @@ void Control::put_off(const Request& request) {
   }
   const bool is_question = is_query(request);
   if (of_account >= most_waiting_of_account || bytes > most_waiting_bytes) {
-    run_->monitor.add_event("rejected", "flood: more requests of " + label_of(request.client) + " than can be done");
+    run_->monitor.add_event("rejected", "flood: too many requests of " + label_of(request.client));
     if (is_question) return;
-    return answer(
-        request, ResultCode::operation_failed,
-        "too many requests: " + std::to_string(of_account) + " of " + account_of(request.client) + " wait already");
+    return answer(request, ResultCode::operation_failed,
+                  "too many requests: " + std::to_string(of_account) + " of " + account_of(request.client) +
+                      " are already waiting");
   }
   ledger_.waiting().push_back(request);
 }
@@ -194,12 +203,13 @@ void Control::lose(const wire::Sender& sender) {
   const std::uint64_t client = found->second;
   client_of_writer_.erase(found);
   const auto requester = requesters_.find(client);
-  // One that was lost and found again has another writer, and the end of the former comes late.
+  // A client that was lost and found again has a new writer, and the end of the old one is reported late.
   if (requester == requesters_.end() || requester->second.writer != sender.writer) return;
   lose(client);
 }
 
 void Control::lose(std::uint64_t client) {
+  release_time(client, "has disconnected");
   requesters_.erase(client);
   slots_.leave(client);
   ledger_.leave(client);
@@ -217,7 +227,8 @@ void Control::send(Reply reply, bool is_kept) {
   reply.error_message = printable(reply.error_message, longest_message, Lines::kept);
   if (is_kept) ledger_.keep(reply);
   const auto requester = requesters_.find(reply.client);
-  if (requester != requesters_.end()) requester->second.replies.write(reply);  // lost: it is asked for again
+  if (requester != requesters_.end())
+    requester->second.replies.write(reply);  // if the reply is lost, the client asks again
 }
 
 void Control::answer(const Request& request, ResultCode result, const std::string& text) {
@@ -232,18 +243,18 @@ void Control::answer_steps(const std::vector<Playback::Steps>& steps, ResultCode
     const Request request{.client = each.client, .number = each.number, .operation = wire::StepSimulation{}};
     const std::uint64_t tick = run_->simulation.tick();
     answer(request, result,
-           each.until > tick ? text + ", " + ticks_text(each.until - tick) + " before the steps' end" : text);
+           each.until > tick ? text + ", " + ticks_text(each.until - tick) + " before the last step" : text);
   }
 }
 
 std::string Control::label_of(std::uint64_t client) const {
   const auto found = requesters_.find(client);
-  return found == requesters_.end() ? "a client that has gone" : found->second.label;
+  return found == requesters_.end() ? "a disconnected client" : found->second.label;
 }
 
 void Control::tell(const Request& request, const std::string& text, std::vector<std::byte> action) {
   run_->monitor.controlled({run_->simulation.tick(), wire::name_of(request.code()),
-                            text + ", says " + label_of(request.client), std::move(action)});
+                            text + ", requested by " + label_of(request.client), std::move(action)});
 }
 
 void Control::reach_boundary() {
@@ -259,17 +270,17 @@ void Control::keep_snapshot() {
   try {
     kept_.keep(run_->take_snapshot());
   } catch (const SnapshotError&) {
-    // A controller has failed, which ends the run, or cannot save, which the run has an event of.
+    // Either a controller failed, which ends the run, or one cannot save, which is noted as an event.
   }
 }
 
 const std::string& Control::account_of(std::uint64_t client) const {
-  static const std::string gone = "clients that have gone";
+  static const std::string gone = "disconnected clients";
   const auto found = requesters_.find(client);
   return found == requesters_.end() ? gone : found->second.account;
 }
 
-// A run that stands still, or is over, loses nothing.
+// Requests need no limit in a run that is paused or over.
 bool Control::is_unlimited() const { return playback_.holds() || run_->monitor.is_over(); }
 
 bool Control::may_be_done(const Request& request) {
@@ -284,7 +295,7 @@ void Control::charge(const Request& request, RequestBudget::Time took) {
   if (!is_unlimited()) budget_.charge(account_of(request.client), took, now());
 }
 
-// The texts of models that wait to be read, one of each client in turn.
+// Reads the waiting texts of models, one per client in turn.
 void Control::read_texts() {
   if (const auto read = texts_.collect(); read && !is_unlimited())
     budget_.charge(account_of(read->first), texts_.find(*read)->took, now());
@@ -297,7 +308,7 @@ void Control::read_texts() {
 }
 
 const Request* Control::next_to_read() {
-  std::map<std::uint64_t, const Request*> first_of;  // client
+  std::map<std::uint64_t, const Request*> first_of;  // by client
   for (const Request& request : ledger_.waiting()) {
     if (text_of_model(request) == nullptr || texts_.find(key_of(request)) != nullptr) continue;
     if (is_unlimited() || budget_.allows(account_of(request.client), now()))
@@ -313,8 +324,8 @@ bool Control::has_work() {
   return std::ranges::any_of(ledger_.waiting(), [this](const Request& request) { return may_be_done(request); });
 }
 
-// The next that may be done, and the actions that follow each other after it: these are done together. What one client
-// has asked for is done in its order.
+// Returns the next request that may be carried out, and the actions that directly follow it, which are carried out
+// together. The requests of one client keep their order.
 std::vector<Request> Control::take_next(Moment moment) {
   std::deque<Request>& waiting = ledger_.waiting();
   std::set<std::uint64_t> held_up;
@@ -364,7 +375,7 @@ void Control::drop_what_is_too_much() {
   for (const KeptForClient& each : what_goes(std::move(kept), most_kept_for_clients)) {
     const std::string text = name_of(each.kind) + " dropped: more than " +
                              std::to_string(most_kept_for_clients >> 20U) +
-                             " MiB wait for all clients together, and this was the oldest";
+                             " MiB are kept for all clients, and this was the oldest";
     run_->monitor.add_event("dropped", text + ", of " + label_of(each.client));
     if (each.kind == KeptForClient::Kind::recording)
       recordings_.drop(each.client, text);

@@ -19,30 +19,32 @@
 #include "server/serving/control/requests/request_budget.hpp"
 #include "server/serving/control/requests/request_ledger.hpp"
 #include "server/serving/control/requests/requester_slots.hpp"
+#include "server/serving/control/time_holders.hpp"
 
 namespace cohort::session {
 
-/// Control of a session over DDS: docs/protocol.md, "Control", the server's side. Questions are answered at once; what
-/// changes something waits for a boundary, and is done in the order of arrival. All on the thread of the run.
+/// Control of a session over DDS; the server's side of docs/protocol.md, "Control". Queries are answered at once;
+/// operations that change something wait for a boundary and are carried out in order of arrival. For the thread of the
+/// run.
 class Control {
  public:
   using Clock = RunMonitor::Clock;
 
-  /// `recordings` must outlive this. `wake` is called from any thread when there may be work.
+  /// `recordings` must outlive this object. `wake` is called from any thread when there may be work.
   Control(LiveRecordings& recordings, std::function<void()> wake) : recordings_(recordings), texts_(std::move(wake)) {}
 
   void begin(ControlledRun run);
-  /// Tells those who wait for something that it will not come, unless the next run brings it.
+  /// Tells waiting clients that what they wait for will not happen, unless the next run provides it.
   void end(RunResult::End how);
 
   void take(const ReceivedRequest& received);
-  /// The writer of somebody's requests has gone.
+  /// Notes that the writer of a client's requests has disappeared.
   void lose(const wire::Sender& sender);
 
-  /// The run has come to a boundary: steps may be done.
+  /// Notes that the run has reached a boundary, where steps may be carried out.
   void reach_boundary();
-  /// Does what waits. In the midst of a tick that is only what ends the run: nothing that it does comes to anything any
-  /// more. False if the run has to end, as `ending` says.
+  /// Carries out waiting requests. Within a tick these are only requests that end the run, after which nothing else has
+  /// an effect. Returns false if the run has to end; see `ending`.
   enum class Moment { boundary, midst };
   bool perform(Moment moment);
   struct Ending {
@@ -50,23 +52,30 @@ class Control {
     std::optional<NextRun> next{};
   };
   const std::optional<Ending>& ending() const { return ending_; }
-  /// Whether the run can go back to where the state of all controllers is known.
+  /// Returns true if the run can go back to a tick at which the state of all controllers was saved.
   bool can_rewind() const { return run_->monitor.options().prepare && last_whole_snapshot() != nullptr; }
-  /// Ends the run for that, as `ending` says; `why` becomes an event of the next one. Any moment of a tick.
+  /// Ends the run in order to go back; see `ending`. `why` becomes an event of the next run. May be called at any
+  /// moment of a tick.
   void rewind(const std::string& why);
-  /// Whether the run stays at this boundary.
+  /// Returns true if the run stays at this boundary.
   bool holds() const { return playback_.holds(); }
-  /// Whether anything that waits may be done now.
+  /// Answers the clients that requested the time of this tick, after its frames were sent.
+  void grant_time();
+  /// Returns true if a client holds the run's time at this tick.
+  bool holds_time() const { return time_holders_.awaited(run_->simulation.tick()).has_value(); }
+  /// Returns the label of that client.
+  std::string time_holder() const;
+  /// Returns true if a waiting request may be carried out now.
   bool has_work();
 
  private:
   struct Requester {
     std::string label;    // for people
-    std::string account;  // that what it asks for is charged to
+    std::string account;  // account that its requests are charged to
     std::uint64_t writer = 0;
     wire::Writer<wire::Reply> replies;
   };
-  // A reply to a request, not filled in yet.
+  // Returns a reply to the request that is not filled in yet.
   static wire::Reply reply_to(const wire::Request& request);
   Requester* requester_of(const ReceivedRequest& received);
   void receive(const wire::Request& request);
@@ -77,7 +86,7 @@ class Control {
   void answer_steps(const std::vector<Playback::Steps>& steps, wire::ResultCode result, const std::string& text);
   void tell(const wire::Request& request, const std::string& text, std::vector<std::byte> action = {});
   std::string label_of(std::uint64_t client) const;
-  // Requests may take a part of the run's time only.
+  // Limits of the share of the run's time that requests may take.
   const std::string& account_of(std::uint64_t client) const;
   bool is_unlimited() const;
   bool may_be_done(const wire::Request& request);
@@ -87,19 +96,21 @@ class Control {
   std::vector<wire::Request> take_next(Moment moment);
   void drop_what_is_too_much();
 
-  // Operations: done or refused with a reply, or begun.
+  // Operations: each is completed or refused with a reply, or started.
   void answer_query(const wire::Request& request);
   void do_one(const wire::Request& request);
   void carry_out(const wire::Request& request, const wire::SetSimulationState& operation);
   void carry_out(const wire::Request& request, const wire::StepSimulation& operation);
   void carry_out(const wire::Request& request, const wire::ResetSimulation& operation);
   void carry_out(const wire::Request& request, const wire::SetSpeed& operation);
+  void advance_time(const wire::Request& request, const wire::AdvanceTime& operation);
+  void release_time(std::uint64_t client, const std::string& why);
   void carry_out(const wire::Request& request, const wire::SaveSnapshot&);
   void carry_out(const wire::Request& request, const wire::LoadSnapshot&);
   void carry_out(const wire::Request& request, const wire::GoBack& operation);
   void carry_out(const wire::Request& request, const wire::StartRecording& operation);
   void quit(const wire::Request& request);
-  // What begins a run anew, and what is kept of one.
+  // Start of another run, and snapshots of this one.
   void begin_anew(const wire::Request& request, NextRun next, const std::string& text);
   void keep_snapshot();
   std::shared_ptr<const SessionSnapshot> last_whole_snapshot() const;
@@ -110,24 +121,26 @@ class Control {
   LiveRecordings& recordings_;
   std::optional<ControlledRun> run_;
   Playback playback_;
+  TimeHolders time_holders_;
   std::optional<Ending> ending_;
   std::vector<wire::Request> answered_by_next_run_;
-  // The snapshot of this boundary: it costs every controller a round trip, so those who ask for it together share it.
+  // The snapshot of this boundary. It costs each controller a round trip, so clients that request it at the same
+  // boundary share it.
   struct Saved {
     std::string text;
     std::shared_ptr<const std::vector<std::byte>> bytes;
   };
   std::optional<Saved> saved_;
   KeptSnapshots kept_{0, 0};
-  bool goes_back_ = false;  // the next run is this one's past
+  bool goes_back_ = false;  // the next run starts from an earlier tick of this one
   RequestLedger ledger_;
   RequestBudget budget_;
   ModelTexts texts_;
-  std::uint64_t last_read_for_ = 0;  // a client
-  std::uint64_t first_tick_ = 0;     // of this run
+  std::uint64_t last_read_for_ = 0;  // client whose text was read last
+  std::uint64_t first_tick_ = 0;     // the first tick of this run
   RequesterSlots slots_;
   std::map<std::uint64_t, Requester> requesters_;            // by client
-  std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of requests
+  std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // by the writer of the requests
   ControlQueries queries_{ledger_, recordings_, kept_};
 };
 

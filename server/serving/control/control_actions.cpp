@@ -20,7 +20,7 @@ Pose from_wire(const wire::Pose& pose) {
   return {from_wire(pose.position), Eigen::Quaterniond(q.w, q.x, q.y, q.z)};
 }
 
-// A unit quaternion but for what rounding did to it.
+// Returns true for a unit quaternion, with a tolerance for rounding.
 bool has_orientation(const wire::Pose& pose) {
   constexpr double tolerance = 1e-3;
   const wire::Quaternion& q = pose.orientation;
@@ -30,7 +30,7 @@ bool has_orientation(const wire::Pose& pose) {
 void add_actions(const wire::SetEntityState& operation, std::vector<Action>& actions) {
   const std::string& entity = operation.entity;
   if (operation.pose) actions.emplace_back(SetPose{entity, from_wire(*operation.pose)});
-  if (operation.twist)  // a new pose is one at rest
+  if (operation.twist)  // a new pose alone means at rest
     actions.emplace_back(SetVelocity{entity, from_wire(operation.twist->linear), from_wire(operation.twist->angular)});
 }
 void add_actions(const wire::SpawnEntity& operation, std::vector<Action>& actions) {
@@ -79,16 +79,16 @@ const std::string& entity_of(const Request& request) {
       request.operation);
 }
 
-// What can be seen without the world, with its result.
+// A refusal that needs no look at the world, with its result code.
 struct Refusal {
   ResultCode result;
   std::string text;
 };
 std::optional<Refusal> refusal_of(const Request& request, const ModelTexts& texts) {
-  constexpr const char* no_orientation = "the orientation is no unit quaternion";
+  constexpr const char* no_orientation = "the orientation is not a unit quaternion";
   if (const auto* spawn = std::get_if<wire::SpawnEntity>(&request.operation)) {
     if (spawn->uri.empty() && spawn->resource_string.empty())
-      return Refusal{ResultCode::no_resource, "neither a model of the world nor the text of one is given"};
+      return Refusal{ResultCode::no_resource, "expected the name of one of the world's models, or the text of a model"};
     if (!has_orientation(spawn->pose)) return Refusal{ResultCode::invalid_spawn_pose, no_orientation};
   }
   if (const auto* state = std::get_if<wire::SetEntityState>(&request.operation))
@@ -99,14 +99,15 @@ std::optional<Refusal> refusal_of(const Request& request, const ModelTexts& text
   return std::nullopt;
 }
 
-// Why it could not be done, in simulation_interfaces's numbers.
+// Returns the reason of a failure as a result code of simulation_interfaces.
 ResultCode code_of_failure(const Request& request, const Objects& objects) {
-  const bool is_known = objects.find(entity_of(request)).has_value();
+  const std::optional<std::uint32_t> object = objects.find(entity_of(request));
   if (const auto* spawn = std::get_if<wire::SpawnEntity>(&request.operation)) {
     if (!spawn->entity.empty() && !is_object_name(spawn->entity)) return ResultCode::name_invalid;
-    return is_known && !spawn->allow_renaming ? ResultCode::name_not_unique : ResultCode::operation_failed;
+    return object && !spawn->allow_renaming ? ResultCode::name_not_unique : ResultCode::operation_failed;
   }
-  return is_known || std::holds_alternative<wire::SetLight>(request.operation) ? ResultCode::operation_failed
+  const bool is_there = object && objects.is_present(*object);
+  return is_there || std::holds_alternative<wire::SetLight>(request.operation) ? ResultCode::operation_failed
                                                                                : ResultCode::not_found;
 }
 
@@ -124,7 +125,7 @@ const std::string* text_of_model(const Request& request) {
 std::vector<ActionOutcome> act(Simulation& simulation, std::span<const Request> requests, const ModelTexts& texts) {
   std::vector<ActionOutcome> outcomes;
   std::vector<Action> actions;
-  std::vector<const Request*> origins;  // of each action
+  std::vector<const Request*> origins;  // request of each action
   for (const Request& request : requests) {
     if (const auto refusal = refusal_of(request, texts)) {
       outcomes.push_back({&request, refusal->result, refusal->text});

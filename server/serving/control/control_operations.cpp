@@ -18,7 +18,7 @@ constexpr std::uint32_t scope_default = 0;
 constexpr std::uint32_t scope_all = 255;
 
 std::string speed_text(double speed) {
-  return speed == 0.0 ? "as fast as it goes" : std::to_string(speed) + " simulated seconds per second at the most";
+  return speed == 0.0 ? "as fast as possible" : std::to_string(speed) + " simulated seconds per second at most";
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ void Control::do_one(const Request& request) {
           if constexpr (requires { carry_out(request, operation); })
             carry_out(request, operation);
           else
-            answer(request, ResultCode::feature_unsupported, wire::name_of(request.code()) + " is not there yet");
+            answer(request, ResultCode::feature_unsupported, wire::name_of(request.code()) + " is not supported yet");
         },
         request.operation);
   } catch (const std::exception& error) {
@@ -48,7 +48,7 @@ void Control::carry_out(const Request& request, const wire::SetSimulationState& 
   const auto be = [&](PlaybackState state, const std::string& word) {
     const bool already = playback_.state() == state;
     if (already && !playback_.has_steps())
-      return answer(request, ResultCode::already_in_target_state, "the run is " + word + " already");
+      return answer(request, ResultCode::already_in_target_state, "the run is already " + word);
     const bool was_held = playback_.holds();
     const std::string at = word + " at tick " + std::to_string(run_->simulation.tick());
     answer_steps(playback_.set(state), ResultCode::operation_failed, at);
@@ -63,22 +63,23 @@ void Control::carry_out(const Request& request, const wire::SetSimulationState& 
     case SimulationState::stopped: break;
   }
   if (playback_.state() == PlaybackState::stopped)
-    return answer(request, ResultCode::already_in_target_state, "the run is stopped already");
+    return answer(request, ResultCode::already_in_target_state, "the run is already stopped");
   begin_anew(request, {.seed = run_->experiment.seed, .state = PlaybackState::stopped, .speed = run_->monitor.speed()},
-             "stopped, and from the beginning");
+             "stopped and reset to the beginning");
 }
 
 void Control::carry_out(const Request& request, const wire::ResetSimulation& operation) {
   if (operation.scope != scope_default && operation.scope != scope_all)
-    return answer(request, ResultCode::feature_unsupported, "only all can be reset: scope 0 or 255");
+    return answer(request, ResultCode::feature_unsupported,
+                  "only the whole simulation can be reset: expected scope 0 or 255");
   const std::uint64_t seed = operation.seed.value_or(run_->experiment.seed);
   begin_anew(request, {.seed = seed, .state = playback_.state_without_steps(), .speed = run_->monitor.speed()},
-             "from the beginning with seed " + std::to_string(seed));
+             "restarted with seed " + std::to_string(seed));
 }
 
 void Control::carry_out(const Request& request, const wire::StepSimulation& operation) {
   if (playback_.state_without_steps() == PlaybackState::playing)
-    return answer(request, ResultCode::operation_failed, "the run is not paused, so it makes steps by itself");
+    return answer(request, ResultCode::operation_failed, "the run is not paused: pause it before stepping");
   if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
   const bool was_held = playback_.holds();
   playback_.step(run_->simulation.tick(), operation.steps, request.client, request.number);
@@ -92,15 +93,52 @@ void Control::carry_out(const Request& request, const wire::SetSpeed& operation)
   answer(request, ResultCode::ok, speed_text(operation.speed));
 }
 
+void Control::advance_time(const Request& request, const wire::AdvanceTime& operation) {
+  const std::string at = " at tick " + std::to_string(run_->simulation.tick());
+  if (operation.release) {
+    release_time(request.client, "has released it");
+    return answer(request, ResultCode::ok, "the time is released" + at);
+  }
+  if (operation.steps == 0) {
+    if (!time_holders_.has(request.client))
+      tell(request, "time held from tick " + std::to_string(run_->simulation.tick()) + " on");
+    time_holders_.add(request.client);
+    return answer(request, ResultCode::ok, "the time is held" + at);
+  }
+  if (!time_holders_.has(request.client))
+    return answer(request, ResultCode::incorrect_state,
+                  "this client does not hold the run's time: request 0 steps first");
+  if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
+  time_holders_.ask(request.client, request.number, operation.steps);
+}
+
+void Control::grant_time() {
+  const std::uint64_t tick = run_->simulation.tick();
+  for (const TimeHolders::Grant& grant : time_holders_.take_grants(tick))
+    answer({.client = grant.client, .number = grant.number, .operation = wire::AdvanceTime{}}, ResultCode::ok,
+           "the time of tick " + std::to_string(tick));
+}
+
+void Control::release_time(std::uint64_t client, const std::string& why) {
+  if (!time_holders_.remove(client) || !run_) return;
+  run_->monitor.add_event("time", label_of(client) + ", which held the run's time, " + why + " at tick " +
+                                      std::to_string(run_->simulation.tick()) + ": the run no longer waits for it");
+}
+
+std::string Control::time_holder() const {
+  const auto client = time_holders_.awaited(run_->simulation.tick());
+  return client ? label_of(*client) : "";
+}
+
 void Control::quit(const Request& request) {
-  tell(request, "the end");
+  tell(request, "end of the run");
   ending_ = Ending{};
   answer(request, ResultCode::ok, "the run ends at tick " + std::to_string(run_->simulation.tick()));
 }
 
 void Control::begin_anew(const Request& request, NextRun next, const std::string& text) {
   if (!run_->monitor.options().prepare)
-    return answer(request, ResultCode::feature_unsupported, "this server cannot begin another run");
+    return answer(request, ResultCode::feature_unsupported, "this server cannot start another run");
   run_->monitor.options().prepare(next);
   tell(request, text);
   answered_by_next_run_.push_back(request);
@@ -118,7 +156,7 @@ void Control::carry_out(const Request& request, const wire::SaveSnapshot&) {
   if (saved_->bytes->size() > wire::largest_data)
     return answer(request, ResultCode::operation_failed,
                   "the snapshot has " + std::to_string(saved_->bytes->size()) + " bytes, and " +
-                      std::to_string(wire::largest_data) + " can be sent at the most");
+                      std::to_string(wire::largest_data) + " can be sent at most");
   tell(request, saved_->text);
   Reply reply = reply_to(request);
   reply.returned = wire::DataPart{saved_->bytes->size(), 0, {}};
@@ -140,22 +178,25 @@ void Control::carry_out(const Request& request, const wire::LoadSnapshot&) {
   const auto bytes = ledger_.take_all(request.client);
   if (!bytes)
     return answer(request, ResultCode::incorrect_state,
-                  "there is no snapshot to load: " + (why.empty() ? std::string("PutData brings it, whole") : why));
+                  "there is no snapshot to load: " +
+                      (why.empty() ? std::string("send a whole snapshot with PutData first") : why));
   auto snapshot = std::make_shared<SessionSnapshot>(snapshot_from_bytes(*bytes));
   expect_same_experiment(*snapshot, run_->experiment);
   go_on_from(request, std::move(snapshot));
 }
 
 void Control::carry_out(const Request& request, const wire::GoBack& operation) {
-  if (kept_.size() == 0)
+  if (kept_.interval() == 0)
     return answer(request, ResultCode::not_found, "this server keeps no snapshots; start it with --keep-snapshots");
+  if (kept_.size() == 0)
+    return answer(request, ResultCode::not_found,
+                  "no snapshot has been kept yet; one is kept at every multiple of " + ticks_text(kept_.interval()));
   const std::int64_t tick = operation.duration_ns / run_->experiment.world.step.count();
   auto snapshot = tick < 0 ? nullptr : kept_.last_until(static_cast<std::uint64_t>(tick));
   if (snapshot == nullptr)
     return answer(request, ResultCode::not_found,
-                  "the first snapshot that is kept is of tick " + std::to_string(kept_.first_tick()) +
-                      ", the last of tick " + std::to_string(kept_.last_tick()) + "; none is at or before tick " +
-                      std::to_string(tick));
+                  "snapshots are kept from tick " + std::to_string(kept_.first_tick()) + " to tick " +
+                      std::to_string(kept_.last_tick()) + "; none is at or before tick " + std::to_string(tick));
   const std::uint64_t at = snapshot->tick;
   go_on_from(request, std::move(snapshot));
   if (!ending_) return;
@@ -186,7 +227,7 @@ void Control::rewind(const std::string& why) {
   NextRun next = run_from(last_whole_snapshot());
   const std::uint64_t at = next.snapshot->tick;
   next.rewound = why + ", so the run has gone back from tick " + std::to_string(run_->simulation.tick()) + " to tick " +
-                 std::to_string(at) + ", where the state of all controllers is known";
+                 std::to_string(at) + ", where the state of all controllers was saved";
   run_->monitor.options().prepare(next);
   kept_.forget_after(at);
   goes_back_ = true;
@@ -194,7 +235,7 @@ void Control::rewind(const std::string& why) {
 }
 
 void Control::do_actions(std::span<const Request> requests) {
-  saved_.reset();  // the world is another now
+  saved_.reset();  // the world has changed
   for (ActionOutcome& outcome : act(run_->simulation, requests, texts_)) {
     texts_.forget(key_of(*outcome.request));
     for (ActionOutcome::Done& done : outcome.done) tell(*outcome.request, done.text, std::move(done.action));

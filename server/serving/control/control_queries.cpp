@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "idl/messages/experiment_files.hpp"
 #include "idl/messages/run_history.hpp"
 #include "server/serving/control/entity_filter.hpp"
 
@@ -17,7 +18,7 @@ using wire::ResultCode;
 
 constexpr std::chrono::milliseconds sample_interval{500};
 
-// Of simulation_interfaces/msg/SimulatorFeatures.
+// Numbers of simulation_interfaces/msg/SimulatorFeatures.
 enum Feature : std::uint32_t {
   spawning = 0,
   deleting = 1,
@@ -43,6 +44,7 @@ wire::Vector3 on_wire(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; 
 
 void ControlQueries::begin(const ControlledRun& run) {
   run_ = &run;
+  experiment_ = {};
   older_ = newer_ = {Clock::now(), run.simulation.time()};
 }
 
@@ -135,7 +137,7 @@ void ControlQueries::fill(Reply& reply, const Request& request, const wire::GetD
   if (!part) {
     reply.result = ResultCode::not_found;
     const std::string why = ledger_.why_dropped(request.client, KeptForClient::Kind::saved_snapshot);
-    reply.error_message = why.empty() ? "there is no data for this client: it has saved nothing" : why;
+    reply.error_message = why.empty() ? "there is no data for this client: it has not saved a snapshot" : why;
     return;
   }
   reply.returned = wire::DataPart{part->size, operation.offset, on_wire(part->bytes)};
@@ -152,7 +154,8 @@ void ControlQueries::fill(Reply& reply, const Request& request, const wire::GetR
   }
   if (!part) {
     reply.result = ResultCode::not_found;
-    reply.error_message = "this client records nothing, or has fetched beyond byte " + std::to_string(operation.offset);
+    reply.error_message =
+        "this client is not recording, or has already fetched data beyond byte " + std::to_string(operation.offset);
     return;
   }
   reply.returned = wire::DataPart{part->bytes.size.value_or(0), operation.offset, on_wire(part->bytes.bytes)};
@@ -180,6 +183,29 @@ void ControlQueries::fill(Reply& reply, const Request&, const wire::GetHistory& 
   for (const RunEvent& event : events)
     history.events.push_back({event.tick, event.last_tick, event.count, event.kind, event.text});
   reply.returned = wire::HistoryPart{revision, monitor.events().revision(), on_wire(messages::encode(history))};
+}
+
+void ControlQueries::fill(Reply& reply, const Request&, const wire::GetExperiment& operation) {
+  const description::Experiment& experiment = run_->experiment;
+  const auto refuse = [&](ResultCode result, std::string why) {
+    reply.result = result;
+    reply.error_message = std::move(why);
+  };
+  if (!experiment.inputs)
+    return refuse(ResultCode::not_found, "the experiment was built by a program, not read from files");
+  if (experiment_.empty())
+    experiment_ =
+        messages::encode(messages::experiment_files(*experiment.inputs, experiment.seed, experiment.duration));
+  const std::uint64_t size = experiment_.size();
+  if (size > wire::largest_data)
+    return refuse(ResultCode::operation_failed, "the experiment's files have " + std::to_string(size) + " bytes; " +
+                                                    std::to_string(wire::largest_data) + " can be sent at most");
+  if (operation.offset > size)
+    return refuse(ResultCode::malformed, "offset " + std::to_string(operation.offset) + " is beyond the " +
+                                             std::to_string(size) + " bytes of the experiment's files");
+  const std::size_t count = std::min<std::uint64_t>(size - operation.offset, wire::largest_part);
+  reply.returned =
+      wire::DataPart{size, operation.offset, on_wire(std::span(experiment_).subspan(operation.offset, count))};
 }
 
 void ControlQueries::fill(Reply& reply, const Request& request, const wire::PutData& part) {

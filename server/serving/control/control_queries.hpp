@@ -1,9 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/serving/control/controlled_run.hpp"
 #include "server/serving/control/kept_snapshots.hpp"
@@ -12,25 +14,25 @@
 
 namespace cohort::session {
 
-/// Answers what needs no boundary: the state of a run, and data in parts, to and from clients. On the thread of the
-/// run.
+/// Answers requests that need no boundary: the state of a run, and data that clients send or fetch in parts. For the
+/// thread of the run.
 class ControlQueries {
  public:
   using Clock = RunMonitor::Clock;
 
-  /// All must outlive this.
+  /// The arguments must outlive this object.
   ControlQueries(RequestLedger& ledger, LiveRecordings& recordings, const KeptSnapshots& kept)
       : ledger_(ledger), recordings_(recordings), kept_(kept) {}
 
-  /// `run` must be there for all that follows.
+  /// Starts to answer for `run`, which must outlive all further calls.
   void begin(const ControlledRun& run);
-  /// For the real-time factor: often.
+  /// Updates the real-time factor; to be called often.
   void note_progress(Clock::time_point now);
-  /// Fills in the reply to a query, or why there is no answer.
+  /// Fills in the reply to a query, or the reason why there is no answer.
   void answer(wire::Reply& reply, const wire::Request& request);
 
  private:
-  // One for each question. Those without one ask for what every reply says.
+  // One function for each query. Queries without one ask for what every reply contains.
   void fill(wire::Reply& reply, const wire::Request&, const wire::GetSimulatorFeatures&) const;
   void fill(wire::Reply& reply, const wire::Request&, const wire::GetEntities& operation) const;
   void fill(wire::Reply& reply, const wire::Request&, const wire::GetEntityState& operation) const;
@@ -40,16 +42,18 @@ class ControlQueries {
   void fill(wire::Reply& reply, const wire::Request& request, const wire::GetRecording& operation);
   void fill(wire::Reply& reply, const wire::Request& request, const wire::StopRecording&);
   void fill(wire::Reply& reply, const wire::Request&, const wire::GetHistory& operation) const;
+  void fill(wire::Reply& reply, const wire::Request&, const wire::GetExperiment& operation);
   std::optional<std::uint32_t> find_entity(wire::Reply& reply, const std::string& name) const;
 
   RequestLedger& ledger_;
   LiveRecordings& recordings_;
   const KeptSnapshots& kept_;
   const ControlledRun* run_ = nullptr;
-  // Half a second and more apart.
+  std::vector<std::byte> experiment_;  // the run's input files, encoded at the first request
+  // Samples are at least half a second apart.
   struct Sample {
     Clock::time_point wall{};
-    std::chrono::nanoseconds time{0};  // simulated
+    std::chrono::nanoseconds time{0};  // simulated time
   };
   Sample older_, newer_;
 };

@@ -5,10 +5,10 @@
 
 #include "server/run/session_snapshot.hpp"
 
-/// For people, in replies and events.
+/// Texts for people, in replies and events.
 namespace cohort::session {
 
-/// What of its controllers a snapshot has not, after a sentence that says what was done.
+/// Returns the sentences on controllers whose state a snapshot lacks, to be appended to a message.
 inline std::string left_out_text(const SessionSnapshot& snapshot, const description::Experiment& experiment) {
   std::string text;
   if (const std::string why = why_results_differ(snapshot.build); !why.empty()) text += "; " + why;

@@ -8,13 +8,13 @@
 
 namespace cohort::session {
 
-/// What those who control it see and change of a run. All of it is good until the end of the run.
+/// The part of a run that clients can see and change. Valid until the end of the run.
 struct ControlledRun {
   const description::Experiment& experiment;
   Simulation& simulation;
   RunMonitor& monitor;
   std::uint32_t number = 0;
-  std::function<void(wire::SimulationStatus&)> fill_status;  ///< what control does not know itself
+  std::function<void(wire::SimulationStatus&)> fill_status;  ///< fills in what the control does not know
   std::function<SessionSnapshot()> take_snapshot;            ///< at a boundary
 };
 

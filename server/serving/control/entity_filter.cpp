@@ -7,7 +7,7 @@
 namespace cohort::session {
 namespace {
 
-// POSIX extended, with `\d`, `\w`, `\s`, `\b`, which the C library has too.
+// POSIX extended syntax, with `\d`, `\w`, `\s` and `\b`, which the C library also supports.
 RE2::Options options() {
   constexpr std::int64_t most_memory = std::int64_t{1} << 20;
   RE2::Options options;

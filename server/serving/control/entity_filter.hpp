@@ -5,17 +5,18 @@
 
 namespace cohort::session {
 
-/// A regular expression over names of objects, as clients write it: docs/protocol.md, "Control". Compiling one and
-/// matching it take time and memory in proportion to its length and the name's, whatever it says.
+/// A regular expression that selects names of objects, as in docs/protocol.md, "Control". Compiling and matching take
+/// time and memory in proportion to the length of the expression and of the name.
 class EntityFilter {
  public:
-  /// An empty one matches all names. Throws std::invalid_argument, with what is wrong, if it is none or is too large.
+  /// Compiles the expression; an empty one matches all names. Throws std::invalid_argument with the reason if it is
+  /// invalid or too large.
   explicit EntityFilter(const std::string& pattern);
   EntityFilter(const EntityFilter&) = delete;
   EntityFilter& operator=(const EntityFilter&) = delete;
   ~EntityFilter();
 
-  /// Whether a part of the name matches.
+  /// Returns true if a part of the name matches.
   bool matches(const std::string& name) const;
 
  private:

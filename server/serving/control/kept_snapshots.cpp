@@ -20,14 +20,13 @@ bool KeptSnapshots::wants(std::uint64_t tick) const {
   return interval_ != 0 && tick % interval_ == 0 && !snapshots_.contains(tick);
 }
 
-void KeptSnapshots::keep(SessionSnapshot snapshot) {
-  const std::uint64_t tick = snapshot.tick;
-  bytes_ += size_of(snapshot);
-  snapshots_[tick] = std::make_shared<const SessionSnapshot>(std::move(snapshot));
+void KeptSnapshots::keep(std::shared_ptr<const SessionSnapshot> snapshot) {
+  bytes_ += size_of(*snapshot);
+  snapshots_[snapshot->tick] = std::move(snapshot);
   while (bytes_ > most_bytes_ && snapshots_.size() > 1) thin_out();
 }
 
-// Every other one, so that all of the run can still be gone back to.
+// Drops every other snapshot, so that the run can still go back to ticks of its whole duration.
 void KeptSnapshots::thin_out() {
   interval_ *= 2;
   std::erase_if(snapshots_, [this](const auto& each) {

@@ -4,30 +4,33 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "server/run/session_snapshot.hpp"
 
 namespace cohort::session {
 
-/// Snapshots of a run that are kept in memory, so that it can go back to them: one every so often, less often when they
-/// would take too much. Not thread-safe.
+/// Snapshots of a run that are kept in memory, so that it can go back to them. They are taken at regular intervals,
+/// which grow when they would take too much memory. Not thread-safe.
 class KeptSnapshots {
  public:
-  /// One every `interval` ticks; 0: none.
+  /// Keeps one every `interval` ticks; 0: none.
   KeptSnapshots(std::uint64_t interval, std::size_t most_bytes) : interval_(interval), most_bytes_(most_bytes) {}
 
-  /// Whether one of this tick is wanted.
+  /// Returns true if a snapshot of this tick should be kept.
   bool wants(std::uint64_t tick) const;
-  void keep(SessionSnapshot snapshot);
-  /// The last one at or before `tick`; null if there is none.
+  void keep(SessionSnapshot snapshot) { keep(std::make_shared<const SessionSnapshot>(std::move(snapshot))); }
+  /// Keeps a snapshot of any tick, such as the one that the run goes on from.
+  void keep(std::shared_ptr<const SessionSnapshot> snapshot);
+  /// Returns the last snapshot at or before `tick`; null if there is none.
   std::shared_ptr<const SessionSnapshot> last_until(std::uint64_t tick) const;
-  /// Forgets those after `tick`: what came then is not what will.
+  /// Forgets the snapshots after `tick`, as the run will take another course.
   void forget_after(std::uint64_t tick);
 
-  /// Ticks from one to the next, as it is now.
+  /// Returns the current number of ticks between snapshots.
   std::uint64_t interval() const { return interval_; }
   std::size_t size() const { return snapshots_.size(); }
-  /// Of the first and the last one; there has to be one.
+  /// The ticks of the first and the last snapshot; there must be at least one.
   std::uint64_t first_tick() const { return snapshots_.begin()->first; }
   std::uint64_t last_tick() const { return snapshots_.rbegin()->first; }
 

@@ -12,7 +12,7 @@ namespace cohort::session {
 namespace {
 
 constexpr std::size_t most_recordings = 4;
-// Of each: bytes of its file that are not fetched, and what waits to become some.
+// Limits for each recording: bytes of its file that are not fetched, and messages that wait to be written.
 constexpr std::size_t spool_size = std::size_t{16} << 20;
 constexpr std::size_t most_display_queued = std::size_t{16} << 20;
 constexpr std::size_t most_queued = std::size_t{64} << 20;
@@ -57,25 +57,25 @@ LiveRecordings::One* LiveRecordings::find(std::uint64_t client) {
 void LiveRecordings::start(std::uint64_t client, const std::string& recorded) {
   forget_the_gone();
   if (const One* one = find(client); one != nullptr && !one->has_ended)
-    throw std::runtime_error("this client is recording already");
+    throw std::runtime_error("this client is already recording");
   if (ones_.size() + gone_.size() >= most_recordings)
     throw std::runtime_error(std::to_string(most_recordings) +
-                             " recordings of this run are under way, and no more can be");
+                             " recordings of this run are active, which is the limit");
   description::Recorded holds =
       recorded.empty() ? experiment_->recorded : parsing::read_recorded(recorded, *experiment_);
-  leave(client);  // also with what was dropped of it
+  leave(client);  // also forgets why an earlier recording was dropped
   One& one = ones_.emplace_back(client, *experiment_, std::move(holds));
   one.recorder.begin(*experiment_, *simulation_, recording::Beginning::attached);
   telling_.push_back(&one.recorder);
 }
 
 void LiveRecordings::stop(std::uint64_t client) {
-  if (One* one = find(client)) end(*one, "stopped", "its client wanted no more");
+  if (One* one = find(client)) end(*one, "stopped", "its client stopped it");
 }
 
 void LiveRecordings::leave(std::uint64_t client) {
   dropped_.erase(client);
-  forget(client, "its client has gone");
+  forget(client, "its client has disconnected");
 }
 
 void LiveRecordings::list(std::vector<KeptForClient>& kept) const {
@@ -97,7 +97,7 @@ void LiveRecordings::forget(std::uint64_t client, const std::string& why) {
   forget_the_gone();
 }
 
-// Nobody waits for a thread that still compresses.
+// Does not wait for threads that still compress.
 void LiveRecordings::forget_the_gone() {
   std::erase_if(gone_, [](const One& one) { return one.recorder.is_closed(); });
 }
@@ -115,7 +115,7 @@ std::optional<LiveRecordings::Part> LiveRecordings::fetch(std::uint64_t client, 
   if (const std::uint64_t dropped = one->recorder.dropped(); part.problem.empty() && dropped > 0)
     part.problem =
         std::to_string(dropped) +
-        " poses and observations are not in it: they were fetched too slowly. Commands and events are all there";
+        " poses and observations are missing, as the client fetched too slowly; commands and events are complete";
   return part;
 }
 

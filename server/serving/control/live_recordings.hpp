@@ -17,41 +17,41 @@
 
 namespace cohort::session {
 
-/// Recordings of a run that clients make while it goes on. A thread for each makes the bytes of its file, which the
-/// client fetches part by part; what nobody fetches in time is bounded in memory and ends that recording only. On the
-/// thread of the run.
+/// Recordings of a run that clients make while it goes on. Each has a thread that produces the bytes of its file, which
+/// the client fetches in parts. Data that is not fetched in time is bounded in memory, and exceeding the bound ends
+/// that recording only. For the thread of the run.
 class LiveRecordings {
  public:
-  /// A world begins: recordings that are under way go on with it. Both must outlive what is recorded of them.
+  /// Starts a world: active recordings continue with it. Both arguments must outlive their recording.
   void begin(const description::Experiment& experiment, const Simulation& simulation, bool is_restored);
-  /// What they are to be told of, besides `listener`.
+  /// Returns a listener that passes all events to `listener` and to the recordings.
   RunListener listening(RunListener listener) const;
-  /// The run has ended, and no world follows: so do they, and the world may go.
+  /// Ends all recordings, as the run has ended and no world follows. The world may be destroyed afterwards.
   void end(RunResult::End how, const std::string& reason);
 
-  /// One begins at this boundary, of which no one has been told yet. `recorded`: what it is to hold, in YAML
-  /// (parsing::read_recorded); empty: what the experiment says. Throws std::runtime_error.
+  /// Starts a recording at this boundary, which no listener has been told of yet. `recorded`: the content to record, in
+  /// YAML (parsing::read_recorded); if empty, that of the experiment. Throws std::runtime_error.
   void start(std::uint64_t client, const std::string& recorded);
-  /// The client wants no more than there is up to now.
+  /// Ends the client's recording here, at its request.
   void stop(std::uint64_t client);
-  /// The client is gone.
+  /// Handles the end of the client.
   void leave(std::uint64_t client);
 
-  /// Adds what is kept for clients: bytes that are not fetched, and what waits to become some.
+  /// Adds the memory that is kept for clients: unfetched bytes, and messages that wait to be written.
   void list(std::vector<KeptForClient>& kept) const;
-  /// Ends the client's recording and forgets it; the client is told why when it fetches the next part.
+  /// Ends the client's recording and forgets it; the client learns the reason when it fetches the next part.
   void drop(std::uint64_t client, const std::string& why);
 
   struct Part {
     recording::Spool::Part bytes;
-    std::string problem;  ///< why it is less than was asked for, with the last part
+    std::string problem;  ///< why the recording is incomplete, with the last part
   };
-  /// From `offset` on; nothing if the client has no recording, or none from there on. Throws std::runtime_error if it
-  /// was dropped.
+  /// Returns the part from `offset` on; nothing if the client has no recording, or none from there on. Throws
+  /// std::runtime_error if it was dropped.
   std::optional<Part> fetch(std::uint64_t client, std::uint64_t offset);
-  /// Whether every recording that has ended is with its client.
+  /// Returns true if all recordings that have ended were fetched.
   bool are_fetched() const;
-  /// Bytes that were fetched since the beginning.
+  /// Returns the number of bytes that were fetched since the start.
   std::uint64_t fetched() const { return fetched_; }
 
  private:
@@ -59,7 +59,7 @@ class LiveRecordings {
     One(std::uint64_t client, const description::Experiment& experiment, description::Recorded recorded);
     One(const One&) = delete;
     One& operator=(const One&) = delete;
-    ~One() { spool->abandon(); }  // its thread may wait for room
+    ~One() { spool->abandon(); }  // the thread may be waiting for room
     std::uint64_t client;
     KeptForClient::Time since = std::chrono::steady_clock::now().time_since_epoch();
     std::shared_ptr<recording::Spool> spool;
@@ -74,9 +74,9 @@ class LiveRecordings {
   const description::Experiment* experiment_ = nullptr;
   const Simulation* simulation_ = nullptr;
   std::list<One> ones_;
-  std::list<One> gone_;                           // whose threads are about to end
-  std::map<std::uint64_t, std::string> dropped_;  // why, by client
-  std::vector<recording::Recorder*> telling_;     // those that have not ended
+  std::list<One> gone_;                           // the threads are about to end
+  std::map<std::uint64_t, std::string> dropped_;  // reason, by client
+  std::vector<recording::Recorder*> telling_;     // active recordings
   std::uint64_t fetched_ = 0;
 };
 

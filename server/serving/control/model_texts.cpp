@@ -86,7 +86,7 @@ ModelTexts::Reading ModelTexts::read(const Job& job) {
   const auto began = std::chrono::steady_clock::now();
   const auto took = [&] { return std::chrono::steady_clock::now() - began; };
   try {
-    if (!job.read_model) return {nullptr, "this experiment reads no texts of models"};
+    if (!job.read_model) return {nullptr, "this experiment does not accept models as text"};
     description::ParsedModelPtr model = job.read_model(job.text);
     return {std::move(model), "", took()};
   } catch (const std::exception& error) {

@@ -16,39 +16,40 @@
 
 namespace cohort::session {
 
-/// Reads the texts of models that requests bring, one at a time on a thread of its own: neither ticks nor other
-/// requests wait for it. It keeps few models, and takes no more texts while requests have not fetched theirs. All
-/// functions are for the thread of the run.
+/// Reads the model texts of requests, one at a time on a thread of its own, so that neither ticks nor other requests
+/// wait. It keeps few models, and takes no more texts while results are not fetched. All functions are for the thread
+/// of the run.
 class ModelTexts {
  public:
   /// The client and the number of a request.
   using Key = std::pair<std::uint64_t, std::uint64_t>;
-  /// What came of a text.
+  /// The result of reading a text.
   struct Reading {
-    description::ParsedModelPtr model;  ///< null if there is none
-    std::string why_not{};              ///< in that case
+    description::ParsedModelPtr model;  ///< null on failure
+    std::string why_not{};              ///< the reason of the failure
     std::chrono::nanoseconds took{0};
   };
 
-  /// `on_read` is called on the other thread, whenever a text has been read.
+  /// `on_read` is called on the other thread after each text.
   explicit ModelTexts(std::function<void()> on_read);
-  /// Waits for the text that is being read.
+  /// Waits until the current text is read.
   ~ModelTexts();
 
-  /// A run begins, whose experiment reads texts so; null: not at all. Nothing is left of another run.
+  /// Starts a run and forgets everything of the previous one. `read_model`: reads texts for the experiment; null: texts
+  /// are not accepted.
   void begin(description::ModelReader read_model);
-  /// Whether the next text may be taken.
+  /// Returns true if the next text may be taken.
   bool is_free();
-  /// Takes the text of a request, where `is_free`. Returns false if it was read before: then its reading is there.
+  /// Takes the text of a request, if `is_free`. Returns false if it was read before: then its result is available.
   bool take(const Key& key, const std::string& text);
-  /// Notes what has been read since, and returns whose text that was.
+  /// Stores a finished result and returns the key of its text.
   std::optional<Key> collect();
-  /// Null as long as the text is not read.
+  /// Returns null until the text is read.
   const Reading* find(const Key& key) const;
   void forget(const Key& key) { readings_.erase(key); }
 
  private:
-  static constexpr std::size_t most_readings = 16;  // that nobody has fetched, and as many of the last texts
+  static constexpr std::size_t most_readings = 16;  // limit of unfetched results, and of kept models
 
   struct Job {
     std::uint64_t run = 0;
@@ -64,14 +65,14 @@ class ModelTexts {
   std::uint64_t run_ = 0;
   description::ModelReader read_model_;
   std::map<Key, Reading> readings_;
-  std::deque<description::ParsedModelPtr> last_;  // the newest first
+  std::deque<description::ParsedModelPtr> last_;  // newest first
 
   std::function<void()> on_read_;
   std::mutex mutex_;
   std::condition_variable wake_;
-  std::optional<Job> job_;  // under the lock, like the next
+  std::optional<Job> job_;  // guarded by the lock, like the next member
   bool ends_ = false;
-  std::thread thread_;  // last
+  std::thread thread_;  // last, so that it is destroyed first
 };
 
 }  // namespace cohort::session

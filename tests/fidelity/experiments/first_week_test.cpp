@@ -1,4 +1,4 @@
-// Scenes that everyone builds in the first week, at default settings and a step of 10 ms, with both dynamics.
+// Scenes that users build in their first week, at default settings and a step of 10 ms, with both dynamics.
 
 #include <gtest/gtest.h>
 
@@ -13,13 +13,13 @@ using Eigen::Vector3d;
 
 class FirstWeek : public EveryPhysics {
  protected:
-  // What creeps must not be hidden by what sleeps.
+  // Sleep is off, because it would hide creep.
   static description::World awake(const Physics& physics, double friction = 1.0) {
     description::World world = physics.world(friction);
     world.physics.sleeping = false;
     return world;
   }
-  // Boxes of these masses [kg] and of 100 mm, one on the other.
+  // A stack of boxes of 100 mm with these masses [kg].
   struct Stack {
     SmallWorld small;
     std::vector<BodyId> boxes;
@@ -51,14 +51,14 @@ TEST_P(FirstWeek, StacksStand) {
   }
 }
 
-// Rows of bricks, each a third of a brick aside, and rows that become shorter.
+// Walls of rows that are offset by a third of a brick, and pyramids of rows that become shorter.
 TEST_P(FirstWeek, WallsAndPyramidsStand) {
   const Vector3d brick(0.2, 0.1, 0.1);
   struct Heap {
     int rows;
     bool is_pyramid;
     double seconds;
-    double at_most;  // aside [m]
+    double at_most;  // sideways [m]
   };
   for (const Heap& heap : {Heap{7, true, 30.0, 1e-3}, Heap{5, false, 30.0, 1e-3}, Heap{10, false, 5.0, 0.05}}) {
     SCOPED_TRACE((heap.is_pyramid ? "pyramid of " : "wall of ") + std::to_string(heap.rows) + " rows");
@@ -79,7 +79,7 @@ TEST_P(FirstWeek, WallsAndPyramidsStand) {
   }
 }
 
-TEST_P(FirstWeek, TheHeavyStandOnTheLight) {
+TEST_P(FirstWeek, HeavyBoxesStandOnLightOnes) {
   for (const double mass : {20.0, 100.0}) {
     SCOPED_TRACE(std::to_string(mass) + " kg on 1 kg");
     Stack stack(GetParam(), {1.0, mass});
@@ -89,7 +89,7 @@ TEST_P(FirstWeek, TheHeavyStandOnTheLight) {
   }
 }
 
-// A foot of 1 kg that a carriage on a rail lets slide along the rail and up and down, on a floor.
+// A foot of 1 kg stands on a floor. A carriage on a rail allows it to slide along the rail and vertically.
 TEST_P(FirstWeek, AFootOnARailSticksToTheFloor) {
   for (const double heading : {0.0, M_PI / 4, 1.0, M_PI / 2}) {
     SCOPED_TRACE("a rail that turns by " + std::to_string(heading) + " rad");
@@ -127,7 +127,7 @@ TEST_P(FirstWeek, AFootOnARailSticksToTheFloor) {
   }
 }
 
-// Of 50 g, driven by 1 N m towards its limit, from where its tip has 2 mm to go.
+// An arm of 50 g is driven by 1 N m towards its limit; its tip starts 2 mm before it.
 TEST_P(FirstWeek, AnArmStopsAtItsLimit) {
   for (const bool has_motor : {true, false}) {
     SCOPED_TRACE(has_motor ? "by a motor's velocity" : "by an effort");
@@ -166,7 +166,7 @@ TEST_P(FirstWeek, AnArmStopsAtItsLimit) {
   }
 }
 
-// Two fingers that slide along y and press with 5 N each on a box of 200 g between them, in the air.
+// Two fingers that slide along y press with 5 N each on a box of 200 g between them, in the air.
 TEST_P(FirstWeek, FingersHoldABox) {
   const Vector3d pad(0.03, 0.01, 0.03);
   description::Model gripper;
@@ -199,8 +199,8 @@ TEST_P(FirstWeek, FingersHoldABox) {
   EXPECT_LT((small.position(box) - before).norm(), 1e-4);
 }
 
-// Twice as high as wide: its centre is above the rim where the slope is atan(1/2), 26.57 degrees.
-TEST_P(FirstWeek, ACylinderTipsWhereItsCentreLeavesItsRim) {
+// It is twice as high as wide: its centre is above the rim at a slope of atan(1/2), 26.57 degrees.
+TEST_P(FirstWeek, ACylinderTipsWhenItsCentrePassesItsRim) {
   const auto falls = [&](double degrees, double yaw, bool on_a_box) {
     const double slope = degrees * M_PI / 180.0;
     SmallWorld small(awake(GetParam()));
@@ -227,8 +227,8 @@ TEST_P(FirstWeek, ACylinderTipsWhereItsCentreLeavesItsRim) {
     }
 }
 
-// Tracks on what their material hardly grips, whatever their own coefficient says.
-TEST_P(FirstWeek, TracksHoldOnToMaterialsAsTheirPairSays) {
+// The pair of materials has little friction, which overrides the friction of the tracks themselves.
+TEST_P(FirstWeek, TracksUseTheFrictionOfTheirMaterialPair) {
   for (const Physics& physics : {GetParam(), planar}) {
     SCOPED_TRACE(physics.name());
     SmallWorld small(physics.world());
@@ -247,8 +247,8 @@ TEST_P(FirstWeek, TracksHoldOnToMaterialsAsTheirPairSays) {
   }
 }
 
-// What touches at rest has no gap between, whatever it is: from hulls, boxes and meshes to planes.
-TEST_P(FirstWeek, HullsTouchWhatTheyLieOn) {
+// No gap remains between bodies at rest: hulls, boxes and meshes on planes.
+TEST_P(FirstWeek, HullsTouchTheirSupport) {
   const Vector3d size(0.2, 0.2, 0.1);
   description::Mesh surface = box_mesh({1.0, 1.0, 0.1});
   surface.convex = false;
@@ -263,8 +263,8 @@ TEST_P(FirstWeek, HullsTouchWhatTheyLieOn) {
   }
 }
 
-// A world in which robots grip and let go for days keeps what holds, and nothing else.
-TEST_P(FirstWeek, GripsThatWereReleasedLeaveNothingBehind) {
+// A world in which robots grip and release for days keeps only the connections that hold.
+TEST_P(FirstWeek, ReleasedConnectionsAreForgotten) {
   SmallWorld small(awake(GetParam()));
   const Vector3d size = Vector3d::Constant(0.1);
   const auto one = small.add(loose("box", Box{size}, solid_box(1.0, size)), at(0, 0, 0.05));

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Robots in a row, each turret held to the one before.
+// Robots in a row, each turret connected to the one before.
 struct Chain {
   static constexpr double spacing = 0.13;
   SmallWorld small;
@@ -22,7 +22,7 @@ struct Chain {
           {robots[i - 1], LinkId{turret}}, {{0.5 * spacing, 0, 0.02}}, {robots[i], LinkId{turret}}, limits));
   }
 
-  // The greatest distance between the two ends of a connection [m].
+  // Returns the greatest distance between the two ends of a connection [m].
   double gap() {
     double greatest = 0.0;
     for (std::size_t i = 1; i < robots.size(); ++i) {
@@ -47,7 +47,7 @@ struct Chain {
 class Formations : public EveryPhysics {};
 INSTANTIATE_TEST_SUITE_P(Every, Formations, every_physics, name_of);
 
-TEST_P(Formations, TwentyFiveInAChainThatAllPullElsewhereStayWithinTwoMillimetres) {
+TEST_P(Formations, AChainOf25StaysWithinTwoMillimetresUnderLoad) {
   Chain chain(GetParam(), 25);
   for (int tick = 0; tick < 1000; ++tick) {
     chain.drive_at_random(tick);
@@ -57,7 +57,7 @@ TEST_P(Formations, TwentyFiveInAChainThatAllPullElsewhereStayWithinTwoMillimetre
   for (const BodyId robot : chain.robots) EXPECT_GT(chain.small.up(robot).z(), 0.99);
 }
 
-TEST_P(Formations, AnIslandOfAHundredAndTwentyEightHoldsTogether) {
+TEST_P(Formations, AnIslandOf128HoldsTogether) {
   Chain chain(GetParam(), 128);
   for (int tick = 0; tick < 300; ++tick) {
     chain.drive_at_random(tick);
@@ -66,22 +66,22 @@ TEST_P(Formations, AnIslandOfAHundredAndTwentyEightHoldsTogether) {
   EXPECT_LT(chain.gap(), 3e-3);
 }
 
-TEST_P(Formations, AConnectionReportsTheForceThatGoesThroughIt) {
+TEST_P(Formations, AConnectionReportsItsForce) {
   Chain chain(GetParam(), 2);
-  // One pulls with all it has, the other is held by the world.
+  // One pulls with full force; the other is connected to the world.
   const auto held = chain.small.world().connections().connect({chain.robots[0], LinkId{0}}, {}, {BodyId{0}, LinkId{0}});
   chain.small.drive(chain.robots[1], 0.2, 0.2);
   chain.small.run(2.0);
   const double pull = 2.0 * 0.02 / 0.022;  // both motors' torque over the radius of the wheels
   EXPECT_NEAR(chain.small.world().connections().wrench(chain.connections[0]).force_W.x(), pull, 0.01);
-  // What holds the other is the world, and its own tracks, which are told to stand still.
+  // The world holds the other, and so do its own tracks, which are commanded to stand still.
   double own = 0.0;
   for (const std::size_t side : {0, 1})
     own += chain.small.world().device_state(chain.robots[0], DeviceId{0}, side).effort;
   EXPECT_NEAR(chain.small.world().connections().wrench(held).force_W.x() + own, -pull, 0.01);
 }
 
-TEST_P(Formations, AConnectionBreaksWhereItBearsLess) {
+TEST_P(Formations, AConnectionBreaksAtItsLimit) {
   Chain chain(GetParam(), 3, {.force = 1.0});
   chain.small.drive(chain.robots[0], -0.2, -0.2);
   chain.small.drive(chain.robots[2], 0.2, 0.2);
@@ -96,7 +96,7 @@ TEST_P(Formations, AConnectionBreaksWhereItBearsLess) {
   EXPECT_GT(chain.gap(), 0.1);
 }
 
-TEST_P(Formations, TwoThatLetGoOfEachOtherDriveApart) {
+TEST_P(Formations, TwoRobotsDriveApartAfterARelease) {
   Chain chain(GetParam(), 2);
   chain.small.run(0.5);
   chain.small.world().connections().disconnect(chain.connections[0]);
@@ -106,7 +106,7 @@ TEST_P(Formations, TwoThatLetGoOfEachOtherDriveApart) {
   EXPECT_NEAR(chain.gap(), 0.4, 0.03);
 }
 
-TEST_P(Formations, AWallThatIsTakenOutOrMovedIsLetGoOf) {
+TEST_P(Formations, AConnectionToARemovedOrMovedWallIsReleased) {
   for (const bool is_moved : {false, true}) {
     SmallWorld small(GetParam().world());
     const BodyId wall = small.add(static_shape("wall", description::Box{{0.1, 1, 1}}), at(0.5, 0, 0.5));
@@ -125,7 +125,7 @@ TEST_P(Formations, AWallThatIsTakenOutOrMovedIsLetGoOf) {
   }
 }
 
-// Each solver on the same chain: all hold it together.
+// The same chain with each solver: all hold it together.
 class EverySolver : public EveryPhysics {};
 INSTANTIATE_TEST_SUITE_P(Every, EverySolver,
                          ::testing::Values(treel, by_bullet(treel), direct, by_bullet(direct), hybrid,

@@ -1,4 +1,4 @@
-// Groups that hold each other, with the iterative solver at ten iterations; and what the rotors of motors resist.
+// Groups of connected robots, with the iterative solver at ten iterations; and the rotor inertia of motors.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace cohort::test {
 namespace {
 
-TEST(Motors, TheRotorResistsAsMuchInertiaMore) {
+TEST(Motors, AddTheInertiaOfTheirRotor) {
   constexpr double rotor_inertia = 0.003;
   constexpr double torque = 0.02;
   SmallWorld small(empty_world());
@@ -43,7 +43,7 @@ Outcome drive(GrippedSwarm& swarm, int seconds) {
   return worst;
 }
 
-TEST(GrippedGroups, OfTurretsStayTogether) {
+TEST(GrippedGroups, StayTogetherByTheirTurrets) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     GrippedSwarm swarm(seed, false);
     const Outcome worst = drive(swarm, 60);
@@ -52,7 +52,7 @@ TEST(GrippedGroups, OfTurretsStayTogether) {
   }
 }
 
-TEST(GrippedGroups, OfArmsThatLiftEachOtherGainNoEnergy) {
+TEST(GrippedGroups, GainNoEnergyWhenArmsLiftEachOther) {
   for (const double rotor_inertia : {0.0, 0.002}) {
     for (const std::uint64_t seed : {1, 2, 3}) {
       GrippedSwarm swarm(seed, true, 10, rotor_inertia);

@@ -1,4 +1,4 @@
-// What the experiments with grippers come to, in numbers, for three seeds each.
+// Results of the gripping experiments, in numbers, for three seeds each.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,8 @@ using namespace test;
 
 constexpr std::size_t turret = 1;
 
-// The path, without its extension, of an experiment that ships, with `to` for `from` in it or in its arena.
+// Returns the path, without its extension, of a copy of a shipped experiment in which it or its arena has `to` instead
+// of `from`.
 std::string changed_experiment(const ScratchFolder& folder, const std::string& experiment, const std::string& arena,
                                const std::string& from, const std::string& to) {
   const std::filesystem::path worlds = shipped_experiments.parent_path();
@@ -40,7 +41,7 @@ std::string changed_experiment(const ScratchFolder& folder, const std::string& e
   return folder / ("experiments/" + experiment);
 }
 
-TEST(Chain, OfOneFallsIntoTheTrough) {
+TEST(Chain, OfOneRobotFallsIntoTheTrough) {
   const ScratchFolder folder;
   const std::string alone = changed_experiment(folder, "chain", "wide_trough", "count: 4", "count: 1");
   const ShippedExperiment run(alone, 1);
@@ -67,7 +68,7 @@ TEST_P(Chain, CrossesTheTrough) {
   const ShippedExperiment run("chain", GetParam(), 0.0, look);
   EXPECT_EQ(run.result.stop_reason, "inside: 4 objects");
   EXPECT_EQ(gripping_at_the_edge, 3) << "all but the first";
-  EXPECT_GT(lowest, floor - 0.015) << "nobody hangs deeper than this";
+  EXPECT_GT(lowest, floor - 0.015) << "no robot hangs deeper";
   for (std::uint32_t robot = 0; robot < 4; ++robot) {
     EXPECT_GT(run.simulation.robot_pose(robot).position.x(), far_side + 0.1);
     EXPECT_NEAR(run.simulation.robot_pose(robot).position.z(), floor, 0.002);
@@ -82,7 +83,7 @@ TEST_P(Lifting, AnSbotHoldsAnotherInTheAirAndPutsItDownAgain) {
   double lifter_moved = 0.0;  // [m]
   const auto look = [&](const ShippedExperiment& run) {
     const double step = std::chrono::duration<double>(run.experiment.world.step).count();
-    // The lowest point of the tracks.
+    // Returns the lowest point of the tracks.
     const Pose X_WL = run.pose("load/sbot_detailed_0");
     double lowest = 1e9;
     for (const double x : {-0.04, 0.04})
@@ -98,7 +99,7 @@ TEST_P(Lifting, AnSbotHoldsAnotherInTheAirAndPutsItDownAgain) {
   EXPECT_GT((X_WL.orientation * Eigen::Vector3d::UnitZ()).z(), 0.999);
 }
 
-TEST(Lifting, AloneTipsOver) {
+TEST(Lifting, WithoutAnAnchorTheLifterTipsOver) {
   const ScratchFolder folder;
   const std::string alone = changed_experiment(folder, "lifting", "lifting", "anchor/*, controller: lifting",
                                                "anchor/*, controller: constant");
@@ -113,7 +114,7 @@ TEST(Lifting, AloneTipsOver) {
   EXPECT_LT(highest_load, 0.005);
 }
 
-// The robot whose ring is in a robot's gripper.
+// Returns the robot whose ring is in a robot's gripper.
 std::uint32_t held_by(const ShippedExperiment& run, std::uint32_t robot) {
   const auto X_WT = [&](std::uint32_t each) {
     const BodyId body{*run.simulation.objects().find(run.simulation.robot_name(each))};
@@ -136,9 +137,9 @@ std::uint32_t held_by(const ShippedExperiment& run, std::uint32_t robot) {
 class Assembly : public ::testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(Experiments, Assembly, ::testing::Values(1, 2, 3));
 
-TEST_P(Assembly, SbotsGripWhatTheyCanAndMoveAsOne) {
+TEST_P(Assembly, SbotsGripEachOtherAndMoveTogether) {
   constexpr double west = -0.9, east = 0.9;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, double> grips;  // and how far apart the two are
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> grips;  // pairs of robots and the distance between the two
   int at_west = 0;
   double stretched = 0.0;
   const auto look = [&](const ShippedExperiment& run) {
@@ -161,7 +162,7 @@ TEST_P(Assembly, SbotsGripWhatTheyCanAndMoveAsOne) {
   EXPECT_GE(grips.size(), 6u) << "of 12";
   EXPECT_LT(stretched, 0.005) << "those that grip stay as they are on all of the way";
   for (const auto& [pair, distance] : grips)
-    EXPECT_EQ(run.reading(pair.first, "gripper/0/gripping"), 1.0) << "nobody lets go";
+    EXPECT_EQ(run.reading(pair.first, "gripper/0/gripping"), 1.0) << "no robot lets go";
   EXPECT_GE(run.robots_near(east, 0.0, 0.7), 10);
   EXPECT_FALSE(run.has_quarantined());
 }
@@ -169,7 +170,7 @@ TEST_P(Assembly, SbotsGripWhatTheyCanAndMoveAsOne) {
 class Retrieval : public ::testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(Experiments, Retrieval, ::testing::Values(1, 2, 3));
 
-TEST_P(Retrieval, SeveralMoveWhatTwoCannot) {
+TEST_P(Retrieval, SeveralRobotsMoveALoadThatTwoCannot) {
   double moved_by_two = 0.0;
   const auto look = [&](const ShippedExperiment& run) {
     if (run.robots_that_grip() <= 2)
@@ -181,7 +182,7 @@ TEST_P(Retrieval, SeveralMoveWhatTwoCannot) {
   EXPECT_GE(run.robots_that_grip(), 3);
 }
 
-TEST(GrippingSwarm, OfTwentyFiveThatPullAtRandomForTenMinutesStaysFiniteAndTogether) {
+TEST(GrippingSwarm, StaysConnectedUnderRandomPullsForTenMinutes) {
   constexpr int side = 5;
   constexpr double spacing = 0.13;
   constexpr int ticks_a_pull = 200, ticks = 60000;
@@ -221,9 +222,9 @@ TEST(GrippingSwarm, OfTwentyFiveThatPullAtRandomForTenMinutesStaysFiniteAndToget
     }
   }
   EXPECT_GE(at_first, 10) << "of 25, where they stand at random";
-  EXPECT_GE(gripping(), at_first) << "nobody is torn away";
+  EXPECT_GE(gripping(), at_first) << "no robot is torn away";
   RecordProperty("gripping", gripping());
-  // What they hold is where they grasped it: within the depth of the jaw.
+  // They grasped within the depth of the jaw and hold there.
   for (std::uint32_t robot = 0; robot < side * side; ++robot) {
     if (world.read(robot, "gripper/0/gripping") != 1.0) continue;
     const auto X_WT = [&](std::uint32_t each) {

@@ -1,4 +1,4 @@
-// What the experiments of sensors and tracks come to, in numbers, for three seeds each.
+// Results of the experiments with sensors and tracks, in numbers, for three seeds each.
 
 #include <gtest/gtest.h>
 
@@ -15,12 +15,12 @@ namespace {
 
 using namespace test;
 
-// Where robots were, and how upright.
+// Records the positions and the tilt of robots.
 struct Watch {
   double farthest = 0.0;                // along x or y [m]
   double lowest = 1e9;                  // [m]
-  std::vector<double> least_upright;    // of each robot
-  std::set<std::pair<int, int>> cells;  // of 25 cm, that some robot was in
+  std::vector<double> least_upright;    // by robot
+  std::set<std::pair<int, int>> cells;  // cells of 25 cm that any robot visited
 
   void operator()(const ShippedExperiment& run) {
     constexpr double cell = 0.25;
@@ -39,7 +39,7 @@ struct Watch {
 class ObstacleAvoidance : public ::testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(Experiments, ObstacleAvoidance, ::testing::Values(1, 2, 3));
 
-TEST_P(ObstacleAvoidance, RobotsCoverTheArenaAndHardlyTouchAnything) {
+TEST_P(ObstacleAvoidance, RobotsCoverTheArenaWithFewContacts) {
   Watch watch;
   const ShippedExperiment run("obstacle_avoidance", GetParam(), 0.0, std::ref(watch));
   EXPECT_LT(watch.farthest, 2.0 - 0.058 + 0.005) << "within the walls";
@@ -52,7 +52,7 @@ TEST_P(ObstacleAvoidance, RobotsCoverTheArenaAndHardlyTouchAnything) {
 class RoughTerrain : public ::testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(Experiments, RoughTerrain, ::testing::Values(1, 2, 3));
 
-TEST_P(RoughTerrain, RobotsStayUprightOnTheGroundAndSomeGetAbout) {
+TEST_P(RoughTerrain, RobotsStayUprightAndSomeMoveAround) {
   Watch watch;
   const ShippedExperiment run("rough_terrain", GetParam(), 0.0, std::ref(watch));
   EXPECT_FALSE(run.has_quarantined());
@@ -69,7 +69,7 @@ TEST_P(RoughTerrain, RobotsStayUprightOnTheGroundAndSomeGetAbout) {
 class Phototaxis : public ::testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(Experiments, Phototaxis, ::testing::Values(1, 2, 3));
 
-TEST_P(Phototaxis, TwoLampsMakeTwoGroupsOneMakesOneAndNoneNone) {
+TEST_P(Phototaxis, LampsDetermineTheNumberOfGroups) {
   constexpr double east = 1.1, west = -1.1, radius = 0.8;
   const auto look = [&](const ShippedExperiment& run) {
     const double time = run.seconds();

@@ -1,4 +1,4 @@
-// What happens in the experiments that ship, in numbers.
+// Results of the shipped experiments, in numbers.
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,7 +17,7 @@
 namespace cohort {
 namespace {
 
-/// An experiment that has been run, and what was seen on the way.
+/// An experiment after its run, with records of the run.
 class Shipped {
  public:
   explicit Shipped(const std::string& name, double seconds = 0.0)
@@ -24,10 +26,20 @@ class Shipped {
   Eigen::Vector3d position(const std::string& object) const { return run_.position(object); }
   Pose pose(const std::string& object) const { return run_.pose(object); }
   bool has_quarantined() const { return run_.has_quarantined(); }
+  // Returns a channel of robot 0 at the end.
+  std::vector<double> observed(const std::string& channel) const {
+    const std::span<const double> values = simulation.observation(0);
+    std::size_t offset = 0;
+    for (const Channel& each : simulation.kinds()[simulation.kind_of(0)].observation) {
+      if (each.name == channel) return {values.begin() + offset, values.begin() + offset + each.size};
+      offset += each.size;
+    }
+    return {};
+  }
 
-  double lowest = 1e9;                               // of any robot's origin
-  double least_upright = 1.0;                        // z of any robot's up
-  std::vector<Eigen::Vector2d> path_of_the_first;    // of robot 0, tick by tick
+  double lowest = 1e9;                               // least height of any robot's origin
+  double least_upright = 1.0;                        // least z of any robot's up axis
+  std::vector<Eigen::Vector2d> path_of_the_first;    // positions of robot 0, tick by tick
   std::set<std::pair<int, int>> cells_of_the_first;  // column and row, of a square of 2.5 m, where robot 0 was
 
  private:
@@ -65,7 +77,7 @@ TEST(ShippedExperiments, AreAllReadAndStepped) {
   EXPECT_GE(names.size(), 14u);
 }
 
-TEST(ShippedExperiments, ATroughOfThreeCentimetresIsCrossedAndOneOfFifteenIsNot) {
+TEST(ShippedExperiments, RobotsCrossATroughOfThreeCentimetresButNotOfFifteen) {
   const Shipped run("trough");
   EXPECT_EQ(run.result.stop_reason, "beyond: 'narrow'");
   EXPECT_NEAR(run.position("narrow").z(), 0.2, 0.005);
@@ -73,14 +85,14 @@ TEST(ShippedExperiments, ATroughOfThreeCentimetresIsCrossedAndOneOfFifteenIsNot)
   EXPECT_LT(run.position("wide").z(), 0.19);
 }
 
-TEST(ShippedExperiments, AHoleSwallowsWhoDrivesIntoIt) {
+TEST(ShippedExperiments, RobotsFallIntoAHole) {
   const Shipped run("hole");
   EXPECT_EQ(run.result.stop_reason, "beyond: 'passes'");
   EXPECT_LT(run.position("falls").z(), 0.2);
   EXPECT_NEAR(run.position("passes").z(), 0.3, 0.005);
 }
 
-TEST(ShippedExperiments, AStepOfACentimetreIsClimbedAndOneOfSixIsNot) {
+TEST(ShippedExperiments, RobotsClimbAStepOfOneCentimetreButNotOfSix) {
   const Shipped run("step");
   EXPECT_EQ(run.result.stop_reason, "beyond: 'climbs'");
   EXPECT_NEAR(run.position("climbs").z(), 0.01, 0.003);
@@ -96,9 +108,25 @@ TEST(ShippedExperiments, TwoRobotsPushTheBarIntoTheNest) {
   EXPECT_LT(run.result.sim_time, std::chrono::seconds(30));
 }
 
-TEST(ShippedExperiments, TheRoverDrivesTheCircleOfItsWheels) {
+TEST(ShippedExperiments, ATurtleBotDrivesACircleAndScansTheHouse) {
+  const Shipped run("turtlebot3", 25.0);
+  const Eigen::Vector2d centre(-1.5, -0.7);  // 0.15 m/s at 0.3 rad/s
+  for (const Eigen::Vector2d& at : run.path_of_the_first) ASSERT_NEAR((at - centre).norm(), 0.5, 0.03);
+  EXPECT_GT(run.least_upright, 0.999);
+  EXPECT_FALSE(run.has_quarantined());
+  const std::vector<double> ranges = run.observed("scan/0/ranges");
+  ASSERT_EQ(ranges.size(), 360u);
+  EXPECT_GT(std::ranges::min(ranges), 0.2) << "it does not see itself";
+  EXPECT_LT(std::ranges::min(ranges), 1.5);
+  EXPECT_EQ(run.observed("imu/0/angular_velocity").size(), 3u);
+  EXPECT_NEAR(run.observed("imu/0/angular_velocity")[2], 0.3, 0.02);
+  EXPECT_NEAR(run.observed("wheel_left/0/velocity")[0], (0.15 - 0.3 * 0.08) / 0.033, 0.1);
+  EXPECT_NEAR(run.observed("wheel_right/0/velocity")[0], (0.15 + 0.3 * 0.08) / 0.033, 0.1);
+}
+
+TEST(ShippedExperiments, TheRoverDrivesTheCircleOfItsWheelSpeeds) {
   const Shipped run("rover");
-  // Wheels of 0.035 m at 4 and 5 rad/s, whose tyres touch the ground somewhere between 0.14 and 0.18 m apart.
+  // Wheels of 0.035 m turn at 4 and 5 rad/s; their tyres touch the ground somewhere between 0.14 and 0.18 m apart.
   const double speed = 0.035 * 4.5, difference = 0.035 * 1.0;
   Eigen::Vector2d farthest(0.0, 0.0);
   for (const Eigen::Vector2d& at : run.path_of_the_first)
@@ -110,10 +138,10 @@ TEST(ShippedExperiments, TheRoverDrivesTheCircleOfItsWheels) {
   EXPECT_GT(run.least_upright, 0.98);
 }
 
-TEST(ShippedExperiments, WheelsRollAsTheTreelDriveThatStandsForThem) {
+TEST(ShippedExperiments, WheelsAndTreelsDriveTheSameCircle) {
   struct Circle {
     double diameter = 0.0;  // [m]
-    double heading = 0.0;   // all that it turned by [rad]
+    double heading = 0.0;   // total rotation [rad]
   };
   const auto drive = [](description::Fidelity fidelity) {
     description::Experiment experiment = parsing::read_experiment(test::shipped_experiments / "wheels.yaml");
@@ -155,7 +183,7 @@ TEST(ShippedExperiments, TheHexapodWalksAheadAndStaysUpright) {
   EXPECT_GT(run.least_upright, 0.6);
 }
 
-TEST(ShippedExperiments, TheArmComesToItsAngles) {
+TEST(ShippedExperiments, TheArmReachesItsAngles) {
   const Shipped run("arm");
   const std::uint32_t arm = *run.simulation.objects().find("arm");
   const description::Model& model = run.experiment.world.robot_model(0);
@@ -183,6 +211,52 @@ TEST(ShippedExperiments, QuadcoptersRiseToTheirHeightsAndStayUpright) {
   EXPECT_GT(run.least_upright, 0.5);
 }
 
+TEST(ShippedExperiments, QuadcoptersForBetaflightHoverAndLandByThemselves) {
+  const double heights[] = {1.0, 1.25, 1.5};
+  const Shipped hovering("betaflight", 20.0);
+  const Shipped landed("betaflight");
+  for (int i = 0; i < 3; ++i) {
+    const std::string copter = "copter_" + std::to_string(i);
+    EXPECT_NEAR(hovering.position(copter).z(), heights[i], 0.05);
+    EXPECT_NEAR(landed.position(copter).z(), 0.0, 0.05);
+  }
+  EXPECT_GT(landed.least_upright, 0.9);
+}
+
+TEST(ShippedExperiments, QuadcoptersForAutopilotsHoverByThemselves) {
+  for (const char* const experiment : {"ardupilot", "px4"}) {
+    const Shipped run(experiment, 15.0);
+    EXPECT_NEAR(run.position("copter_0").z(), 2.0, 0.1) << experiment;
+    EXPECT_NEAR(run.position("copter_1").z(), 3.0, 0.1) << experiment;
+    EXPECT_GT(run.least_upright, 0.9) << experiment;
+  }
+}
+
+TEST(ShippedExperiments, TheBoatStaysUprightAndCirclesTheBuoy) {
+  const Shipped run("autopilot_boat");
+  EXPECT_NEAR(run.position("boat").z(), -0.05, 0.02);
+  EXPECT_GT(run.least_upright, 0.99);
+  std::set<int> quarters;
+  for (const Eigen::Vector2d& place : run.path_of_the_first) {
+    const Eigen::Vector2d from_buoy = place - Eigen::Vector2d(0.2, 3.1);
+    EXPECT_NEAR(from_buoy.norm(), 3.1, 0.5);
+    quarters.insert(2 * (from_buoy.x() > 0.0) + (from_buoy.y() > 0.0));
+  }
+  EXPECT_EQ(quarters.size(), 4u);
+}
+
+TEST(ShippedExperiments, KilobotsCircleMoreSlowlyNearTheLamp) {
+  const Shipped run("kilobot", 5.0);
+  const auto way = [&run](int robot, double x, double y) {
+    return (run.position("swarm/kilobot_" + std::to_string(robot)) - Eigen::Vector3d(x, y, 0.0)).norm();
+  };
+  const double near_it = way(14, 0.12, 0.0), far_from_it = way(10, -0.12, 0.0);
+  EXPECT_NEAR(far_from_it, 0.038, 0.008) << "at 0.85 cm/s, in a bow";
+  EXPECT_LT(near_it, 0.85 * far_from_it);
+  EXPECT_GT(near_it, 0.3 * far_from_it);
+  EXPECT_GT(run.least_upright, 0.99);
+}
+
 TEST(ShippedExperiments, ThePorterOpensTheGateSwitchesTheLampOffAndPushesTheBarOff) {
   const Shipped run("gate");
   EXPECT_EQ(run.result.stop_reason, "beyond: 'porter'");
@@ -193,7 +267,8 @@ TEST(ShippedExperiments, ThePorterOpensTheGateSwitchesTheLampOffAndPushesTheBarO
   EXPECT_EQ(events[0].text, "open_gate of 'porter': disable 'gate'");
   EXPECT_EQ(events[1].text, "switch_off of 'porter': set_emitter 'lamp'");
   EXPECT_TRUE(events[2].text.starts_with("joint 'bracket' broke at 1.")) << events[2].text;
-  // The gate opens where two readings of 1 - d / 0.2 make 0.6 of them a half, the bar breaks where the hull meets it.
+  // The gate opens where two readings of 1 - d / 0.2, weighted by 0.6, exceed a half; the bar breaks where the hull
+  // hits it.
   EXPECT_NEAR(run.path_of_the_first[events[0].tick].x(), 0.49 - 0.058 - 0.117, 0.02);
   EXPECT_NEAR(run.path_of_the_first[events[2].tick].x(), 1.2 - 0.006 - 0.05, 0.02);
   EXPECT_FALSE(run.simulation.objects().is_present(*run.simulation.objects().find("gate")));
@@ -212,7 +287,7 @@ TEST(ShippedExperiments, AFormationDrivesAheadAsOne) {
   }
 }
 
-TEST(ShippedExperiments, TheMouseFindsTheOneWayOut) {
+TEST(ShippedExperiments, TheMouseFindsTheExit) {
   const Shipped run("maze");
   EXPECT_EQ(run.result.stop_reason, "beyond: 'mouse'");
   EXPECT_GE(run.cells_of_the_first.size(), 5u);

@@ -1,6 +1,6 @@
-// A stranger that floods one of two servers: flood DOMAIN DOMAIN RATE. Sends RATE commands a second in nobody's name to
-// the first, after SIGUSR1 to the other one, and so on, until it is killed; prints each turn's number once it has sent
-// some. So its own share of the machine stays.
+// A stranger that floods one of two servers: flood DOMAIN DOMAIN RATE. Sends RATE commands a second with an invalid
+// client id to the first. After SIGUSR1 it sends to the other one, and so on, until it is killed. Prints each turn's
+// number once it has sent some. So its own load on the machine stays the same.
 
 #include <array>
 #include <chrono>
@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   const std::vector<std::uint32_t> robots = {0};
   const std::vector<double> values(8, 0.1);
   for (int said = -1;;) {
-    // In bursts of a millisecond; one that took longer is not made up for.
+    // Sends bursts of a millisecond; a late burst is not made up for.
     const auto begin = Clock::now();
     const int turn = turns;
     auto& commands = targets.at(static_cast<std::size_t>(turn % 2)).commands;

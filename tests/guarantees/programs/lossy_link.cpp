@@ -1,6 +1,6 @@
 // A cable between two network namespaces that loses packets: lossy_link NAMESPACE NAMESPACE LOSS SEED. Makes a network
-// interface `cable` in each (of `ip netns`), and carries packets from one to the other but for a share LOSS (0 to 1) of
-// them, chosen at random, in each direction. Prints "up" when the interfaces are there; runs until it is killed.
+// interface `cable` in each (of `ip netns`), and carries packets between them in both directions. It drops a share LOSS
+// (0 to 1) of them, chosen at random. Prints "up" when the interfaces exist; runs until it is killed.
 
 #include <fcntl.h>
 #include <linux/if.h>
@@ -25,7 +25,7 @@ namespace {
   std::exit(1);
 }
 
-// A descriptor whose packets are those of a new interface in a namespace.
+// Returns a descriptor for the packets of a new interface in a namespace.
 int open_end(const std::string& name) {
   const int space = open(("/run/netns/" + name).c_str(), O_RDONLY | O_CLOEXEC);
   if (space < 0 || setns(space, CLONE_NEWNET) != 0) give_up("cannot enter the namespace " + name);
@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
     if (poll(polled.data(), polled.size(), -1) < 0 && errno != EINTR) give_up("poll");
     for (std::size_t i = 0; i < ends.size(); ++i) {
       for (ssize_t size = 0; (size = read(ends.at(i), packet.data(), packet.size())) > 0;)
-        // What the other end has no room for is lost as well.
+        // Packets that the other end has no room for are also lost.
         if (!is_lost(random)) [[maybe_unused]]
           const auto written = write(ends.at(1 - i), packet.data(), static_cast<std::size_t>(size));
     }

@@ -1,5 +1,5 @@
-// Drives an s-bot by all that it was ever told: a frame that is answered twice, left out or out of order makes another
-// run of it, and so does another seed or parameter.
+// Drives an s-bot with commands that depend on all frames so far. A frame that is answered twice, left out or out of
+// order changes the run, and so does another seed or parameter.
 
 #include <cmath>
 #include <cohort/controller.hpp>
@@ -22,7 +22,7 @@ class Remembering final : public cohort::Controller {
   void step(const cohort::Observation& observation, cohort::Command& command) override {
     double seen = 0.0;
     for (const auto channel : proximity_) seen += observation[channel];
-    // Below 1, and other whenever anything before was other.
+    // Below 1, and different after any difference in the past.
     memory_ = std::fmod(1.7 * memory_ + 0.1 * static_cast<double>(observation.tick()) + seen, 1.0);
     command.set(left_track_, speed_ * memory_);
     command.set(right_track_, speed_ * (1.0 - memory_));

@@ -1,4 +1,4 @@
-// run_alone EXPERIMENT PLUGIN: runs an experiment with one controller for all teams, as a program that embeds runs, and
+// run_alone EXPERIMENT PLUGIN: a program that embeds runs. It runs an experiment with one controller for all teams. It
 // prints the state hash after the run, and after one more run with the next seed.
 
 #include <atomic>

@@ -1,5 +1,5 @@
-// A stranger on the network: sends every kind of bad command, Join and Report in the name of the given client, about a
-// thousand a second, until it is killed. send_bad_commands DOMAIN CLIENT [FOLDER OF AN IDENTITY]
+// A stranger on the network: `send_bad_commands DOMAIN CLIENT [FOLDER OF AN IDENTITY]`. Sends every kind of bad
+// command, Join and Report with the id of the given client, about a thousand a second, until it is killed.
 
 #include <atomic>
 #include <chrono>

@@ -1,5 +1,5 @@
-// A long run in lockstep, and what server and clients hold of the machine meanwhile: soak TICKS CONTROLLERS. Prints a
-// table; exit code 1 if memory, open files or threads grew after the first tenth.
+// A long run in lockstep that measures the resources of server and clients: soak TICKS CONTROLLERS. Prints a table;
+// exit code 1 if memory, open files or threads grew after the first tenth.
 
 #include <algorithm>
 #include <atomic>
@@ -44,7 +44,7 @@ Held held_by(pid_t pid) {
   return {memory, entries(folder / "fd"), entries(folder / "task")};
 }
 
-// A tenth of the memory and some megabytes: what allocators keep differs from time to time.
+// Tolerates a tenth of the memory and some megabytes, as the memory kept by allocators varies.
 bool has_grown(const Held& before, const Held& after) {
   return after.memory > 1.1 * before.memory + 4.0 || after.files > before.files || after.threads > before.threads;
 }
@@ -55,7 +55,7 @@ void print(std::uint64_t tick, const Held& server, const Held& clients) {
   std::fflush(stdout);
 }
 
-// The exit code.
+// Returns the exit code.
 int soak(std::uint64_t ticks, int controllers) {
   const FieldOfRobots field(controllers, static_cast<double>(ticks) / 100.0);
   const ReservedDomain domain;

@@ -1,7 +1,7 @@
-// Steps the world of an experiment, with commands that are a function of robot and tick.
-//   step_world EXPERIMENT FROM TO [--load FILE] [--save FILE] [--threads N] [--act TICK]
-// FROM: the tick at which the world stands after construction or loading. --act: at this tick objects are spawned,
-// moved, pushed and removed. Prints the state hash at TO.
+// Steps the world of an experiment, with commands that are a function of robot and tick:
+// `step_world EXPERIMENT FROM TO [--load FILE] [--save FILE] [--threads N] [--act TICK]`.
+// FROM is the tick of the world after construction or loading. At the tick of --act, objects are spawned, moved,
+// pushed and removed. Prints the state hash at TO.
 
 #include <cstdio>
 #include <cstdlib>

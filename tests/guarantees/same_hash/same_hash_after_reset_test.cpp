@@ -7,8 +7,8 @@
 namespace cohort::test {
 namespace {
 
-// Aggregation's controllers remember what they did: a reset has to reach them too.
-TEST(SameHashAfterReset, RunsInARowWithTheSameControllersGiveTheSameBits) {
+// Aggregation's controllers have state, so a reset must also reset them.
+TEST(SameHashAfterReset, ConsecutiveRunsWithTheSameControllersGiveTheSameBits) {
   const std::string experiment = COHORT_SOURCE_DIR "/worlds/experiments/aggregation.yaml";
   const ScratchFolder folder;
   for (const char* placement : {"process", "per-robot", "inprocess"}) {
@@ -21,7 +21,7 @@ TEST(SameHashAfterReset, RunsInARowWithTheSameControllersGiveTheSameBits) {
   }
 }
 
-TEST(SameHashAfterReset, ASessionOfSeveralExperimentsKeepsItsControllersAndGivesEachItsBits) {
+TEST(SameHashAfterReset, ASessionOfSeveralExperimentsKeepsItsControllersAndBits) {
   const std::string changes = COHORT_SOURCE_DIR "/worlds/experiments/changes.yaml";
   const auto demo = run_demo({"--controllers", "inprocess", "--duration", "5"});
   const auto changed = run_experiment(changes, {"--controllers", "inprocess", "--duration", "5"});
@@ -38,8 +38,8 @@ TEST(SameHashAfterReset, ASessionOfSeveralExperimentsKeepsItsControllersAndGives
     EXPECT_EQ(hash_in(folder / ("summary-" + std::string(number) + ".json")), changed["state_hash"]) << number;
 }
 
-// Of the next experiment there are fewer robots: who asks for others has to go, and says why.
-TEST(SameHashAfterReset, AClientWhoseRobotsAreNotInTheNextExperimentIsRefusedThereByName) {
+// The next experiment has fewer robots: a client that asks for others must leave, and reports why.
+TEST(SameHashAfterReset, AClientWithoutRobotsInTheNextExperimentIsRefusedByName) {
   const FieldOfRobots fewer(15, 1.0);
   const ReservedDomain domain;
   Process server(

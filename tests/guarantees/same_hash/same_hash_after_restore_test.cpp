@@ -28,7 +28,7 @@ TEST_F(SameHashAfterRestore, SavedInOneProcessAndRestoredInAnother) {
   EXPECT_EQ(step_world({"400", "900", "--load", file_, "--threads", "2"}), straight);
 }
 
-TEST_F(SameHashAfterRestore, WithObjectsThatWereSpawnedFromATextAndPushesUnderWay) {
+TEST_F(SameHashAfterRestore, WithObjectsSpawnedFromTextAndActiveForces) {
   const std::string straight = step_world({"0", "900", "--act", "300"});
   EXPECT_NE(straight, step_world({"0", "900"}));
   const std::string at_400 = step_world({"0", "400", "--act", "300", "--save", file_});
@@ -36,7 +36,7 @@ TEST_F(SameHashAfterRestore, WithObjectsThatWereSpawnedFromATextAndPushesUnderWa
   EXPECT_EQ(step_world({"400", "900", "--load", file_, "--threads", "4"}), straight);
 }
 
-TEST_F(SameHashAfterRestore, SavedAgainItIsTheSameSnapshot) {
+TEST_F(SameHashAfterRestore, SavingAgainGivesTheSameSnapshot) {
   step_world({"0", "300", "--save", file_});
   step_world({"300", "300", "--load", file_, "--save", file_ + "_again"});
   EXPECT_GT(read_file(file_).size(), 1000u);

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Makes the C library believe that the CPU has no fused multiply-add.
+// Hides the CPU's fused multiply-add from the C library.
 const Process::Environment without_fma = {{"GLIBC_TUNABLES", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"}};
 
 const fs::path programs = COHORT_BUILD_DIR "/bin";
@@ -38,7 +38,7 @@ TEST(SameHashAnyCpu, TheCLibraryWithAndWithoutFmaGivesTheSameBits) {
   EXPECT_EQ(summary["state_hash"], reference_hash(10));
 }
 
-// What `step_world` prints, which drives every actuator.
+// Returns the output of `step_world`, which drives every actuator.
 std::string driven(const fs::path& experiment, int ticks, const Process::Environment& environment = {}) {
   return output_of({programs / "step_world", experiment, "0", std::to_string(ticks)}, environment);
 }
@@ -98,7 +98,7 @@ TEST(SameHashAnyCpu, TheWorldWithEveryDeviceLacksNone) {
     if (kind.in_model != nullptr || kind.in_world != nullptr) expect("systems::" + std::string(kind.name) + ",");
 }
 
-// The names that `nm` lists, without their versions.
+// Returns the names that `nm` lists, without their versions.
 std::set<std::string> symbols(const fs::path& file, const std::string& which) {
   std::istringstream lines(output_of({"nm", "-D", "--format=posix", which, file}));
   std::set<std::string> names;
@@ -106,7 +106,7 @@ std::set<std::string> symbols(const fs::path& file, const std::string& which) {
   return names;
 }
 
-// The libraries that the dynamic linker loads with a program or a plugin.
+// Returns the libraries that the dynamic linker loads with a program or a plugin.
 std::set<fs::path> libraries_of(const fs::path& file) {
   const std::string text = output_of({"ldd", file});
   const std::regex path("=> (/\\S+)");
@@ -122,8 +122,8 @@ fs::path c_library_of(const fs::path& program) {
   return {};
 }
 
-// Functions of libm whose result is exact, so that every correct implementation has the same bits; with f at the end
-// they are those of float, with l of long double.
+// Returns true for functions of libm with an exact result, for which every correct implementation gives the same bits.
+// Names that end with f are for float, with l for long double.
 bool is_exact(std::string name) {
   static const std::set<std::string> exact = {
       "sqrt",         "fabs",       "floor",      "ceil",       "trunc",         "round",        "roundeven",
@@ -137,7 +137,7 @@ bool is_exact(std::string name) {
   return exact.contains(name);
 }
 
-// What a file calls of the C library's mathematics that may have other bits on another CPU, and `has` has not.
+// Returns the calls of a file to CPU-dependent functions of the C library's mathematics, except those in `has`.
 std::vector<std::string> foreign_calls(const fs::path& file, const std::set<std::string>& c_library,
                                        const std::set<std::string>& has) {
   std::vector<std::string> calls;
@@ -146,7 +146,7 @@ std::vector<std::string> foreign_calls(const fs::path& file, const std::set<std:
   return calls;
 }
 
-class NothingFromTheCLibraryWithBitsOfItsOwn : public ::testing::Test {
+class NonPortableMath : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!is_installed("nm") || !is_installed("ldd")) GTEST_SKIP() << "needs nm and ldd";
@@ -160,7 +160,7 @@ class NothingFromTheCLibraryWithBitsOfItsOwn : public ::testing::Test {
   std::set<std::string> c_library_;
 };
 
-TEST_F(NothingFromTheCLibraryWithBitsOfItsOwn, IsCalledByAProgramThatStepsAWorldOrByALibraryOfIts) {
+TEST_F(NonPortableMath, IsNotCalledByASimulatingProgramOrItsLibraries) {
   for (const char* const name : {"cohort", "cohort-whole"}) {
     const fs::path program = programs / name;
     if (!fs::exists(program)) continue;
@@ -171,7 +171,7 @@ TEST_F(NothingFromTheCLibraryWithBitsOfItsOwn, IsCalledByAProgramThatStepsAWorld
   }
 }
 
-TEST_F(NothingFromTheCLibraryWithBitsOfItsOwn, IsCalledByAController) {
+TEST_F(NonPortableMath, IsNotCalledByAController) {
   int controllers = 0;
   for (const auto& entry : fs::directory_iterator(COHORT_BUILD_DIR "/lib/controllers")) {
     expect_none(entry.path());

@@ -66,7 +66,7 @@ wait
   EXPECT_EQ(joined, 3);
 }
 
-// Wherever it runs: as a plugin, as a program, and from a loop of its own.
+// As a plugin, as a program, and from a loop of its own.
 TEST(SameHashAnyPlacement, AControllerInCGivesTheBitsOfItsTwinInCpp) {
   const std::string expected = reference_hash(5);
   const ScratchFolder folder;
@@ -87,7 +87,7 @@ TEST(SameHashAnyPlacement, AControllerInCGivesTheBitsOfItsTwinInCpp) {
   EXPECT_NE(server.output().find(expected), std::string::npos) << server.output();
 }
 
-TEST(SameHashAnyPlacement, ALoopInCWithoutOptionsDrivesAllRobotsOfTheServerThatTheEnvironmentNames) {
+TEST(SameHashAnyPlacement, ALoopInCWithoutOptionsUsesTheServerOfTheEnvironment) {
   const ReservedDomain domain;
   Process server({cohort_program(), "serve", demo_experiment(), "--duration", "1", "--domain", domain.text()});
   Process loop({COHORT_BUILD_DIR "/bin/drive_in_a_loop"},
@@ -97,8 +97,8 @@ TEST(SameHashAnyPlacement, ALoopInCWithoutOptionsDrivesAllRobotsOfTheServerThatT
   EXPECT_NE(server.output().find(reference_hash(1)), std::string::npos) << server.output();
 }
 
-// A wall goes, a robot comes, another one leaves, one is away for a second.
-TEST(SameHashAnyPlacement, EventsHappenAlikeWhereverControllersAreAndWithAnyNumberOfThreads) {
+// A wall is removed, a robot is added, another one is removed, and one is absent for a second.
+TEST(SameHashAnyPlacement, EventsAreTheSameForAnyPlacementAndThreadCount) {
   const std::string experiment = COHORT_SOURCE_DIR "/worlds/experiments/changes.yaml";
   const auto expected = run_experiment(experiment, {"--controllers", "inprocess", "--threads", "1"});
   for (const std::vector<std::string>& arguments :
@@ -115,7 +115,7 @@ TEST(SameHashAnyPlacement, EventsHappenAlikeWhereverControllersAreAndWithAnyNumb
   EXPECT_EQ(events, 6);
 }
 
-TEST(SameHashAnyPlacement, TheSameRunTwiceInARowGivesTheSameBits) {
+TEST(SameHashAnyPlacement, RepeatedRunsGiveTheSameBits) {
   const auto once = run_demo({"--duration", "10"});
   const auto again = run_demo({"--duration", "10"});
   EXPECT_EQ(once["state_hash"], again["state_hash"]);

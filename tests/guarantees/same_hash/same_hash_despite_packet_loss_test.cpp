@@ -7,8 +7,8 @@ namespace {
 
 class SameHashDespitePacketLoss : public ::testing::TestWithParam<const char*> {};
 
-// The server in one network namespace, the controllers of eight robots in another, and between them a cable that loses
-// this share of the packets in each direction.
+// The server is in one network namespace, and the controllers of eight robots are in another. A cable between them
+// loses this share of the packets in each direction.
 TEST_P(SameHashDespitePacketLoss, OfTwoHosts) {
   const FieldOfRobots field(8, 10.0);
   const auto expected = run_experiment(field.file(), {"--controllers", "inprocess"});

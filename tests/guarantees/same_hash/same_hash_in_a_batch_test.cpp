@@ -16,7 +16,7 @@ std::filesystem::path path_of(const std::string& name) {
   return COHORT_SOURCE_DIR "/worlds/experiments/" + name + ".yaml";
 }
 
-// A function of seed, tick and robot, within the channel's range and 1 around zero.
+// Returns a function of seed, tick and robot, within the channel's range and 1 around zero.
 std::vector<double> command_for(const RobotKind& kind, std::uint64_t seed, std::uint64_t tick, std::uint32_t robot) {
   std::vector<double> values;
   const double phase = 0.013 * static_cast<double>(tick) + robot + static_cast<double>(seed);
@@ -29,7 +29,7 @@ std::vector<double> command_for(const RobotKind& kind, std::uint64_t seed, std::
   return values;
 }
 
-// A run of the experiment as it is read with a seed, by itself; the hash of each tick at which commands change.
+// Single runs of the experiment with a seed each, and their hash at each tick at which commands change.
 class RunsAlone {
  public:
   explicit RunsAlone(const std::string& name) : name_(name) {}
@@ -55,12 +55,12 @@ class RunsAlone {
   }
 
   std::string name_;
-  std::map<std::uint64_t, std::map<std::uint64_t, std::uint64_t>> hashes_;  // of each seed
+  std::map<std::uint64_t, std::map<std::uint64_t, std::uint64_t>> hashes_;  // by seed
 };
 
 class SameHashInABatch : public ::testing::TestWithParam<std::string> {
  protected:
-  // Worlds that are reset at different times, in an order that is not theirs, to seeds that others have too.
+  // Worlds that are reset at different times, in a mixed order, to seeds that other worlds have too.
   void expect_those_of_runs_alone(std::size_t worlds, unsigned threads) {
     Batch batch(experiment_, worlds, threads);
     std::vector<std::uint64_t> seeds(worlds, experiment_.seed);
@@ -95,7 +95,7 @@ class SameHashInABatch : public ::testing::TestWithParam<std::string> {
   RunsAlone alone_{GetParam()};
 };
 
-TEST_P(SameHashInABatch, AsTheSameSeedAloneForAnyThreadsWorldsAndResets) {
+TEST_P(SameHashInABatch, AsInASingleRunForAnyThreadsWorldsAndResets) {
   expect_those_of_runs_alone(1, 1);
   expect_those_of_runs_alone(5, 1);
   expect_those_of_runs_alone(5, 2);

@@ -7,8 +7,8 @@
 
 #include "tests/support/process.hpp"
 
-// A program that loads Cohort as a library has sin, cos … of the C library before it: calls of Bullet, and our own,
-// must not take these.
+// A program that loads Cohort as a library already has sin, cos … of the C library. Calls of Bullet, and our own, must
+// not use these.
 namespace cohort::test {
 namespace {
 
@@ -40,7 +40,7 @@ TEST_P(SameHashInALibrary, OfEveryShippedExperiment) {
 INSTANTIATE_TEST_SUITE_P(Experiments, SameHashInALibrary, testing::ValuesIn(shipped_experiments()),
                          [](const auto& name) { return name.param; });
 
-// Else the test above would pass whatever was bound.
+// Otherwise the test above would pass with any binding.
 TEST(SameHashInALibraryThatIsNotBound, CallsGoToTheCLibrary) {
   hash_from({COHORT_BUILD_DIR "/bin/load_library", COHORT_BUILD_DIR "/lib/libstep_in_library.so",
              COHORT_SOURCE_DIR "/worlds/experiments/obstacle_avoidance.yaml", "1", "unbound"});

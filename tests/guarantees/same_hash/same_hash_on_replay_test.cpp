@@ -58,7 +58,7 @@ TEST_P(SameHashOnReplay, OfAShippedExperiment) {
 INSTANTIATE_TEST_SUITE_P(Experiments, SameHashOnReplay, ::testing::ValuesIn(shipped_experiments()),
                          [](const auto& each) { return each.param; });
 
-TEST(SameHashOnReplayOf, ARunWhoseFilesAreGone) {
+TEST(SameHashOnReplayOf, ARunWithDeletedFiles) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder / "run.mcap";
   std::uint64_t ticks = 0;
@@ -69,7 +69,7 @@ TEST(SameHashOnReplayOf, ARunWhoseFilesAreGone) {
   expect_identical(verified(file), ticks + 1);
 }
 
-// Robots without a controller, joins, kills, and one that comes back.
+// Robots without a controller, late joins, kills, and a controller that returns.
 TEST(SameHashOnReplayOf, ARunWithLateJoinsAndCrashes) {
   const FieldOfRobots field(4, 10.0, ", required: false");
   const ReservedDomain domain;
@@ -92,8 +92,8 @@ TEST(SameHashOnReplayOf, ARunWithLateJoinsAndCrashes) {
   expect_identical(verified(file), 1001);
 }
 
-// Everything that `cohort ctl` does to a world, a reset with another seed, and a snapshot gone back to.
-TEST(SameHashOnReplayOf, ARunThatIsControlled) {
+// Every operation of `cohort ctl` on a world, a reset with another seed, and a return to a snapshot.
+TEST(SameHashOnReplayOf, ARunWithControlRequests) {
   const FieldOfRobots field(4, 6.0);
   const std::filesystem::path file = field / "run.mcap";
   const std::string saved = field / "saved";
@@ -129,7 +129,7 @@ TEST(SameHashOnReplayOf, ARunThatIsControlled) {
   expect_identical(verified(file, 2.41, 2.42), 2);
 }
 
-// Answers that miss their deadlines, under each policy with which a run goes on.
+// Answers that miss their deadlines, under each policy that continues the run.
 TEST(SameHashOnReplayOf, ARunWithMissedDeadlines) {
   for (const char* on_late : {"hold", "zero", "detach"}) {
     const FieldOfRobots field(3, 20.0, ", delay: 1, deadline: 0.05, on_late: " + std::string(on_late));
@@ -149,7 +149,7 @@ TEST(SameHashOnReplayOf, ARunWithMissedDeadlines) {
   }
 }
 
-// A copy of a recording in which one bit of one command of a tick is another.
+// Copies a recording and changes one bit of one command of a tick.
 void plant_a_change(const std::filesystem::path& from, const std::filesystem::path& to, std::uint64_t tick) {
   const recording::McapReader reader(from);
   std::ofstream file(to, std::ios::binary);
@@ -179,7 +179,7 @@ void plant_a_change(const std::filesystem::path& from, const std::filesystem::pa
   ASSERT_TRUE(is_planted) << "no command changes at tick " << tick;
 }
 
-TEST(SameHashOnReplayOf, ARecordingFindsOneBitOfACommandThatWasChanged) {
+TEST(SameHashOnReplayOf, ARecordingDetectsOneChangedBitOfACommand) {
   const ScratchFolder folder;
   run_demo({"--controllers", "inprocess", "--duration", "3", "--record", folder / "run.mcap"});
   std::uint64_t tick = 0;  // one whose commands changed
@@ -205,7 +205,7 @@ TEST(SameHashOnReplayOf, ARecordingFindsOneBitOfACommandThatWasChanged) {
   EXPECT_EQ(whole.out, "identical, 301 ticks\n");
 }
 
-// Of a recording that is being written.
+// Counts the boundaries of a recording that is being written.
 std::uint64_t boundaries_on_disk(const std::filesystem::path& file) {
   try {
     const Recording so_far(file);
@@ -218,8 +218,8 @@ std::uint64_t boundaries_on_disk(const std::filesystem::path& file) {
   }
 }
 
-// What was recorded before a server is killed can be replayed.
-TEST(SameHashOnReplayOf, AServerThatWasKilled) {
+// The recording of a killed server can be replayed.
+TEST(SameHashOnReplayOf, AKilledServer) {
   const FieldOfRobots field(4, 100.0);
   const ReservedDomain domain;
   const std::filesystem::path file = field / "run.mcap";

@@ -12,7 +12,7 @@ namespace {
 constexpr int robots = 64;
 constexpr int disturbances = 48;
 
-// Kills, stops, ends and delays controllers' processes at random, one after the other; what was ended is started again.
+// Kills, stops, ends and delays processes of controllers at random, one after the other; ended ones are restarted.
 class Chaos {
  public:
   explicit Chaos(const ReservedDomain& domain) : domain_(domain), controllers_(robots) {
@@ -58,8 +58,8 @@ class Chaos {
   std::mt19937 random_{20051};
 };
 
-// Under `wait`, with controllers that are functions of their observations, nothing of this leaves a trace.
-TEST(SameHashThroughChaos, OfSixtyFourProcessesThatAreKilledStoppedAndLate) {
+// Under `wait`, with controllers that are functions of their observations, none of this changes the bits.
+TEST(SameHashThroughChaos, OfSixtyFourKilledStoppedAndLateProcesses) {
   const FieldOfRobots field(robots, 20.0);  // 2000 ticks
   const auto quiet = run_experiment(field.file(), {"--controllers", "inprocess"});
   const ReservedDomain domain;

@@ -10,8 +10,8 @@
 #include "server/run/in_process.hpp"
 #include "tests/support/controlled_run.hpp"
 
-// Robots are spawned and deleted while a run goes on: two come, one of them leaves, and one that was there at first.
-// They come on request, or by events of the experiment.
+// Robots are spawned and deleted during a run: two are added, and one of them and an initial one are removed. They are
+// added by requests, or by events of the experiment.
 namespace cohort::test {
 namespace {
 
@@ -26,7 +26,7 @@ std::string hex(std::uint64_t hash) {
 
 Pose at_place(double x, double y) { return {{x, y, 0.0}, Eigen::Quaterniond::Identity()}; }
 
-// A field of robots to which others come: on request, or by events of its experiment.
+// A field of robots to which others are added: by requests, or by events of its experiment.
 enum class Come { on_request, by_events };
 
 class Field : public FieldOfRobots {
@@ -44,7 +44,7 @@ class Field : public FieldOfRobots {
   bool has_events_;
 };
 
-// The hash at the end, with controllers in this process; from a snapshot on, if there is one.
+// Returns the hash at the end, with controllers in this process, from a snapshot on if there is one.
 std::string hash_here(const Field& field, unsigned threads, const std::string& snapshot = "") {
   const auto experiment =
       parsing::read_experiment(field.file(), {}, std::chrono::milliseconds(600), {COHORT_SOURCE_DIR "/worlds/robots"});
@@ -76,7 +76,7 @@ std::string hash_here(const Field& field, unsigned threads, const std::string& s
 
 void step_to(const ControlledRun& run, std::uint64_t tick) { run.done({"step", std::to_string(tick - run.tick())}); }
 
-// What happens after the snapshot. Returns the hash at the end.
+// Does everything after the snapshot. Returns the hash at the end.
 std::string go_on(const ControlledRun& run) {
   step_to(run, two_leave);
   run.done({"remove", "swarm/late_1"});
@@ -85,7 +85,7 @@ std::string go_on(const ControlledRun& run) {
   return run.status()["state_hash"];
 }
 
-// The same of a served run, which leaves a snapshot. `hosts`: the processes of the robots that are there at first.
+// Returns the hash of a served run, which writes a snapshot. `hosts`: the processes of the initial robots.
 std::string hash_served(const Field& field, const std::vector<std::string>& hosts, const std::string& threads,
                         const std::string& snapshot) {
   const std::string recording = snapshot + ".mcap";
@@ -119,13 +119,13 @@ void expect_same_hash_everywhere(const Field& field) {
   EXPECT_EQ(hash_here(field, 2, field / "per_robot"), expected) << "from a snapshot, with controllers in the process";
 }
 
-TEST(SameHashWithRobotsThatComeAndGo, WhereverControllersAreAndWithAnyNumberOfThreads) {
+TEST(SameHashWithRobotsThatComeAndGo, ForAnyPlacementAndThreadCount) {
   expect_same_hash_everywhere(Field(Come::on_request));
 }
 
-TEST(SameHashWithRobotsThatComeAndGo, WhereEventsBringThem) { expect_same_hash_everywhere(Field(Come::by_events)); }
+TEST(SameHashWithRobotsThatComeAndGo, WithEventsThatAddThem) { expect_same_hash_everywhere(Field(Come::by_events)); }
 
-TEST(SameHashWithRobotsThatComeAndGo, WhereARunStartsTheControllersOfThoseThatEventsBring) {
+TEST(SameHashWithRobotsThatComeAndGo, WithControllersThatTheRunStartsForThem) {
   const Field field(Come::by_events);
   const auto hash = [&](const std::string& controllers, const std::string& threads) {
     const std::string recording = field / (controllers + ".mcap");
@@ -140,7 +140,7 @@ TEST(SameHashWithRobotsThatComeAndGo, WhereARunStartsTheControllersOfThoseThatEv
   EXPECT_EQ(hash("per-robot", "4"), expected);
 }
 
-TEST(SameHashWithRobotsThatComeAndGo, AfterAResetAndALoadOfARunThatStartsItsControllers) {
+TEST(SameHashWithRobotsThatComeAndGo, AfterAResetAndALoadWithControllersThatTheRunStarts) {
   const Field field(Come::by_events);
   const ReservedDomain domain;
   const std::string summary = field / "own.json";
@@ -158,7 +158,7 @@ TEST(SameHashWithRobotsThatComeAndGo, AfterAResetAndALoadOfARunThatStartsItsCont
   EXPECT_EQ(read_json(summary)["state_hash"], expected);
 }
 
-TEST(SameHashWithRobotsThatComeAndGo, InANewServerThatLoadsASnapshotFromBetween) {
+TEST(SameHashWithRobotsThatComeAndGo, InANewServerThatLoadsASnapshot) {
   const Field field(Come::on_request);
   const std::string expected = hash_served(field, {"all"}, "1", field / "snapshot");
   ControlledRun another(field, {"--paused"}, false);

@@ -1,5 +1,5 @@
-// Drives in waves, away from what is near: sums of products and functions of the C library, whose last bits differ from
-// one CPU to another if nobody takes care.
+// Drives in waves, away from near obstacles: sums of products and functions of the C library, whose last bits may
+// differ from one CPU to another.
 
 #include <cmath>
 #include <cohort/controller.hpp>

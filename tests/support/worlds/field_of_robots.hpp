@@ -27,7 +27,7 @@ class FieldOfRobots {
 
   std::string file() const { return (folder_ / "experiment.yaml").string(); }
   std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
-  /// What `serve` writes to `summary.json` here.
+  /// Returns the `summary.json` that `serve` writes here.
   nlohmann::json summary() const { return read_json(folder_ / "summary.json"); }
   std::vector<std::string> serve(const ReservedDomain& domain, const std::vector<std::string>& more = {}) const {
     std::vector<std::string> command = {

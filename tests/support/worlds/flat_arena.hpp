@@ -25,7 +25,7 @@ class FlatArena {
   };
   struct Robot {
     double x, y, heading;
-    double left = 0.0, right = 0.0;  // of the tracks [m/s]
+    double left = 0.0, right = 0.0;  // track speeds [m/s]
     bool touches = false;
   };
 

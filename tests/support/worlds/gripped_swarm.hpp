@@ -56,7 +56,7 @@ struct GrippedSwarm {
                      X_WLb.inverse() * X_WP});
     links.push_back(link);
   }
-  std::vector<std::size_t> links;  // of the grips, at a
+  std::vector<std::size_t> links;  // links of the grips, at a
 
   void drive(int tick) {
     const int every = 200;

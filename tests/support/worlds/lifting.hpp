@@ -4,7 +4,7 @@
 
 namespace cohort::test {
 
-/// Of what `with_arm` adds.
+/// The arm that `with_arm` adds.
 inline constexpr std::size_t arm_link = 2;
 inline constexpr std::size_t elevation_joint = 1;
 inline constexpr double arm_length = 0.1;  // from the elevation joint to the jaw [m]

@@ -58,9 +58,9 @@ inline std::shared_ptr<const description::HeightGrid> random_heights(const Rando
   return grid;
 }
 
-/// `count` solids in the box of `half_width` along x and y and of `half_height` along z, each of a body of its own but
-/// for every fifth, which belongs to the one before; half of them move. Below them ground of both kinds, beside them a
-/// plane as a wall, and among them walls. Built.
+/// Builds `count` solids in the box of `half_width` along x and y and of `half_height` along z. Each has a body of its
+/// own, except every fifth, which belongs to the one before; half of them move. Below them is ground of both kinds,
+/// beside them a plane as a wall, and among them are walls.
 inline Scene random_scene(std::uint64_t seed, std::uint32_t count, double half_width, double half_height) {
   const RandomStream random(seed, "random_scene", "solids");
   Scene scene;

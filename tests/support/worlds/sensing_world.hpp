@@ -11,7 +11,7 @@
 
 namespace cohort::test {
 
-/// What an IR or light sensor reads of the light that arrives.
+/// Returns the reading of an IR or light sensor for the light that arrives.
 inline double sigmoid(double x) { return 2.0 / (1.0 + std::exp(-x)) - 1.0; }
 
 /// A world whose robots are asked and told by the names of channels. Everything is added before the first tick.

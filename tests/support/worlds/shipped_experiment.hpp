@@ -60,7 +60,7 @@ class ShippedExperiment {
     return std::any_of(result.events.begin(), result.events.end(),
                        [](const session::RunEvent& event) { return event.kind == "quarantined"; });
   }
-  /// What a robot last observed; the first value of the channel.
+  /// Returns the last observation of a robot: the first value of the channel.
   double reading(std::uint32_t robot, const std::string& channel) const {
     std::size_t offset = 0;
     for (const Channel& each : simulation.kinds()[simulation.kind_of(robot)].observation) {
@@ -77,7 +77,7 @@ class ShippedExperiment {
     return count;
   }
   double seconds() const { return std::chrono::duration<double>(simulation.time()).count(); }
-  /// Of the robots, how many are no further than `radius` from a point of the plane.
+  /// Returns how many robots are no further than `radius` from a point of the plane.
   int robots_near(double x, double y, double radius) const {
     int count = 0;
     for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {

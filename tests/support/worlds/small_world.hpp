@@ -27,7 +27,7 @@ class SmallWorld {
     const double step = std::chrono::duration<double>(description.step).count();
     for (auto steps = std::lround(seconds / step); steps > 0; --steps) world().step();
   }
-  /// Of a robot as `tracked_robot` makes it.
+  /// Sets the track speeds of a robot made by `tracked_robot`.
   void drive(BodyId body, double left, double right) {
     world().set_device_target(body, DeviceId{0}, 0, left);
     world().set_device_target(body, DeviceId{0}, 1, right);
@@ -51,7 +51,7 @@ class SmallWorld {
 /// All links of a body taken together, about the origin.
 struct WholeMotion {
   double kinetic_energy = 0.0;    ///< [J]
-  double potential_energy = 0.0;  ///< of its weight, 0 at z = 0 [J]
+  double potential_energy = 0.0;  ///< by weight, 0 at z = 0 [J]
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();
 };
@@ -74,7 +74,7 @@ inline WholeMotion whole_motion(SmallWorld& small, BodyId body) {
   return sum;
 }
 
-/// Of the state of every body, and of all contacts and connections.
+/// Returns a hash of the state of every body, and of all contacts and connections.
 inline std::uint64_t hash_of(const physics::World& world) {
   StateHash hash;
   for (std::uint32_t body = 0; body < world.body_count(); ++body) world.hash_body(BodyId{body}, hash);

@@ -13,7 +13,7 @@
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/files.hpp"
 
-/// What the tests of descriptions share: worlds written on the spot, and the flaws that they are to be reported for.
+/// Shared by the tests of descriptions: worlds written on the spot, and the errors that are to be reported for them.
 namespace cohort::description {
 
 inline const std::filesystem::path source = COHORT_SOURCE_DIR;
@@ -51,7 +51,7 @@ class Description : public ::testing::Test {
   std::filesystem::path folder_ = scratch_.path();
 };
 
-/// What is wrong with what `read` reads.
+/// Returns the problems that `read` reports.
 template <class Read>
 std::vector<Problem> problems_of(Read&& read) {
   try {

@@ -37,7 +37,7 @@ TEST(PositionMotors, TakeTheirJointToAPositionAndHoldItThere) {
 }
 
 TEST(EffortMotors, GiveTheTorqueThatTheyAreTold) {
-  // What turns in the motor turns with the turret.
+  // The rotor of the motor turns with the turret.
   for (const double rotor : {0.0, 1e-3}) {
     SensingWorld world;
     world.add(robot_with(description::EffortMotor{"turret", 0, 0.1, rotor}), "robot", at(0, 0, 0));

@@ -5,7 +5,7 @@
 #include "tests/support/worlds/sensing_world.hpp"
 #include "tests/support/worlds/small_world.hpp"
 
-/// What robots do that no joint stands for, and what comes of it.
+/// Tests actions of robots that have no joint, and their reactions.
 namespace cohort {
 namespace {
 
@@ -34,7 +34,7 @@ class UserActions : public ::testing::Test {
   void close_gate_when_opened(std::vector<std::uint32_t> robots = {0, 1}) {
     react("open", std::move(robots), gate_, description::SetPresence{false}, "disable");
   }
-  // What happens in the step for which it commands this.
+  // Returns the events of the step in which the robot commands this.
   Sentences step_with(double value, std::uint32_t robot = 0, const std::string& action = "open") {
     world_.command(robot, action + "/0/value", {value});
     world_.step();
@@ -113,7 +113,7 @@ TEST_F(UserActions, BringAndRemoveThingsOnceAndSayWhyNotTwice) {
   EXPECT_EQ(step_with(1.0), Sentences{"open of 'a': add 'gate'"});
   EXPECT_TRUE(has_gate());
   step_with(0.0);
-  EXPECT_EQ(step_with(1.0), Sentences{"open of 'a': add 'gate' does nothing: it has been added already"});
+  EXPECT_EQ(step_with(1.0), Sentences{"open of 'a': add 'gate' does nothing: it has already been added"});
   EXPECT_EQ(step_with(1.0, 0, "call"), (Sentences{"enable 'gate'", "call of 'a': remove 'gate'"}));
   EXPECT_FALSE(has_gate());
   step_with(0.0);
@@ -316,7 +316,7 @@ TEST_F(EventsForEmitters, ArePartOfHashAndSnapshot) {
     restored.step();
     ASSERT_EQ(restored.state_hash(), straight.state_hash()) << "saved at tick " << tick;
   }
-  // Intensity, temperature and humidity count although nobody senses them now.
+  // Intensity, temperature and humidity count although no sensor reads them now.
   const std::uint64_t before = Simulation(world_.experiment, 1).state_hash();
   for (const EmitterChange& change :
        {changed(&EmitterChange::intensity, 3.0), changed(&EmitterChange::temperature, 3.0),

@@ -67,7 +67,7 @@ TEST(Batch, ShowsWhatASimulationWithTheSameCommandsShows) {
   Batch batch(two_kinds(), 2, 1);
   Simulation alone(two_kinds(), 1);
   const std::vector<double> drive{0.1, 0.05, 0.3};
-  std::ranges::copy(drive, batch.commands().subspan(6).begin());  // of world 1
+  std::ranges::copy(drive, batch.commands().subspan(6).begin());  // commands of world 1
   alone.set_command(0, drive);
   batch.step(4);
   batch.step();
@@ -104,7 +104,7 @@ TEST(Batch, SaysWhatIsAskedForInVain) {
   EXPECT_EQ(message_of([] { Batch(two_kinds(), 0, 1); }), "a batch needs at least one world");
   Batch batch(two_kinds(), 2, 1);
   EXPECT_EQ(message_of([&] { batch.reset(2, 1); }), "there is no world 2, expected one of 0 to 1");
-  EXPECT_EQ(message_of([&] { batch.step(0); }), "a batch is stepped by at least one tick");
+  EXPECT_EQ(message_of([&] { batch.step(0); }), "expected at least one tick");
   const std::vector<Pose> poses(2);
   EXPECT_EQ(message_of([&] { batch.reset(0, 1, poses); }),
             "got 2 poses, expected one for each of the 3 objects of the experiment");
@@ -168,7 +168,7 @@ TEST(Batch, AStopConditionEndsAWorldAtItsTick) {
   EXPECT_EQ(batch.tick(1), 9u);
 }
 
-// What its shape and surface are is kept once for all worlds.
+// Its shape and surface are kept once for all worlds.
 TEST(Batch, APostTakesLessThanHalfAKibibyteOfEachWorld) {
   constexpr std::size_t posts = 64, worlds = 64;
   const auto heap = [] { return static_cast<double>(mallinfo2().uordblks + mallinfo2().hblkhd); };

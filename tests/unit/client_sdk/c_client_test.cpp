@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-// A loop in the way of firmware, on a thread of its own so that the test can be the server.
+// A firmware-like loop on its own thread, so that the test can be the server.
 class CClientTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -32,7 +32,7 @@ class CClientTest : public testing::Test {
                   .step_ns = 10'000'000,
                   .robots = {{.robot = 0, .name = "r0"}, {.robot = 4, .name = "r4"}}});
   }
-  // The next event; fails the test and closes the client rather than wait for ever.
+  // Returns the next event; fails the test and closes the client instead of waiting without limit.
   CohortEvent next() {
     CohortEvent event{};
     auto coming = std::async(std::launch::async, [&] {
@@ -79,7 +79,7 @@ class CClientTest : public testing::Test {
   std::string error;
 };
 
-TEST_F(CClientTest, ALoopGetsStartsAndObservationsAndItsAnswersArrive) {
+TEST_F(CClientTest, ALoopReceivesStartsAndObservationsAndItsAnswersArrive) {
   EXPECT_EQ(server.join()->controller, "loop");
   EXPECT_EQ(server.join()->robots, (std::vector<std::string>{"0", "team/*"}));
   admit();
@@ -101,7 +101,7 @@ TEST_F(CClientTest, ALoopGetsStartsAndObservationsAndItsAnswersArrive) {
   EXPECT_TRUE(eventually([&] { return server.answers().back().epoch == 2; }));
 }
 
-TEST_F(CClientTest, ALookupThatFailsEndsTheLoopAndTellsTheServer) {
+TEST_F(CClientTest, AFailedLookupEndsTheLoopAndIsReportedToTheServer) {
   admit();
   const CohortEvent event = next();
   EXPECT_EQ(cohort_find_command(event.start, "count/0/dubled").size, 0u);
@@ -138,11 +138,11 @@ TEST(CClientAlone, CanBeClosedWhileItWaitsForAServer) {
   cohort_close(nullptr);
 }
 
-TEST(CClientAlone, OptionsThatCannotBeUsedAreSaid) {
+TEST(CClientAlone, InvalidOptionsAreReported) {
   const CapturedStderr told;
   const CohortOptions nobody = {nullptr, 0, ",", nullptr, nullptr};
   EXPECT_EQ(cohort_connect(&nobody), nullptr);
-  EXPECT_STREQ(cohort_last_error(), "the options name no robot");
+  EXPECT_STREQ(cohort_last_error(), "the option 'robots' is empty; expected at least one selector");
 
   const CohortOptions nowhere = {"no such host", 1, nullptr, nullptr, nullptr};
   CohortClient* client = cohort_connect(&nowhere);

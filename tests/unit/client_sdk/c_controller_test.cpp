@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-// What the callbacks of the controller under test do; C's have no closures.
+// The callbacks of the controller under test call these, since C has no closures.
 struct Script {
   std::function<int(const CohortStart*)> start = [](const CohortStart*) { return 0; };
   std::function<int(const CohortObservation*, CohortCommand*)> step = [](const CohortObservation*, CohortCommand*) {
@@ -79,7 +79,7 @@ void expect_in(const std::string& part, const std::string& text) {
   EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in '" << text << "'";
 }
 
-TEST_F(CControllerTest, IsToldWhatAControllerInCppIsTold) {
+TEST_F(CControllerTest, GetsTheSameStartAsAControllerInCpp) {
   script().start = [](const CohortStart* start) {
     const CohortStartInfo* info = cohort_start_info(start);
     EXPECT_EQ(info->robot, 3u);
@@ -128,7 +128,7 @@ TEST_F(CControllerTest, ReadsAndSetsTheChannelsThatItFinds) {
   EXPECT_TRUE(std::isnan(answer(std::numeric_limits<double>::quiet_NaN())[2])) << "passed on";
 }
 
-TEST_F(CControllerTest, AChannelThatTheRobotLacksFailsTheStartWhateverTheCallbackReturns) {
+TEST_F(CControllerTest, AMissingChannelFailsTheStartEvenIfTheCallbackSucceeds) {
   script().start = [](const CohortStart* start) {
     EXPECT_EQ(cohort_find_observation(start, "sensr/0/reading").size, 0u);
     EXPECT_NE(std::string(cohort_last_error()).find("nearest"), std::string::npos);
@@ -146,7 +146,7 @@ TEST_F(CControllerTest, AChannelThatTheRobotLacksFailsTheStartWhateverTheCallbac
   }
 }
 
-TEST_F(CControllerTest, AsksForParametersOfEveryKind) {
+TEST_F(CControllerTest, ReadsParametersOfEveryKind) {
   parameters = {
       {"gain", {"0.5"}}, {"count", {"-3"}}, {"loud", {"true"}}, {"mode", {"slow"}}, {"weights", {"1", "2", "3"}},
       {"path", {"/a"}}};
@@ -173,7 +173,7 @@ TEST_F(CControllerTest, AsksForParametersOfEveryKind) {
   EXPECT_EQ(failure_of_start(), "it did not fail");
 }
 
-TEST_F(CControllerTest, AParameterThatIsSomethingElseMissingOrLeftOverFailsTheStart) {
+TEST_F(CControllerTest, AnInvalidMissingOrUnreadParameterFailsTheStart) {
   const auto failure_with = [&](const std::string& value, const std::function<void(const CohortStart*)>& ask) {
     parameters = {{"a", {value}}};
     script().start = [&](const CohortStart* start) {
@@ -191,25 +191,25 @@ TEST_F(CControllerTest, AParameterThatIsSomethingElseMissingOrLeftOverFailsTheSt
             failure_with("1", [](const CohortStart* start) { cohort_flag(start, "a", true); }));
   expect_in("expected a number",
             failure_with("x", [](const CohortStart* start) { cohort_reals(start, "a", nullptr, 0); }));
-  expect_in("parameter 'b': the controller needs it", failure_with("1", [](const CohortStart* start) {
+  expect_in("parameter 'b': required by the controller", failure_with("1", [](const CohortStart* start) {
               cohort_real(start, "a", 0.0);
               EXPECT_STREQ(cohort_needed_text(start, "b"), "");
             }));
-  expect_in("parameter 'b': the controller needs it", failure_with("1", [](const CohortStart* start) {
+  expect_in("parameter 'b': required by the controller", failure_with("1", [](const CohortStart* start) {
               cohort_real(start, "a", 0.0);
               EXPECT_EQ(cohort_needed_real(start, "b"), 0.0);
             }));
-  expect_in("parameter 'a': the controller has no such parameter", failure_with("1", [](const CohortStart*) {}));
+  expect_in("parameter 'a': unknown parameter", failure_with("1", [](const CohortStart*) {}));
 }
 
 TEST_F(CControllerTest, ACallbackThatFailsEndsTheRunWithItsReason) {
   script().can_create = false;
-  expect_in("its create returned NULL", failure_of_start());
+  expect_in("create returned NULL", failure_of_start());
   script().can_create = true;
   script().start = [](const CohortStart*) { return cohort_fail("no %s of %d", "arm", 2); };
   expect_in("failed in start at tick 100: no arm of 2", failure_of_start());
   script().start = [](const CohortStart*) { return 7; };
-  expect_in("it returned 7 and gave no reason", failure_of_start());
+  expect_in("the callback returned 7 without an error message", failure_of_start());
 
   script().start = [](const CohortStart*) { return 0; };
   script().step = [](const CohortObservation*, CohortCommand*) { return cohort_fail("it hurts"); };
@@ -222,7 +222,7 @@ TEST_F(CControllerTest, ACallbackThatFailsEndsTheRunWithItsReason) {
   }
 }
 
-TEST_F(CControllerTest, IsCreatedOnceForEachRobotKeptAtAResetAndDestroyed) {
+TEST_F(CControllerTest, IsCreatedOncePerRobotKeptAtAResetAndDestroyed) {
   { ControllerHost unused(scripted_plugin()); }
   EXPECT_EQ(script().created, 0);
   start();

@@ -94,6 +94,33 @@ TEST_F(ClientLoopTest, AFrameIsAnsweredAsAWholeAndUnsetCommandsAreNeutral) {
   EXPECT_EQ(server.answers()[0].values, (std::vector<double>{0, 0, 0, 0, 0.25, 0.25, 0, 0, 0.5, 0, 0.25, 0.25}));
 }
 
+TEST_F(ClientLoopTest, OnlyAFrameOfFreeRobotsMayBeLeftUnanswered) {
+  admit();
+  next<LeaseStart>();
+  EXPECT_THROW(client->leave_unanswered(), std::logic_error) << "no frame";
+  take_frame(20);
+  EXPECT_THROW(client->leave_unanswered(), std::logic_error) << "robot 0 is in lockstep";
+  server.admit({.epoch = 2,
+                .tick = 30,
+                .step_ns = 10'000'000,
+                .robots = {{.robot = 0, .name = "r0", .mode = wire::Mode::free},
+                           {.robot = 4, .name = "r4", .mode = wire::Mode::free}}});
+  client->answer();
+  next<LeaseStart>();
+  const auto take = [&](std::uint64_t tick) {
+    for (;;) {
+      server.send(tick, {0.5, 0.25}, 2, {0, 4});
+      if (const auto event = client->next(std::chrono::milliseconds(50))) return std::get<Frame>(*event).tick;
+    }
+  };
+  EXPECT_EQ(take(30), 30u);
+  client->leave_unanswered();
+  EXPECT_EQ(take(31), 31u);
+  client->answer();
+  ASSERT_TRUE(eventually([&] { return !server.answers().empty() && server.answers().back().tick == 31; }));
+  for (const auto& answer : server.answers()) EXPECT_NE(answer.tick, 30u);
+}
+
 TEST_F(ClientLoopTest, ItsDescriptorIsReadableWhileAnEventWaits) {
   const auto is_readable = [&](int milliseconds) {
     pollfd watched{client->descriptor(), POLLIN, 0};
@@ -112,7 +139,7 @@ TEST_F(ClientLoopTest, ItsDescriptorIsReadableWhileAnEventWaits) {
   EXPECT_EQ(next<ClientEnded>().why, "");
 }
 
-TEST_F(ClientLoopTest, ThatWaitsForHardwareLearnsThatNobodyWantsItsAnswer) {
+TEST_F(ClientLoopTest, DetectsThatItsAnswerIsNoLongerNeeded) {
   admit();
   next<LeaseStart>();
   take_frame(20);
@@ -124,7 +151,7 @@ TEST_F(ClientLoopTest, ThatWaitsForHardwareLearnsThatNobodyWantsItsAnswer) {
   EXPECT_NE(ended.why.find("by another"), std::string::npos) << ended.why;
 }
 
-TEST_F(ClientLoopTest, ThatCannotDriveItsRobotsTellsTheServerWhy) {
+TEST_F(ClientLoopTest, ReportsToTheServerWhyItCannotDriveItsRobots) {
   admit();
   next<LeaseStart>();
   client->fail("no gripper");
@@ -155,7 +182,7 @@ TEST(ClientLoop, EndsIfItsServerCannotBeFound) {
   EXPECT_TRUE(told.contains("client: "));
 }
 
-// A loop's states, without a network: the host on a thread, the loop here.
+// States of a loop without a network: the host runs on another thread, the loop here.
 class StatesOfLoops : public testing::Test {
  protected:
   void start(LoopHost& host, HandOver& loop) {
@@ -199,10 +226,10 @@ TEST_F(StatesOfLoops, AreSavedAndLoadedRobotByRobot) {
   start(other, second_loop);
   const std::vector<std::string> notices = other.load(states);
   ASSERT_EQ(notices.size(), 1u);
-  EXPECT_NE(notices[0].find("'loop', which 'another' cannot go on from"), std::string::npos) << notices[0];
+  EXPECT_NE(notices[0].find("'loop'; 'another' cannot load it"), std::string::npos) << notices[0];
 }
 
-TEST_F(StatesOfLoops, HaveToBeReadToTheEndAndHaveALimit) {
+TEST_F(StatesOfLoops, MustBeReadCompletelyAndHaveALimit) {
   start(first, first_loop);
   auto loading = std::async(std::launch::async, [&] {
     return first.load(std::vector<RobotState>{{3, ControllerState{"loop", std::vector<std::byte>(5)}}});

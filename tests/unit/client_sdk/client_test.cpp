@@ -1,5 +1,3 @@
-#include "client_sdk/src/attachment.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "client_sdk/src/attachment.hpp"
 #include "tests/support/captured_stderr.hpp"
 #include "tests/support/counting_controller.hpp"
 #include "tests/support/fake_server.hpp"
@@ -20,7 +19,7 @@ namespace {
 
 using namespace test;
 
-// A client on a thread of its own, stopped at the latest when this goes.
+// A client on its own thread, stopped at the latest on destruction.
 class RunningClient {
  public:
   RunningClient(std::uint32_t domain, bool inline_step) {
@@ -33,7 +32,7 @@ class RunningClient {
   }
   ~RunningClient() { stop = true; }
 
-  // How it ended; empty if it goes on.
+  // Returns how it ended; empty while it runs.
   std::optional<ClientEnd> end() {
     if (end_.wait_for(patience) != std::future_status::ready) return std::nullopt;
     return end_.get();
@@ -58,7 +57,7 @@ class ClientTest : public testing::TestWithParam<bool> {
     server.admit(
         {.epoch = epoch, .start_reason = reason, .step_ns = 10'000'000, .robots = {{.robot = 0, .name = "r0"}}});
   }
-  // The answer to a frame: steps made, tick, twice the reading, reason to start.
+  // Returns the answer to a frame: number of steps, tick, twice the reading, start reason.
   std::vector<double> ask(std::uint64_t tick, double reading, std::uint64_t epoch = 1) {
     const auto answer = server.ask(tick, {reading}, epoch);
     if (!answer || answer->values.size() != 6) return {};
@@ -68,7 +67,7 @@ class ClientTest : public testing::TestWithParam<bool> {
   }
   using Values = std::vector<double>;
 
-  CapturedStderr told;  // what the user is told
+  CapturedStderr told;  // messages to the user
   FakeServer server;
   std::optional<RunningClient> client;
 };
@@ -77,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(, ClientTest, testing::Values(false, true), [](const au
   return std::string(parameter.param ? "stepping_inline" : "stepping_on_its_own_thread");
 });
 
-TEST_P(ClientTest, AJoinSaysWhoWantsWhichRobots) {
+TEST_P(ClientTest, AJoinContainsTheClientAndItsRobots) {
   const auto join = server.join();
   EXPECT_EQ(join->controller, "counting");
   EXPECT_EQ(join->robots, (std::vector<std::string>{"0", "team/*"}));
@@ -95,7 +94,7 @@ TEST_P(ClientTest, EveryFrameIsAnsweredAndOneSentAgainGetsTheSameAnswer) {
   EXPECT_EQ(ask(2, 0.0), (Values{3, 2, 0.0, 0}));
 }
 
-TEST_P(ClientTest, FramesMayComeBeforeTheAdmissionAndThatBeforeTheDescriptions) {
+TEST_P(ClientTest, FramesMayArriveBeforeTheAdmissionAndItBeforeTheDescriptions) {
   // Until the frame is known to have arrived: the channel to the client may not be open at first.
   server.send(0, {0.5});
   server.admit({.epoch = 1, .robots = {{.robot = 0, .name = "r0", .description = 7}}});
@@ -135,7 +134,7 @@ TEST_P(ClientTest, AnotherProcessTakesOver) {
   EXPECT_TRUE(told.contains("by 'other' on host h")) << told.text();
 }
 
-TEST_P(ClientTest, ARejectedAnswerIsToldOnceForEachReasonAndTheRunGoesOn) {
+TEST_P(ClientTest, ARejectedAnswerIsLoggedOncePerReasonAndTheRunContinues) {
   admit();
   ask(0, 0.5);
   for (std::uint64_t tick = 0; tick < 3; ++tick) {
@@ -152,7 +151,7 @@ TEST_P(ClientTest, ARejectedAnswerIsToldOnceForEachReasonAndTheRunGoesOn) {
   EXPECT_NE(text.find("enough"), std::string::npos);
 }
 
-TEST_P(ClientTest, AControllerThatThrowsTellsTheServerAndTheUser) {
+TEST_P(ClientTest, AnExceptionOfAControllerIsReportedToTheServerAndTheUser) {
   admit();
   ask(0, 0.5);
   server.send(1, {-1.0});
@@ -166,7 +165,7 @@ TEST_P(ClientTest, AControllerThatThrowsTellsTheServerAndTheUser) {
   EXPECT_TRUE(told.contains(report.text)) << told.text();
 }
 
-TEST_P(ClientTest, AServerThatLeavesWithoutAWordIsMissed) {
+TEST_P(ClientTest, AServerThatLeavesWithoutNoticeIsDetected) {
   admit();
   ask(0, 0.5);
   server.leave();
@@ -181,7 +180,7 @@ TEST_P(ClientTest, AStopEndsTheClient) {
   EXPECT_EQ(client->end(), ClientEnd::interrupted);
 }
 
-// Takes its time, and remembers where.
+// Steps slowly, and records the thread.
 class SlowController final : public Controller {
  public:
   explicit SlowController(std::vector<std::thread::id>& threads) : threads_(threads) {}
@@ -196,8 +195,8 @@ class SlowController final : public Controller {
   std::vector<std::thread::id>& threads_;
 };
 
-TEST(ClientAlone, LongStepsAreNotLeftToTheThreadOfDds) {
-  std::vector<std::thread::id> threads;  // of each step, one at a time
+TEST(ClientAlone, LongStepsDoNotRunOnTheDdsThread) {
+  std::vector<std::thread::id> threads;  // thread of each step; steps do not overlap
   const ControllerKind slow{
       "slow",
       [&] { return OwnedController(new SlowController(threads), [](Controller* controller) { delete controller; }); }};
@@ -223,7 +222,7 @@ TEST(ClientAlone, LongStepsAreNotLeftToTheThreadOfDds) {
   EXPECT_EQ(std::count(threads.end() - 5, threads.end(), own), 5);
 }
 
-TEST(ClientAlone, WaitsForAServerSaysSoAndFindsItWhenItComes) {
+TEST(ClientAlone, WaitsForAServerAndFindsItWhenItStarts) {
   const std::uint32_t domain = find_empty_domain();
   const CapturedStderr told;
   RunningClient client(domain, false);

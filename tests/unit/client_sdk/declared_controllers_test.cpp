@@ -1,4 +1,4 @@
-// The controllers that an experiment sets up without code.
+// Controllers that experiments configure without code.
 
 #include <gtest/gtest.h>
 
@@ -44,19 +44,19 @@ class DeclaredController : public testing::Test {
   std::optional<ControllerHost> host_;
 };
 
-TEST_F(DeclaredController, ConstantGivesItsValuesAndLeavesTheRestNeutral) {
+TEST_F(DeclaredController, ConstantSendsItsValuesAndKeepsTheRestNeutral) {
   start("constant", {{"wheel/right/velocity", {"0.25"}}, {"lamp/0/rgb", {"1", "0", "0.1"}}});
   EXPECT_EQ(answer({9, 9, 9, 9, 9}), (std::vector<double>{0, 0.25, 1, 0, 0.1}));
 }
 
-TEST_F(DeclaredController, ConstantRefusesWhatTheChannelCannotTake) {
+TEST_F(DeclaredController, ConstantRefusesValuesOutsideOfTheChannelsRange) {
   EXPECT_NE(failure_of("constant", {{"wheel/right/velocity", {"1.5"}}}).find("at most 1"), std::string::npos);
   EXPECT_NE(failure_of("constant", {{"lamp/0/rgb", {"1"}}}).find("expected 3 values, not 1"), std::string::npos);
   EXPECT_NE(failure_of("constant", {{"weel/right/velocity", {"1"}}}).find("the nearest are wheel/right/velocity"),
             std::string::npos);
 }
 
-TEST_F(DeclaredController, BraitenbergWeighsWhatIsSensedAndKeepsToTheRange) {
+TEST_F(DeclaredController, BraitenbergSumsWeightedObservationsWithinTheRange) {
   start("braitenberg", {{"wheel/left/velocity.bias", {"0.5"}},
                         {"wheel/left/velocity.eye/*/reading", {"-1", "0.5"}},
                         {"wheel/right/velocity.eye/1/reading", {"2"}},
@@ -72,7 +72,7 @@ TEST_F(DeclaredController, BraitenbergExplainsWrongWeights) {
     const std::string failure = failure_of("braitenberg", std::move(parameters));
     EXPECT_NE(failure.find(text), std::string::npos) << failure;
   };
-  has({}, "needs parameters");
+  has({}, "no parameters given");
   has({{"wheel/left/velocity.eye/*/reading", {"1", "2", "3"}}}, "expected one weight or 2");
   has({{"wheel/left/velocity.ear/0/reading", {"1"}}}, "the nearest are eye/0/reading");
   has({{"wheel/left/velocty.bias", {"1"}}}, "the nearest are wheel/left/velocity");

@@ -46,14 +46,14 @@ class FrameQueueTest : public testing::Test {
   FrameQueue queue;
 };
 
-TEST_F(FrameQueueTest, FramesThatComeBeforeTheirLeaseWaitForIt) {
+TEST_F(FrameQueueTest, FramesThatArriveBeforeTheirLeaseWaitForIt) {
   arrive(0);
   EXPECT_EQ(queue.next(), nullptr);
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   EXPECT_EQ(answer_all(), Ticks{0});
 }
 
-TEST_F(FrameQueueTest, AFrameThatComesAgainIsAnsweredOnceAndThenFromMemory) {
+TEST_F(FrameQueueTest, ARepeatedFrameIsAnsweredOnceAndThenFromMemory) {
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   arrive(0);
   arrive(0);
@@ -65,7 +65,7 @@ TEST_F(FrameQueueTest, AFrameThatComesAgainIsAnsweredOnceAndThenFromMemory) {
   EXPECT_EQ(repeat(), std::nullopt);
 }
 
-TEST_F(FrameQueueTest, AFrameThatComesAgainWhileItIsBeingAnsweredNeedsNothingMore) {
+TEST_F(FrameQueueTest, AFrameRepeatedWhileItIsBeingAnsweredIsIgnored) {
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   arrive(0);
   ASSERT_NE(queue.next(), nullptr);
@@ -87,7 +87,7 @@ TEST_F(FrameQueueTest, TheLastEightAnswersAreKept) {
   EXPECT_EQ(repeat(), 12u);
 }
 
-TEST_F(FrameQueueTest, AsManyAnswersAreKeptAsFramesCanBeUnderWay) {
+TEST_F(FrameQueueTest, AnAnswerIsKeptForEachFrameThatCanBeOut) {
   queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 12}}));
   for (std::uint64_t tick = 0; tick < 20; ++tick) {
     arrive(tick);
@@ -106,15 +106,15 @@ TEST_F(FrameQueueTest, FramesOfAnEarlierEpochAreDropped) {
   EXPECT_EQ(answer_all(), Ticks{0});
 }
 
-// Whose runs begin at 1 again.
-TEST_F(FrameQueueTest, OfAServerThatIsStartedInAnothersPlaceTheFramesAreNewer) {
+// The runs of the new server begin at 1 again.
+TEST_F(FrameQueueTest, TheFramesOfAReplacementServerAreNewer) {
   queue.begin(lease(7, 5, 0, {{.robot = 3}}));
   arrive(0, 9, 1);
   queue.begin(lease(1, 9, 0, {{.robot = 3}}));
   EXPECT_EQ(answer_all(), Ticks{0});
 }
 
-TEST_F(FrameQueueTest, ANewLeaseForgetsTheAnswersAndKeepsTheFramesSentUnderIt) {
+TEST_F(FrameQueueTest, ANewLeaseDiscardsTheAnswersAndKeepsItsFrames) {
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   arrive(0);
   answer_all();
@@ -134,7 +134,7 @@ TEST_F(FrameQueueTest, FramesBeforeTheFirstOfTheLeaseAreDropped) {
   EXPECT_EQ(answer_all(), Ticks{5});
 }
 
-TEST_F(FrameQueueTest, WithADelayAFrameThatWasLostIsAwaitedBeforeTheNextIsAnswered) {
+TEST_F(FrameQueueTest, WithADelayALostFrameIsAwaitedBeforeTheNextIsAnswered) {
   queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 2}}));
   arrive(1);
   arrive(2);
@@ -151,7 +151,7 @@ TEST_F(FrameQueueTest, AFrameThatTheServerHasGivenUpIsNotAwaited) {
   EXPECT_EQ(answer_all(), (Ticks{1, 2, 3})) << "3 is out, so the server needs no answer to 0 any more";
 }
 
-TEST_F(FrameQueueTest, AFrameThatKeepsComingWithoutTheOneBeforeItIsAnsweredInTheEnd) {
+TEST_F(FrameQueueTest, AFrameRepeatedWithoutItsPredecessorIsFinallyAnswered) {
   queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 2}}));
   arrive(1);
   for (int i = 0; i < 7; ++i) arrive(1);
@@ -179,7 +179,7 @@ TEST_F(FrameQueueTest, TicksAtWhichNoRobotIsDueAreNotAwaited) {
   EXPECT_EQ(answer_all(), (Ticks{6, 9}));
 }
 
-TEST_F(FrameQueueTest, OfAFreeRobotsFramesTheNewestIsAnswered) {
+TEST_F(FrameQueueTest, OnlyTheNewestFrameOfAFreeRobotIsAnswered) {
   queue.begin(lease(0, 1, 0, {{.robot = 3, .mode = wire::Mode::free}}));
   arrive(2);
   arrive(5);
@@ -189,7 +189,7 @@ TEST_F(FrameQueueTest, OfAFreeRobotsFramesTheNewestIsAnswered) {
   EXPECT_EQ(answer_all(), Ticks{9});
 }
 
-TEST_F(FrameQueueTest, AnAnswerNamesTheCopyOfTheFrameThatItIsTo) {
+TEST_F(FrameQueueTest, AnAnswerNamesTheCopyOfItsFrame) {
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   const std::vector<std::uint32_t> robots{3};
   const std::vector<double> values{0.0};

@@ -30,7 +30,7 @@ wire::RobotDescription sbot() {
   return description;
 }
 
-// The example as it ships, at the controls of the robots of a flat arena.
+// The shipped example, driving the robots of a flat arena.
 class ObstacleAvoidanceTest : public testing::Test {
  protected:
   void place(double x, double y, double heading) { arena.robots.push_back({.x = x, .y = y, .heading = heading}); }
@@ -95,7 +95,7 @@ TEST_F(ObstacleAvoidanceTest, SixteenRobotsCoverAnArenaWithObstaclesAndHardlyTou
   EXPECT_GT(visited.size(), 280u) << "of 400, some of which are within obstacles";
 }
 
-TEST_F(ObstacleAvoidanceTest, ARobotThatDrivesStraightIntoACornerGetsOutOfIt) {
+TEST_F(ObstacleAvoidanceTest, ARobotThatDrivesIntoACornerGetsOutOfIt) {
   place(1.5, 1.5, pi / 4);
   start();
   bool was_in_it = false;
@@ -121,7 +121,7 @@ TEST_F(ObstacleAvoidanceTest, TwoRobotsThatMeetHeadOnPassEachOther) {
   EXPECT_GT(std::hypot(arena.robots[0].x - arena.robots[1].x, arena.robots[0].y - arena.robots[1].y), 0.5);
 }
 
-TEST_F(ObstacleAvoidanceTest, WhatIsOnTheLeftSlowsTheRightTrack) {
+TEST_F(ObstacleAvoidanceTest, AnObstacleOnTheLeftSlowsTheRightTrack) {
   place(0.0, 0.0, 0.0);
   start();
   std::vector<double> observed(16, 0.0);
@@ -131,7 +131,7 @@ TEST_F(ObstacleAvoidanceTest, WhatIsOnTheLeftSlowsTheRightTrack) {
   EXPECT_LT(command(observed)[1], 0.2);
 }
 
-TEST_F(ObstacleAvoidanceTest, TheAnswerDependsOnTheObservationAlone) {
+TEST_F(ObstacleAvoidanceTest, TheAnswerDependsOnlyOnTheObservation) {
   place(0.0, 0.0, 0.0);
   start();
   std::vector<double> near(16, 0.9);

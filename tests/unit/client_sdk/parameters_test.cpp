@@ -26,7 +26,7 @@ std::string message_of(const std::function<void()>& call) {
   return "";
 }
 
-TEST(ParametersTest, GivesWhatTheFileSaysAndElseTheFallback) {
+TEST(ParametersTest, ReturnsTheValueOfTheFileOrTheFallback) {
   const Parameters parameters = some();
   EXPECT_EQ(parameters.real("gain", 7.0), -0.015);
   EXPECT_EQ(parameters.real("plus"), 2.0);
@@ -42,7 +42,7 @@ TEST(ParametersTest, GivesWhatTheFileSaysAndElseTheFallback) {
   EXPECT_TRUE(parameters.flag("absent", true));
 }
 
-TEST(ParametersTest, SaysWhatIsWrongWithAValue) {
+TEST(ParametersTest, ReportsAnInvalidValue) {
   const Parameters parameters = some();
   EXPECT_EQ(message_of([&] { parameters.real("text"); }), "parameter 'text': expected a number, not '1,5'");
   EXPECT_EQ(message_of([&] { parameters.real("weights", 0.0); }),
@@ -53,17 +53,17 @@ TEST(ParametersTest, SaysWhatIsWrongWithAValue) {
             "parameter 'gain': expected true or false, not '-1.5e-2'");
   EXPECT_EQ(message_of([&] { parameters.text("none"); }), "parameter 'none': expected a single value, not []");
   EXPECT_EQ(message_of([&] { parameters.real("absent"); }),
-            "parameter 'absent': the controller needs it, and it is not given");
+            "parameter 'absent': required by the controller, but not given");
 }
 
-TEST(ParametersTest, ThatNobodyAskedForAreAMistakeOfTheFile) {
+TEST(ParametersTest, ThatAreNotReadAreAnErrorOfTheFile) {
   const Parameters misspelt(std::vector{Parameter{"gian", {"1"}}});
   EXPECT_EQ(message_of([&] { misspelt.check_all_were_asked_for(); }),
-            "parameter 'gian': the controller has no such parameter, and no other either");
+            "parameter 'gian': unknown parameter; the controller has no parameters");
   misspelt.real("gain", 1.0);
   misspelt.real("speed", 1.0);
   EXPECT_EQ(message_of([&] { misspelt.check_all_were_asked_for(); }),
-            "parameter 'gian': the controller has no such parameter; the nearest are gain, speed");
+            "parameter 'gian': unknown parameter; the nearest are gain, speed");
   misspelt.has("gian");
   EXPECT_EQ(message_of([&] { misspelt.check_all_were_asked_for(); }), "");
 }

@@ -18,7 +18,7 @@ using namespace test;
 
 class PluginFiles : public ::testing::Test {
  protected:
-  // What is wrong with a plugin of these bytes; nothing if it could be loaded.
+  // Returns the error of a plugin of these bytes; nothing if it could be loaded.
   std::string mistake_in(const std::string& bytes) const {
     write_file(file_, bytes);
     try {
@@ -41,9 +41,9 @@ class PluginFiles : public ::testing::Test {
   std::filesystem::path file_ = folder_ / "plugin.so";
 };
 
-TEST_F(PluginFiles, OfThisBuildAreRight) { EXPECT_EQ(mistake_in(plugin_), ""); }
+TEST_F(PluginFiles, OfThisBuildAreAccepted) { EXPECT_EQ(mistake_in(plugin_), ""); }
 
-TEST_F(PluginFiles, ThatAreCutOffAreRefused) {
+TEST_F(PluginFiles, ThatAreTruncatedAreRefused) {
   for (std::size_t size = 0; size < plugin_.size(); size += size < 128 ? 1 : plugin_.size() / 64)
     EXPECT_NE(mistake_in(plugin_.substr(0, size)), "") << size;
 }
@@ -53,7 +53,7 @@ TEST_F(PluginFiles, WithTablesBeyondTheirEndAreDamaged) {
     for (const std::uint64_t offset : {std::uint64_t{plugin_.size()}, ~std::uint64_t{0}}) {
       std::string bytes = plugin_;
       std::memcpy(bytes.data() + place, &offset, sizeof offset);
-      EXPECT_NE(mistake_in(bytes).find("is damaged: a table lies beyond its end"), std::string::npos);
+      EXPECT_NE(mistake_in(bytes).find("is damaged: a table lies beyond the end of the file"), std::string::npos);
     }
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using namespace test;
 
-// What `call` throws, as text.
+// Returns the message of the exception that `call` throws.
 template <class Error, class Call>
 std::string message_of(Call call) {
   try {
@@ -58,7 +58,7 @@ TEST(StartLookup, FindsAChannelByItsName) {
   EXPECT_EQ(right.upper, 0.2);
 }
 
-TEST(StartLookup, AStarStandsForAnyRunOfCharactersButASlash) {
+TEST(StartLookup, AStarMatchesAnyCharactersExceptASlash) {
   const Start start = sbot_start();
   EXPECT_EQ(start.observations("proximity/*/reading").size(), 15u);
   EXPECT_EQ(start.observations("proximity/*/reading")[3].offset, 3u);
@@ -69,14 +69,14 @@ TEST(StartLookup, AStarStandsForAnyRunOfCharactersButASlash) {
   EXPECT_THROW(start.observations("proximity/*"), ChannelError);
 }
 
-TEST(StartLookup, AsManyChannelsMatchAsTheControllerWants) {
+TEST(StartLookup, ChecksTheNumberOfMatchingChannels) {
   const Start start = sbot_start();
   EXPECT_EQ(start.observations("proximity/*/reading", 15).size(), 15u);
   EXPECT_TRUE(contains(message_of<ChannelError>([&] { start.observations("proximity/*/reading", 8); }),
-                       "has 15 observation channels 'proximity/*/reading', and not 8"));
+                       "has 15 observation channels 'proximity/*/reading', expected 8"));
 }
 
-TEST(StartLookup, AMisspeltNameIsAnsweredWithTheNearestOnes) {
+TEST(StartLookup, AMisspelledNameIsReportedWithTheNearestNames) {
   const Start start = sbot_start();
   const std::string message = message_of<ChannelError>([&] { start.observation("proximty/3/reading"); });
   EXPECT_TRUE(contains(message, "robot 'explorers/sbot_7' (sbot) has no observation channel 'proximty/3/reading'"));
@@ -84,7 +84,7 @@ TEST(StartLookup, AMisspeltNameIsAnsweredWithTheNearestOnes) {
   EXPECT_TRUE(contains(message_of<ChannelError>([&] { start.commands("treels/*/velocity"); }), "treel/left/velocity"));
 }
 
-TEST(CommandValues, AreBroughtIntoTheirRangeButNanIsPassedOn) {
+TEST(CommandValues, AreClampedToTheirRangeButNanIsPassedOn) {
   std::vector<double> values(2);
   Command command(values);
   const CommandChannel right = sbot_start().command("treel/right/velocity");
@@ -150,13 +150,13 @@ TEST_F(ControllerHostTest, AResetAndARestoreKeepTheControllersAndATakeoverMakesN
   EXPECT_EQ(answer(102, {2}, {0}), (std::vector<double>{1, 102, 0, 1, 0.25, 0.25}));
 }
 
-TEST_F(ControllerHostTest, AControllerThatThrowsIsNamedWithRobotTickAndReason) {
+TEST_F(ControllerHostTest, AnExceptionIsReportedWithRobotTickAndReason) {
   start();
   const std::string message = message_of<ControllerFailure>([&] { answer(123, {2, 5}, {0, -1}); });
   EXPECT_TRUE(contains(message, "robot 'r5' failed in step at tick 123: it hurts"));
 }
 
-TEST_F(ControllerHostTest, WhateverAControllerThrowsIsAControllerFailure) {
+TEST_F(ControllerHostTest, AnyExceptionIsAControllerFailure) {
   struct OddController final : Controller {
     void start(const Start&) override { throw 42; }
     void step(const Observation&, Command&) override {}
@@ -168,12 +168,12 @@ TEST_F(ControllerHostTest, WhateverAControllerThrowsIsAControllerFailure) {
   EXPECT_TRUE(contains(message, "robot 'r0' failed in start"));
 }
 
-TEST_F(ControllerHostTest, AChannelThatTheRobotLacksFailsTheStartWithTheNearestNames) {
+TEST_F(ControllerHostTest, AMissingChannelFailsTheStartWithTheNearestNames) {
   descriptions[0].observation[0].name = "sensor/0/readin";
   EXPECT_TRUE(contains(message_of<ControllerFailure>([&] { start(); }), "the nearest are sensor/0/readin"));
 }
 
-TEST_F(ControllerHostTest, AFrameThatDoesNotFitTheDescriptionsIsRefused) {
+TEST_F(ControllerHostTest, AFrameThatDoesNotMatchTheDescriptionsIsRefused) {
   start();
   EXPECT_TRUE(contains(message_of<ControllerFailure>([&] { answer(100, {2, 5}, {0}); }), "has 1 values"));
   EXPECT_TRUE(contains(message_of<ControllerFailure>([&] { answer(100, {4}, {0}); }), "robot 4"));
@@ -183,7 +183,7 @@ TEST_F(ControllerHostTest, AFrameThatDoesNotFitTheDescriptionsIsRefused) {
 
 class PluginLoaderTest : public testing::Test {
  protected:
-  // A shared object made of C source; false without a compiler at hand.
+  // Compiles C source to a shared object; returns false without a compiler.
   bool compile(const std::string& name, const std::string& source) {
     std::ofstream(folder / "source.c") << source;
     const std::string command = "cc -shared -fPIC -o '" + (folder / (name + ".so")).string() + "' '" +
@@ -195,7 +195,7 @@ class PluginLoaderTest : public testing::Test {
   std::filesystem::path folder = scratch.path();
 };
 
-TEST_F(PluginLoaderTest, APluginThatIsNowhereIsAnsweredWithThePlacesTried) {
+TEST_F(PluginLoaderTest, AMissingPluginIsReportedWithTheSearchedPaths) {
   const std::string message = message_of<std::runtime_error>([&] {
     LoadedPlugin("no_such", {folder, folder / "deeper"});
   });
@@ -204,13 +204,13 @@ TEST_F(PluginLoaderTest, APluginThatIsNowhereIsAnsweredWithThePlacesTried) {
   EXPECT_TRUE(contains(message, "COHORT_PLUGIN_PATH"));
 }
 
-TEST_F(PluginLoaderTest, AFileThatIsNoLibraryIsRefused) {
+TEST_F(PluginLoaderTest, AFileThatIsNotALibraryIsRefused) {
   std::ofstream(folder / "text.so") << "hello";
   EXPECT_TRUE(
       contains(message_of<std::runtime_error>([&] { LoadedPlugin("text", {folder}); }), "is not a shared object"));
 }
 
-TEST_F(PluginLoaderTest, ALibraryThatIsNoPluginIsRefused) {
+TEST_F(PluginLoaderTest, ALibraryThatIsNotAPluginIsRefused) {
   Dl_info libc{};
   ASSERT_NE(::dladdr(reinterpret_cast<void*>(&std::atoi), &libc), 0);
   std::filesystem::create_symlink(std::filesystem::absolute(libc.dli_fname), folder / "libc.so");
@@ -224,10 +224,10 @@ TEST_F(PluginLoaderTest, APluginOfAnotherVersionIsRefused) {
   }
   const std::string message = message_of<std::runtime_error>([&] { LoadedPlugin("old", {folder}); });
   EXPECT_TRUE(contains(message, "version 77"));
-  EXPECT_TRUE(contains(message, "Build it again"));
+  EXPECT_TRUE(contains(message, "Rebuild the plugin"));
 }
 
-TEST_F(PluginLoaderTest, ThePathOfPluginsComesBeforeTheFoldersBesideTheProgram) {
+TEST_F(PluginLoaderTest, ThePluginPathPrecedesTheFoldersOfTheProgram) {
   ::setenv("COHORT_PLUGIN_PATH", "/first::/second", 1);
   const auto directories = default_plugin_directories();
   ::unsetenv("COHORT_PLUGIN_PATH");

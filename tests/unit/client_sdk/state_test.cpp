@@ -65,7 +65,7 @@ TEST(State, ThatCannotBeIsRefused) {
   EXPECT_THROW(StateReader(words.bytes()).read(random), StateError);
 }
 
-TEST(State, OfRobotsTravelsAsBytes) {
+TEST(State, OfRobotsIsPackedAsBytes) {
   const std::vector<RobotState> states = {
       {2, ControllerState{"Counting", Bytes(5, std::byte{1})}}, {3, {}}, {7, ControllerState{"Other", {}}}};
   const Bytes packed = pack(states);
@@ -84,7 +84,7 @@ TEST(State, OfRobotsTravelsAsBytes) {
   EXPECT_THROW(unpack(twice), StateError) << "its robots do not ascend";
 }
 
-TEST(StateParts, AreAskedForUntilAllIsThere) {
+TEST(StateParts, AreRequestedUntilTheStateIsComplete) {
   const Bytes all(wire::largest_state_part + 10, std::byte{9});
   StateParts parts;
   parts.begin(all.size(), 100ms);
@@ -120,7 +120,7 @@ TEST(StateParts, ThatDoNotFitAreRefused) {
   EXPECT_TRUE(parts.is_complete());
 }
 
-// Counts its steps, and saves how many they are.
+// Counts its steps, and saves the count.
 class RememberingController : public Controller {
  public:
   void start(const Start& start) override {
@@ -169,6 +169,25 @@ class RememberedState : public testing::Test {
   std::vector<wire::RobotDescription> descriptions{CountingController::description()};
 };
 
+class ForgetfulController final : public StatelessController {
+ public:
+  void start(const Start&) override {}
+  void step(const Observation&, Command&) override {}
+};
+
+TEST_F(RememberedState, OfAStatelessControllerIsSavedAsNothing) {
+  ControllerHost host(
+      {"forgetful", [] { return OwnedController(new ForgetfulController, [](Controller* it) { delete it; }); }});
+  start(host);
+  const std::vector<RobotState> states = host.save();
+  ASSERT_EQ(states.size(), 2u);
+  for (const RobotState& each : states) {
+    ASSERT_TRUE(each.state.has_value()) << "it is not left out";
+    EXPECT_TRUE(each.state->bytes.empty());
+  }
+  host.load(states);
+}
+
 TEST_F(RememberedState, GoesOnInAnotherProcess) {
   ControllerHost host(remembering());
   start(host);
@@ -200,7 +219,7 @@ TEST_F(RememberedState, IsNeverAskedOfAPluginOfAnOlderInterface) {
   EXPECT_EQ(host.load(std::vector{RobotState{3, ControllerState{"counting", Bytes(4)}}}).size(), 1u);
 }
 
-TEST_F(RememberedState, OfOtherControllersIsToldToBeOfNoUse) {
+TEST_F(RememberedState, OfOtherControllersIsReportedAsUnusable) {
   ControllerHost host(remembering());
   start(host);
   const ControllerState foreign{"Foreign", Bytes(4, std::byte{1})};
@@ -218,12 +237,12 @@ TEST_F(RememberedState, ThatCannotBeLoadedNamesTheRobotAndTheReason) {
   EXPECT_NE(thrown.find("'r4' failed in load"), std::string::npos) << thrown;
   EXPECT_NE(thrown.find("that cannot be"), std::string::npos) << thrown;
   const std::string early = failure_of_load(state_of(Bytes(3)));
-  EXPECT_NE(early.find("ends too early"), std::string::npos) << early;
+  EXPECT_NE(early.find("unexpected end"), std::string::npos) << early;
   const std::string left = failure_of_load(state_of(Bytes(6)));
-  EXPECT_NE(left.find("left 2 of 6 bytes"), std::string::npos) << left;
+  EXPECT_NE(left.find("did not read 2 of 6 bytes"), std::string::npos) << left;
 }
 
-TEST_F(RememberedState, OfMoreThanItsBoundIsNotSavedAndNothingElseFails) {
+TEST_F(RememberedState, AboveItsLimitIsNotSavedAndNothingElseFails) {
   class Hoarding final : public RememberingController {
     void save(StateWriter& state) const override { state.write(std::vector<double>(largest_state / 8)); }
   };
@@ -234,7 +253,7 @@ TEST_F(RememberedState, OfMoreThanItsBoundIsNotSavedAndNothingElseFails) {
     ADD_FAILURE() << "it did not fail";
   } catch (const SaveFailure& failure) {
     EXPECT_NE(std::string(failure.what()).find("'r3' failed in save"), std::string::npos) << failure.what();
-    EXPECT_NE(std::string(failure.what()).find("1048576 are the most"), std::string::npos) << failure.what();
+    EXPECT_NE(std::string(failure.what()).find("the maximum is 1048576"), std::string::npos) << failure.what();
   }
   EXPECT_EQ(steps_of(host, 3), 1.0) << "it goes on";
 }
@@ -297,7 +316,7 @@ TEST_F(RememberedState, IsSavedAndLoadedByCallbacksInC) {
   EXPECT_FALSE(without.save()[0].state);
 }
 
-TEST_F(RememberedState, ThatEndsTooEarlyFailsALoadInCWhateverItReturns) {
+TEST_F(RememberedState, ThatEndsTooEarlyFailsALoadInCEvenIfItSucceeds) {
   const auto failure = [&](const StateWriter& writer) -> std::string {
     ControllerHost host(in_c(true));
     start(host);
@@ -310,10 +329,10 @@ TEST_F(RememberedState, ThatEndsTooEarlyFailsALoadInCWhateverItReturns) {
   };
   StateWriter cut;
   cut.write(0.5, std::int64_t{4});
-  EXPECT_NE(failure(cut).find("ends too early"), std::string::npos) << failure(cut);
+  EXPECT_NE(failure(cut).find("unexpected end"), std::string::npos) << failure(cut);
   StateWriter other_size;
   other_size.write(0.5, std::int64_t{4}, true, std::string("abcd"));
-  EXPECT_NE(failure(other_size).find("4 bytes where 3"), std::string::npos) << failure(other_size);
+  EXPECT_NE(failure(other_size).find("expected 3 bytes, not 4"), std::string::npos) << failure(other_size);
   StateWriter refused;
   refused.write(0.5, std::int64_t{1}, true, std::string("abc"));
   EXPECT_NE(failure(refused).find("one is too few"), std::string::npos) << failure(refused);

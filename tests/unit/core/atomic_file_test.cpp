@@ -53,7 +53,7 @@ class ShortFiles {
   void (*handler_)(int);
 };
 
-TEST(AtomicFile, TakesThePlaceOfWhatWasThereOnceItIsWhole) {
+TEST(AtomicFile, ReplacesAnExistingFileOnceComplete) {
   const ScratchFolder folder;
   put(folder / "a", "first");
   EXPECT_EQ(read_file(folder / "a"), "first");
@@ -68,7 +68,7 @@ TEST(AtomicFile, TakesThePlaceOfWhatWasThereOnceItIsWhole) {
   EXPECT_EQ(entries(folder), 1u);
 }
 
-TEST(AtomicFile, LeavesWhatWasThereWhereItCannotBeWritten) {
+TEST(AtomicFile, KeepsAnExistingFileIfWritingFails) {
   const ScratchFolder folder;
   put(folder / "a", "good");
   {
@@ -88,7 +88,7 @@ TEST(AtomicFile, LeavesWhatWasThereWhereItCannotBeWritten) {
   EXPECT_THROW(put(folder / ".", ""), std::runtime_error);
 }
 
-TEST(AtomicFile, FollowsNoLinkAndKeepsPermissions) {
+TEST(AtomicFile, ReplacesLinksAndKeepsPermissions) {
   const ScratchFolder folder;
   write_file(folder / "theirs", "theirs");
   std::filesystem::create_symlink(folder / "theirs", folder / "a");
@@ -103,7 +103,7 @@ TEST(AtomicFile, FollowsNoLinkAndKeepsPermissions) {
   EXPECT_EQ(mode_of(folder / "new"), mode_of(folder / "usual"));
 }
 
-TEST(AtomicFile, WritesToWhatIsNoFileAsItIs) {
+TEST(AtomicFile, WritesToSpecialFilesInPlace) {
   put("/dev/null", "nothing");
   EXPECT_THROW(put("/dev/full", "something"), std::runtime_error);
   EXPECT_FALSE(std::filesystem::is_regular_file("/dev/null"));

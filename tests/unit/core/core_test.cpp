@@ -74,7 +74,7 @@ TEST(StateHash, DependsOnValuesOrderAndCount) {
   EXPECT_NE(hash_of({1.0}), hash_of({std::nextafter(1.0, 2.0)})) << "one bit counts";
 }
 
-TEST(PortableMath, IsWhatEveryLibraryOfThisProgramCalls) { EXPECT_TRUE(functions_not_portable().empty()); }
+TEST(PortableMath, IsUsedByEveryLibraryOfThisProgram) { EXPECT_TRUE(functions_not_portable().empty()); }
 
 // The C library's own function, which ours hide.
 template <class Function>
@@ -162,7 +162,7 @@ TEST(PortableMath, PowAgreesWithTheCLibraryWithinAnUlpAndInEveryCorner) {
     }
 }
 
-TEST(PortableMath, WholePowersThatADoubleHoldsAreExact) {
+TEST(PortableMath, RepresentableIntegerPowersAreExact) {
   for (int base = 1; base <= 100; ++base) {
     double power = 1.0;
     for (int exponent = 0; power < 0x1p53; ++exponent, power *= base) {

@@ -11,14 +11,14 @@
 namespace cohort {
 namespace {
 
-TEST(Ids, CostNoMoreThanTheirNumber) {
+TEST(Ids, TakeNoMoreSpaceThanTheirNumber) {
   static_assert(sizeof(BodyId) == sizeof(std::uint32_t));
   static_assert(std::is_trivially_copyable_v<BodyId>);
   EXPECT_LT(LinkId{1}, LinkId{2});
   EXPECT_EQ(LinkId{std::size_t{7}}.value, 7u);
 }
 
-TEST(Ids, OfOneKindAreNeitherAnotherKindNorANumber) {
+TEST(Ids, DoNotConvertToOtherKindsOrNumbers) {
   static_assert(!std::convertible_to<JointId, LinkId>);
   static_assert(!std::constructible_from<LinkId, JointId>);
   static_assert(!std::equality_comparable_with<JointId, LinkId>);

@@ -7,12 +7,12 @@ namespace {
 
 constexpr const char* unknown = "\xef\xbf\xbd";
 
-TEST(Printable, LeavesTextAsItIs) {
+TEST(Printable, KeepsPlainText) {
   for (const std::string text : {"", "swarm/sbot_7", "Größe 3 µm", "\u20ac \U0001f916 \ufffd"})
     EXPECT_EQ(printable(text), text);
 }
 
-TEST(Printable, HasOneMarkForEachPartThatIsNoUtf8) {
+TEST(Printable, ReplacesEachInvalidUtf8PartByOneMark) {
   EXPECT_EQ(printable("a\xff\xfez"), std::string("a") + unknown + unknown + "z");
   EXPECT_EQ(printable("cut \xe2\x82"), std::string("cut ") + unknown) << "of one character";
   EXPECT_EQ(printable("\xc3("), std::string(unknown) + "(") << "what follows stays";
@@ -21,7 +21,7 @@ TEST(Printable, HasOneMarkForEachPartThatIsNoUtf8) {
   EXPECT_EQ(printable("\xf4\x90\x80\x80").find('\xf4'), std::string::npos) << "beyond Unicode";
 }
 
-TEST(Printable, HasNothingThatATerminalObeys) {
+TEST(Printable, ContainsNoTerminalControls) {
   EXPECT_EQ(printable("\x1b[2J"), std::string(unknown) + "[2J");
   EXPECT_EQ(printable("\xc2\x9b"
                       "2J"),
@@ -37,7 +37,7 @@ TEST(Printable, IsOneLineUnlessLinesAreKept) {
   EXPECT_EQ(printable("one\ntwo\tthree\r", std::string::npos, Lines::kept), "one\ntwo\tthree ");
 }
 
-TEST(Printable, IsCutBetweenCharactersAndSaysSo) {
+TEST(Printable, IsCutBetweenCharactersWithAMark) {
   const std::string text = std::string(9, 'x') + "\u00e9\u00e9";
   EXPECT_EQ(printable(text, 13), text);
   EXPECT_EQ(printable(text, 12), std::string(9, 'x') + "\u2026");

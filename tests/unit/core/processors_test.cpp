@@ -34,7 +34,7 @@ class AvailableProcessors : public ::testing::Test {
   Machine machine;
 };
 
-TEST_F(AvailableProcessors, AreTheCoresWhereThereAreNoControlGroups) { EXPECT_EQ(machine.processors(), cores); }
+TEST_F(AvailableProcessors, EqualTheCoresWithoutControlGroups) { EXPECT_EQ(machine.processors(), cores); }
 
 TEST_F(AvailableProcessors, FollowTheQuotaOfVersion2InAContainer) {
   machine.write("proc/self/mountinfo", "30 29 0:26 / /sys/fs/cgroup ro,nosuid - cgroup2 cgroup rw\n");
@@ -49,7 +49,7 @@ TEST_F(AvailableProcessors, FollowTheQuotaOfVersion2InAContainer) {
   EXPECT_EQ(machine.processors(), std::min(cores, 64u));
 }
 
-TEST_F(AvailableProcessors, FollowTheQuotaOfAGroupThatTheirsIsIn) {
+TEST_F(AvailableProcessors, FollowTheQuotaOfAParentGroup) {
   machine.write("proc/self/mountinfo", "30 29 0:26 / /sys/fs/cgroup ro,nosuid shared:9 - cgroup2 cgroup rw\n");
   machine.write("proc/self/cgroup", "0::/machine.slice/cohort.service\n");
   machine.write("sys/fs/cgroup/machine.slice/cohort.service/cpu.max", "max 100000\n");
@@ -58,7 +58,7 @@ TEST_F(AvailableProcessors, FollowTheQuotaOfAGroupThatTheirsIsIn) {
   EXPECT_EQ(machine.processors(), 1u);
 }
 
-TEST_F(AvailableProcessors, FollowTheQuotaOfVersion1AlsoWhereTheGroupIsMountedAsTheRoot) {
+TEST_F(AvailableProcessors, FollowTheQuotaOfVersion1AlsoIfTheGroupIsMountedAsRoot) {
   machine.write("proc/self/mountinfo",
                 "92 78 0:50 / /sys/fs/cgroup rw - tmpfs tmpfs rw,mode=755\n"
                 "93 92 0:29 /pod/box /sys/fs/cgroup/cpu,cpuacct ro - cgroup cgroup rw,cpu,cpuacct\n"
@@ -71,7 +71,7 @@ TEST_F(AvailableProcessors, FollowTheQuotaOfVersion1AlsoWhereTheGroupIsMountedAs
   EXPECT_EQ(machine.processors(), 1u);
 }
 
-TEST_F(AvailableProcessors, AreTheCoresWhereWhatTheKernelShowsIsNotUnderstood) {
+TEST_F(AvailableProcessors, EqualTheCoresIfTheKernelFilesAreNotUnderstood) {
   machine.write("proc/self/mountinfo", "cgroup2\n - \n30 29 0:26 / /sys/fs/cgroup - cgroup2 cgroup rw\n");
   machine.write("proc/self/cgroup", ":\n0::\n");
   machine.write("sys/fs/cgroup/cpu.max", "a lot\n");

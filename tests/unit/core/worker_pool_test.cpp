@@ -10,7 +10,7 @@
 namespace cohort {
 namespace {
 
-TEST(WorkerPool, CoversEveryIndexOnceInChunksThatDoNotDependOnThreads) {
+TEST(WorkerPool, CoversEveryIndexOnceInChunksIndependentOfThreads) {
   for (const unsigned threads : {1u, 2u, 8u}) {
     WorkerPool workers(threads);
     std::vector<std::atomic<int>> visits(1003);
@@ -45,14 +45,14 @@ unsigned workers_at_once(WorkerPool& pool) {
   return at_work;
 }
 
-TEST(WorkerPool, HasAllItsThreadsBesideAPoolOfFewer) {
+TEST(WorkerPool, HasAllItsThreadsBesideASmallerPool) {
   WorkerPool of_two(2);
   WorkerPool of_four(4);
   EXPECT_EQ(workers_at_once(of_four), 4u);
   EXPECT_EQ(workers_at_once(of_two), 2u);
 }
 
-TEST(WorkerPool, WorksWhileAnotherDoes) {
+TEST(WorkerPool, WorksConcurrentlyWithAnotherPool) {
   WorkerPool of_two(2);
   WorkerPool of_three(3);
   unsigned there = 0;

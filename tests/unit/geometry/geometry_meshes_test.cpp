@@ -8,7 +8,7 @@
 #include "server/geometry/shapes/mesh_surface.hpp"
 #include "tests/support/worlds/random_scene.hpp"
 
-// Shapes that are not centred solids of a few numbers: meshes and height maps.
+// Meshes and height maps, which are neither centred nor described by a few numbers.
 namespace cohort::geometry {
 namespace {
 
@@ -30,7 +30,7 @@ TriangleMesh box(const Vector3d& size) {
   return geometry::convex_hull(corners);
 }
 
-// A ring like a tyre, lying: a closed surface that is far from convex.
+// Returns a lying ring like a tyre: a closed surface that is far from convex.
 constexpr double ring_radius = 1.0, tube_radius = 0.4;
 TriangleMesh torus(int around, int across) {
   TriangleMesh mesh;
@@ -46,7 +46,7 @@ TriangleMesh torus(int around, int across) {
   return mesh;
 }
 
-// Moeller and Trumbore's test, triangle by triangle: another way to the same answer.
+// Casts the ray by Moeller and Trumbore's test of every triangle: an independent algorithm.
 RayEntry first_triangle(const TriangleMesh& mesh, const Vector3d& origin, const Vector3d& direction) {
   RayEntry first;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -59,7 +59,7 @@ RayEntry first_triangle(const TriangleMesh& mesh, const Vector3d& origin, const 
   return first;
 }
 
-TEST(MeshRay, MeetsWhatATestOfEveryTriangleFinds) {
+TEST(MeshRay, AgreesWithATestOfEveryTriangle) {
   const TriangleMesh mesh = torus(40, 24);
   const MeshSurface surface(mesh_of(mesh, false));
   EXPECT_TRUE(surface.is_closed());
@@ -85,7 +85,7 @@ TEST(MeshRay, MeetsWhatATestOfEveryTriangleFinds) {
   EXPECT_GT(inside, 100);
 }
 
-TEST(MeshRay, NeverSlipsThroughAnEdgeOrACorner) {
+TEST(MeshRay, NeverMissesAtAnEdgeOrACorner) {
   const TriangleMesh mesh = torus(12, 8);
   const MeshSurface surface(mesh_of(mesh, false));
   const RandomStream random(22, "geometry_test", "edges");
@@ -103,7 +103,7 @@ TEST(MeshRay, NeverSlipsThroughAnEdgeOrACorner) {
   }
 }
 
-TEST(MeshRay, AlongTheFacesAndEdgesOfABoxStartsInsideOnlyIfItDoes) {
+TEST(MeshRay, StartsInsideABoxOnlyIfItsOriginIsInside) {
   const MeshSurface surface(mesh_of(box({2, 2, 2}), false));
   EXPECT_EQ(surface.cast_ray({0, 0, 0}, {1, 0, 0}, infinity).distance, 0.0);
   EXPECT_EQ(surface.cast_ray({0.5, 0.5, 0.5}, {1, 0, 0}, infinity).distance, 0.0) << "over a diagonal of a face";
@@ -115,7 +115,7 @@ TEST(MeshRay, AlongTheFacesAndEdgesOfABoxStartsInsideOnlyIfItDoes) {
     }
 }
 
-TEST(MeshRay, MeetsAnOpenMeshFromBothSides) {
+TEST(MeshRay, HitsAnOpenMeshFromBothSides) {
   const MeshSurface surface(mesh_of({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, false));
   EXPECT_FALSE(surface.is_closed());
   const RayEntry above = surface.cast_ray({0.2, 0.2, 1}, {0, 0, -1}, infinity);
@@ -127,7 +127,7 @@ TEST(MeshRay, MeetsAnOpenMeshFromBothSides) {
   EXPECT_TRUE(std::isinf(surface.cast_ray({0.2, 0.2, 1}, {0, 0, -1}, 0.9).distance)) << "out of range";
 }
 
-TEST(MeshRay, EntersAMeshThatIsInsideOutAllTheSame) {
+TEST(MeshRay, EntersAnInvertedMesh) {
   TriangleMesh mesh = box({2, 2, 2});
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   const MeshSurface surface(mesh_of(mesh, false));
@@ -158,7 +158,7 @@ TEST(MeshRay, OnAConvexMeshAgreesWithTheClosedForm) {
   EXPECT_GT(hits, 1000);
 }
 
-TEST(MeshRay, OfAConvexMeshTakesTheHullOfItsVertices) {
+TEST(MeshRay, UsesTheHullOfAConvexMesh) {
   TriangleMesh points;
   points.vertices = box({2, 2, 2}).vertices;
   EXPECT_DOUBLE_EQ(cast_ray(mesh_of(points, true), {-3, 0, 0}, {1, 0, 0}).distance, 2.0);
@@ -174,7 +174,7 @@ HeightGrid hills() {
   return grid;
 }
 
-// The two triangles of each cell, as Heightmap says.
+// Returns the two triangles of each cell, as defined by Heightmap.
 TriangleMesh triangles_of(const HeightGrid& grid) {
   TriangleMesh mesh;
   for (std::size_t row = 0; row < grid.rows; ++row)
@@ -193,7 +193,7 @@ TriangleMesh triangles_of(const HeightGrid& grid) {
 
 Heightmap map_of(const HeightGrid& grid) { return {std::make_shared<const HeightGrid>(grid)}; }
 
-TEST(HeightmapRay, MeetsWhatATestOfEveryTriangleFinds) {
+TEST(HeightmapRay, AgreesWithATestOfEveryTriangle) {
   const HeightGrid grid = hills();
   const TriangleMesh mesh = triangles_of(grid);
   const RandomStream random(25, "geometry_test", "heightmap");
@@ -223,7 +223,7 @@ TEST(HeightmapRay, MeetsWhatATestOfEveryTriangleFinds) {
   EXPECT_GT(over, 500);
 }
 
-TEST(HeightmapRay, StraightDownMeetsEveryCornerLineAndDiagonal) {
+TEST(HeightmapRay, StraightDownHitsEveryCornerLineAndDiagonal) {
   const HeightGrid grid = hills();
   for (std::size_t row = 0; row + 1 < grid.rows; ++row)
     for (std::size_t column = 0; column + 1 < grid.columns; ++column) {
@@ -235,7 +235,7 @@ TEST(HeightmapRay, StraightDownMeetsEveryCornerLineAndDiagonal) {
     }
 }
 
-TEST(HeightmapRay, ComesInThroughASideAndEndsAtTheEdge) {
+TEST(HeightmapRay, EntersThroughASideAndEndsAtTheEdge) {
   const HeightGrid flat{2, 2, {2, 2}, {1, 1, 1, 1}};
   const RayEntry side = cast_ray(map_of(flat), {-3, 0, 0.5}, {1, 0, 0});
   EXPECT_DOUBLE_EQ(side.distance, 2.0);
@@ -248,7 +248,7 @@ TEST(HeightmapRay, ComesInThroughASideAndEndsAtTheEdge) {
 
 // ---- In the scene ----
 
-TEST(Bounds, OfMeshesAndHeightmapsHoldThemTightly) {
+TEST(Bounds, OfMeshesAndHeightmapsAreTight) {
   const Pose lying{{1, 2, 3}, Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Vector3d::UnitZ()))};
   const Bounds mesh = bounds_of(mesh_of(torus(40, 24), false), lying);
   EXPECT_NEAR(mesh.upper.z(), 3.0 + tube_radius, 1e-12);
@@ -261,7 +261,7 @@ TEST(Bounds, OfMeshesAndHeightmapsHoldThemTightly) {
   EXPECT_EQ(bounds_of(map_of({2, 2, {2, 2}, {0, 0, 1, 0}}), tilted).lower.x(), -infinity);
 }
 
-TEST(SolidKinds, AreMadeOnceForEachCollisionAndTheSurfaceOfAMeshOnceForAll) {
+TEST(SolidKinds, AreMadeOnceForEachCollisionAndShareTheSurfaceOfAMesh) {
   description::Model model;
   const Mesh mesh = mesh_of(torus(20, 12), false);
   for (int link = 0; link < 2; ++link) {
@@ -281,7 +281,7 @@ TEST(SolidKinds, AreMadeOnceForEachCollisionAndTheSurfaceOfAMeshOnceForAll) {
   EXPECT_EQ(copy.of_model(0, model)[0]->mesh, of_model[0]->mesh);
 }
 
-TEST(MeshScene, GivesTheBitsOfEachSolidByItself) {
+TEST(MeshScene, HasTheBitsOfEachSolidAlone) {
   const Mesh skin = mesh_of(torus(20, 12), false), hull = mesh_of(box({0.3, 0.2, 0.1}), true);
   const RandomStream random(26, "geometry_test", "scene");
   Scene scene;

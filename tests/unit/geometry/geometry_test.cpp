@@ -20,7 +20,7 @@ Pose turned_pose(const RandomStream& random, std::uint64_t n, double half_width)
           Eigen::Quaterniond(Eigen::AngleAxisd(6.0 * random.uniform(n, 3), axis))};
 }
 
-TEST(Ray, EntersABoxThroughTheFaceThatItMeetsFirst) {
+TEST(Ray, EntersABoxThroughTheFaceThatItHitsFirst) {
   const RayEntry entry = cast_ray(description::Box{{2, 4, 6}}, {-5, 1, 2}, {1, 0, 0});
   EXPECT_DOUBLE_EQ(entry.distance, 4.0);
   EXPECT_EQ(entry.normal, Vector3d(-1, 0, 0));
@@ -71,7 +71,7 @@ TEST(Ray, EntersAnEllipsoid) {
   EXPECT_TRUE(std::isinf(cast_ray(ellipsoid, {-3, 2.1, 0}, {1, 0, 0}).distance));
 }
 
-TEST(Ray, ThatStartsInsideASolidHitsItAtOnce) {
+TEST(Ray, HitsASolidAtOnceFromInside) {
   const std::vector<Shape> shapes = {description::Box{{1, 1, 1}},     description::Sphere{0.5},
                                      description::Cylinder{0.5, 1.0}, description::Plane{},
                                      description::Capsule{0.2, 0.2},  description::Ellipsoid{{0.3, 0.4, 0.5}}};
@@ -79,7 +79,7 @@ TEST(Ray, ThatStartsInsideASolidHitsItAtOnce) {
     EXPECT_EQ(cast_ray(shape, {0.1, 0.1, -0.1}, {1, 0, 0}).distance, 0.0) << shape.index();
 }
 
-// Marches along the ray in small steps and asks whether the point is inside: slow, and of another kind than the closed
+// Marches along the ray in small steps and tests whether the point is inside: slow, and independent of the closed
 // forms.
 double marched_distance(const Shape& shape, const Vector3d& origin, const Vector3d& direction, double range) {
   const auto inside = [&](const Vector3d& p) {
@@ -114,7 +114,7 @@ TEST(Ray, AgreesWithMarchingAlongItForRandomRays) {
     const double marched = marched_distance(shape, origin, direction, 4.0);
     if (std::isinf(exact)) {
       EXPECT_TRUE(std::isinf(marched)) << n;
-    } else if (!std::isinf(marched)) {  // a corner may slip between two marks
+    } else if (!std::isinf(marched)) {  // marching may step over a corner
       EXPECT_NEAR(exact, marched, 2e-3) << n;
       ++hits;
     }
@@ -122,7 +122,7 @@ TEST(Ray, AgreesWithMarchingAlongItForRandomRays) {
   EXPECT_GT(hits, 500);
 }
 
-TEST(Bounds, OfCapsulesAndEllipsoidsTouchThemOnEverySide) {
+TEST(Bounds, OfCapsulesAndEllipsoidsAreTight) {
   const RandomStream random(13, "geometry_test", "bounds");
   for (const Shape& shape : {Shape(description::Capsule{0.3, 0.6}), Shape(description::Ellipsoid{{0.3, 0.6, 0.9}})})
     for (std::uint64_t n = 0; n < 10; ++n) {
@@ -143,8 +143,8 @@ TEST(Bounds, OfCapsulesAndEllipsoidsTouchThemOnEverySide) {
     }
 }
 
-// A metre is 10^9 cells of the smallest: a search of them all would not end.
-TEST(Grids, FindWhatIsThereWithCellsOfAnySize) {
+// A metre is 10^9 cells of the smallest size: a search of all of them would not end.
+TEST(Grids, FindItemsWithCellsOfAnySize) {
   const RandomStream random(17, "geometry_test", "grids");
   for (int decade = -9; decade <= 3; ++decade) {
     const double edge = std::pow(10.0, decade);
@@ -250,7 +250,7 @@ TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
     EXPECT_EQ(hit->solid, expected) << n;
     EXPECT_DOUBLE_EQ(hit->distance, nearest) << n;
     const Vector3d reach = Vector3d::Constant(range);
-    // A fan whose rays do not start in its centre.
+    // A fan whose rays do not start at its centre.
     const Vector3d centre = origin + Vector3d(0.3, -0.2, 0.1);
     const auto of_fan = RayFan(scene, centre, {origin - reach, origin + reach}, ignored).cast(origin, direction, range);
     ASSERT_TRUE(of_fan.has_value()) << n;
@@ -261,7 +261,7 @@ TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
   EXPECT_GT(hits, 100);
 }
 
-TEST_F(RandomScene, CastsRaysWithoutEndAsLongOnes) {
+TEST_F(RandomScene, CastsInfiniteRaysLikeLongOnes) {
   int hits = 0, misses = 0;
   for (std::uint64_t n = 0; n < 300; ++n) {
     const Vector3d origin = random_vector(random, n + 30'000, 3.0);
@@ -279,7 +279,7 @@ TEST_F(RandomScene, CastsRaysWithoutEndAsLongOnes) {
   EXPECT_GT(misses, 50);
 }
 
-TEST_F(RandomScene, IsFreeWhereARayMeetsNothingButTwoBodies) {
+TEST_F(RandomScene, IsFreeIfARayHitsOnlyIgnoredBodies) {
   int free = 0;
   for (std::uint64_t n = 0; n < 1000; ++n) {
     const Vector3d origin = random_vector(random, n + 50'000, 1.6);
@@ -291,7 +291,7 @@ TEST_F(RandomScene, IsFreeWhereARayMeetsNothingButTwoBodies) {
     const auto second = scene.cast_ray(origin, direction, range, one);
     EXPECT_EQ(scene.is_free(origin, direction, range, one), !second) << n;
     if (!second) continue;
-    // Without the first two, what is left?
+    // Find what is left without the first two.
     const BodyId two = scene.solid(second->solid).body;
     bool expected = true;
     for (std::uint32_t solid = 0; solid < scene.size(); ++solid) {
@@ -305,7 +305,7 @@ TEST_F(RandomScene, IsFreeWhereARayMeetsNothingButTwoBodies) {
   EXPECT_GT(free, 30);
 }
 
-TEST(Scene, SaysWhatIsRemoved) {
+TEST(Scene, ReportsRemovedSolids) {
   Scene scene;
   const std::uint32_t ball = scene.add({description::Sphere{0.1}, {}, BodyId{0}, true, {{1, 0, 0}}});
   const std::uint32_t wall = scene.add({description::Box{{0.1, 1, 1}}, {}, BodyId{1}, false, {{2, 0, 0}}});

@@ -71,14 +71,14 @@ TEST(Panorama, TurnsWithItsFrame) {
   EXPECT_FALSE(image[1].has_value());
 }
 
-TEST(Panorama, RefusesWhatIsNoPanorama) {
+TEST(Panorama, RejectsInvalidColumnsAndElevations) {
   EXPECT_THROW(Panorama(3, {0.0}), std::invalid_argument);
   EXPECT_THROW(Panorama(8, {}), std::invalid_argument);
   EXPECT_THROW(Panorama(8, {0.0, 0.2, 0.1}), std::invalid_argument);
   EXPECT_THROW(Panorama(8, {0.0, 1.6}), std::invalid_argument);
 }
 
-// All pixels of an image against Scene::cast_ray, bit for bit. Returns how many see something.
+// Compares all pixels of an image with Scene::cast_ray, bit for bit. Returns how many have a hit.
 int compare(const Panorama& panorama, const Scene& scene, const Pose& X_WS, double range, BodyId ignored_body) {
   const Image image = image_of(panorama, scene, X_WS, range, ignored_body);
   int seen = 0;
@@ -94,7 +94,7 @@ int compare(const Panorama& panorama, const Scene& scene, const Pose& X_WS, doub
   return seen;
 }
 
-TEST(Panorama, SeesWhatRaysSee) {
+TEST(Panorama, AgreesWithRays) {
   const RandomStream random(51, "panorama_test", "views");
   const Panorama level(90, even_elevations(17, -0.4, 0.4));
   const Panorama whole(60, even_elevations(25, 0.5 * pi, -0.5 * pi));
@@ -103,7 +103,7 @@ TEST(Panorama, SeesWhatRaysSee) {
     scene.remove(7);
     int seen = 0;
     for (std::uint64_t n = 0; n < 30; ++n) {
-      const double range = n % 2 == 0 ? 20.0 : 0.3 + random.uniform(n, 8);  // cast_ray goes on for ever if it has none
+      const double range = n % 2 == 0 ? 20.0 : 0.3 + random.uniform(n, 8);  // without a range, cast_ray would not end
       const BodyId ignored = n % 4 == 0 ? Scene::no_body : scene.solid(static_cast<std::uint32_t>(n)).body;
       Pose X_WS = random_pose(random, n, 1.2, half_height);
       if (n % 4 == 3) X_WS.position = scene.solid(static_cast<std::uint32_t>(n)).X_WC.position;

@@ -37,7 +37,7 @@ TEST(ShadowRing, SeesACircleBetweenItsTangents) {
 }
 
 TEST(ShadowRing, SeesAnOrientedRectangleThroughItsFaces) {
-  // A wall at x = 1 that reaches from y = -1 to y = 1, then the same turned by 30 degrees about the ring.
+  // A wall at x = 1 from y = -1 to y = 1, then the same rotated by 30 degrees about the ring.
   const Shape wall = description::Box{{0.2, 2.0, 1.0}};
   const std::vector<double> ahead = shadows(scene_of(wall, {{1.1, 0, 0}}), {0, 0, 0});
   for (std::size_t k = 0; k < 45; ++k)
@@ -56,20 +56,20 @@ TEST(ShadowRing, TurnsWithItsHeading) {
   EXPECT_TRUE(std::isinf(distances[90]));
 }
 
-TEST(ShadowRing, SeesOnlyWhatReachesThroughItsPlane) {
+TEST(ShadowRing, SeesOnlySolidsThatCrossItsPlane) {
   const Scene scene = scene_of(description::Cylinder{0.5, 0.2}, {{2, 0, 0}});
   EXPECT_TRUE(std::isfinite(shadows(scene, {0, 0, 0.09})[0]));
   EXPECT_TRUE(std::isinf(shadows(scene, {0, 0, 0.11})[0]));
   EXPECT_TRUE(std::isinf(shadows(scene_of(description::Plane{}, {{0, 0, 0.5}}), {0, 0, 0})[0])) << "ground";
 }
 
-TEST(ShadowRing, SeesAPlaneThatStandsAsAWall) {
+TEST(ShadowRing, SeesAnUprightPlaneAsAWall) {
   const std::vector<double> distances = shadows(scene_of(description::Plane{{-1, 0, 0}}, {{2, 0, 0}}), {0, 0, 0});
   EXPECT_NEAR(distances[60], 4.0, 1e-13);
   EXPECT_TRUE(std::isinf(distances[100]));
 }
 
-TEST(ShadowRing, KeepsTheNearestWithinItsRangeAndNotItsOwnBody) {
+TEST(ShadowRing, FindsTheNearestSolidInRangeExceptItsOwnBody) {
   Scene scene;
   for (std::uint32_t body = 0; body < 3; ++body)
     scene.add({description::Sphere{0.25}, {}, BodyId{body}, true, {{1.0 + body, 0, 0}}});
@@ -79,15 +79,15 @@ TEST(ShadowRing, KeepsTheNearestWithinItsRangeAndNotItsOwnBody) {
   EXPECT_TRUE(std::isinf(shadows(scene, {0, 0, 0}, 0.0, 0.74)[0]));
 }
 
-TEST(ShadowRing, IsDarkAllRoundInsideASolid) {
+TEST(ShadowRing, HasZeroDistancesInsideASolid) {
   for (const Shape& shape : {Shape(description::Sphere{0.5}), Shape(description::Box{{1, 1, 1}})})
     for (const double distance : shadows(scene_of(shape, {{0.1, 0.1, 0}}), {0, 0, 0})) EXPECT_EQ(distance, 0.0);
 }
 
-TEST(ShadowRing, RefusesToHaveNoDirections) { EXPECT_THROW(ShadowRing(3), std::invalid_argument); }
+TEST(ShadowRing, RejectsTooFewDirections) { EXPECT_THROW(ShadowRing(3), std::invalid_argument); }
 
-// Cylinders and boxes of all sizes that stand on flat ground: there, a shadow is a ray.
-TEST(ShadowRing, SeesWhatRaysSeeOnFlatGround) {
+// Upright cylinders and boxes of all sizes on flat ground: there, a shadow is the same as a ray.
+TEST(ShadowRing, AgreesWithRaysOnFlatGround) {
   const RandomStream random(41, "shadow_ring_test", "solids");
   Scene scene;
   for (std::uint32_t n = 0; n < 300; ++n) {
@@ -116,7 +116,7 @@ TEST(ShadowRing, SeesWhatRaysSeeOnFlatGround) {
       if (hit.has_value() != std::isfinite(distances[k])) {
         ++grazed;  // by less than rounding
       } else if (hit) {
-        // At a tangent, the root makes 1e-8 of a rounding error of 1e-16.
+        // At a tangent, the root turns a rounding error of 1e-16 into 1e-8.
         EXPECT_NEAR(distances[k], hit->distance, 1e-7) << n << " " << k;
         ++hits;
       } else {

@@ -20,7 +20,7 @@ bool sees(const Scene& scene, const Vector3d& source, const Vector3d& receiver, 
   return lines.is_free(receiver, receiver_body);
 }
 
-TEST(SightLines, EndAtACylinderBetweenAndPassBesideIt) {
+TEST(SightLines, AreBlockedByACylinderAndPassBesideIt) {
   const Scene scene = scene_of(description::Cylinder{0.06, 0.1}, upright_pose({2, 0, 0}, 0));
   EXPECT_FALSE(sees(scene, {0, 0, 0}, {4, 0, 0}));
   EXPECT_TRUE(sees(scene, {0, 0, 0}, {1.939, 0, 0})) << "the receiver stands before it";
@@ -34,15 +34,15 @@ TEST(SightLines, EndAtACylinderBetweenAndPassBesideIt) {
 }
 
 TEST(SightLines, FromAboveAreBlockedOnlyInTheShadow) {
-  // A lamp 1 m above the floor, a wall 0.2 m high whose top edge is 2 m away: its shadow ends where the line from the
-  // lamp over the top comes down to the floor, at 2 * 1 / 0.8 = 2.5 m.
+  // A lamp is 1 m above the floor; a wall of 0.2 m has its top edge 2 m away. The shadow ends where the line over the
+  // top reaches the floor, at 2 * 1 / 0.8 = 2.5 m.
   const Scene scene = scene_of(description::Box{{0.02, 4.0, 0.2}}, {{1.99, 0, 0.1}});
   EXPECT_FALSE(sees(scene, {0, 0, 1}, {2.5 - 1e-9, 0, 0}));
   EXPECT_TRUE(sees(scene, {0, 0, 1}, {2.5 + 1e-9, 0, 0}));
   EXPECT_FALSE(sees(scene, {0, 0, 1}, {2.2, 0.3, 0}));
 }
 
-TEST(SightLines, UprightMeetWhatIsAboveAndBelow) {
+TEST(SightLines, UprightHitSolidsAboveAndBelow) {
   const Scene scene = scene_of(description::Cylinder{0.5, 0.1}, upright_pose({0, 0, 1}, 0));
   EXPECT_FALSE(sees(scene, {0.1, 0.2, 3}, {0.1, 0.2, 0}));
   EXPECT_TRUE(sees(scene, {0.1, 0.2, 3}, {0.1, 0.2, 1.06}));
@@ -81,7 +81,7 @@ struct Count {
   int blocked = 0;
 };
 
-// Whether what is built answers as a ray against every solid does.
+// Compares sight lines with rays against every solid.
 Count compare(const Scene& scene, std::uint64_t seed, double half_width, double half_height, double range, int sources,
               int receivers) {
   const RandomStream random(seed, "sight_lines_test", "ends");
@@ -120,7 +120,7 @@ Count compare(const Scene& scene, std::uint64_t seed, double half_width, double 
       const bool expected = !scene.cast_ray_among(others, source, offset / distance, distance);
       EXPECT_EQ(lines.is_free(receiver, receiver_body), expected) << i << " " << j;
       if (j % 5 == 0) {
-        // For receivers within heights that hold this one.
+        // Built for receivers within heights that include this one.
         within_heights.build(outlines, source, range, source_body, {receiver.z() - 0.01 * (j % 3), receiver.z()});
         EXPECT_EQ(within_heights.is_free(receiver, receiver_body), expected) << i << " " << j;
       }
@@ -133,7 +133,7 @@ Count compare(const Scene& scene, std::uint64_t seed, double half_width, double 
   return count;
 }
 
-TEST(SightLines, AreBlockedAsRaysAgainstEverySolidAre) {
+TEST(SightLines, AgreeWithRaysAgainstEverySolid) {
   for (const double half_height : {0.1, 1.0}) {
     const Scene scene = random_scene(31, 150, 1.5, half_height);
     const Count count = compare(scene, 32, 1.5, half_height, infinity, 50, 200);
@@ -142,7 +142,7 @@ TEST(SightLines, AreBlockedAsRaysAgainstEverySolidAre) {
   }
 }
 
-TEST(SightLines, OfShortRangeAreBlockedAsRaysAgainstEverySolidAre) {
+TEST(SightLines, OfShortRangeAgreeWithRaysAgainstEverySolid) {
   const Scene scene = random_scene(33, 3000, 3.0, 0.2);
   const Count count = compare(scene, 34, 3.0, 0.2, 0.5, 400, 20);
   EXPECT_GT(count.free, 400);

@@ -6,7 +6,7 @@
 
 #include "tests/support/worlds/sensing_world.hpp"
 
-/// What grippers grasp, hold and lose.
+/// Tests what grippers grasp, hold and lose.
 namespace cohort {
 namespace {
 
@@ -196,7 +196,7 @@ TEST(Grippers, WithABeamSeeWhateverIsBetweenTheirSides) {
   for (description::Device& device : model.devices)
     if (auto* const gripper = std::get_if<description::Gripper>(&device))
       gripper->light_barrier = description::Gripper::LightBarrier::beam;
-  // A post that nobody can grip; the beam is 7.5 mm before the jaw, from 15 mm left of it to 15 mm right.
+  // A post that cannot be gripped; the beam is 7.5 mm before the jaw, from 15 mm left of it to 15 mm right.
   const auto sees = [&](double x, double y) {
     SensingWorld world;
     world.add(model, "robot", at(0, 0, 0));

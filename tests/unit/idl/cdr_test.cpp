@@ -2,8 +2,9 @@
 
 #include <random>
 
-#include "idl/messages/ros_sensor_messages.hpp"
+#include "idl/messages/experiment_files.hpp"
 #include "tests/support/any_message.hpp"
+#include "tests/support/every_ros_message.hpp"
 
 namespace cohort::messages {
 namespace {
@@ -20,7 +21,7 @@ Bytes bytes_of_hex(std::string_view hex) {
   return bytes;
 }
 
-TEST(Cdr, NumbersStandAtMultiplesOfTheirSizesAfterTheEncapsulation) {
+TEST(Cdr, NumbersAreAlignedToTheirSizesAfterTheEncapsulation) {
   CdrWriter writer;
   writer.add(std::uint8_t{1});
   writer.add(std::uint16_t{0x0203});
@@ -42,13 +43,31 @@ TEST(Cdr, NumbersStandAtMultiplesOfTheirSizesAfterTheEncapsulation) {
   EXPECT_EQ(reader.left(), 0U);
 }
 
+TEST(Cdr, AMessageWithoutFieldsIsOneByte) {
+  EXPECT_EQ(encode(ros::Empty{}), bytes_of_hex("00010000 00"));
+  EXPECT_EQ(decode<ros::Empty>(bytes_of_hex("00010000 00")), ros::Empty{});
+  EXPECT_THROW(decode<ros::Empty>(bytes_of_hex("00010000")), CdrError);
+}
+
+TEST(Cdr, BytesAndCharactersAreNotAligned) {
+  CdrWriter writer;
+  writer.add('a');
+  writer.add(std::byte{7});
+  writer.add(std::array{std::byte{8}, std::byte{9}});
+  EXPECT_EQ(writer.bytes(), bytes_of_hex("00010000 61 07 08 09"));
+  CdrReader reader(writer.bytes());
+  EXPECT_EQ(reader.get<char>(), 'a');
+  EXPECT_EQ(reader.get<std::byte>(), std::byte{7});
+  EXPECT_EQ((reader.get<std::array<std::byte, 2>>()), (std::array{std::byte{8}, std::byte{9}}));
+}
+
 // A std_msgs/Header as Fast DDS and Cyclone DDS write it.
-TEST(Cdr, AHeaderHasTheBytesThatRosGivesIt) {
+TEST(Cdr, AHeaderHasTheBytesOfRos) {
   const ros::Header header{{1, 2}, "map"};
   EXPECT_EQ(encode(header), bytes_of_hex("00010000 01000000 02000000 04000000 6d617000"));
 }
 
-TEST(Cdr, RefusesWhatIsTooShortOrOfAnotherKind) {
+TEST(Cdr, RefusesMessagesThatAreTooShortOrOfAnotherKind) {
   EXPECT_THROW(decode<ros::Clock>(bytes_of_hex("000100")), CdrError);
   EXPECT_THROW(decode<ros::Clock>(bytes_of_hex("00000000 00000001 00000002")), CdrError);  // big-endian
   EXPECT_THROW(decode<ros::Clock>(bytes_of_hex("00010000 01000000 020000")), CdrError);
@@ -60,14 +79,19 @@ TEST(Cdr, RefusesWhatIsTooShortOrOfAnotherKind) {
 
 template <class Message>
 class RosMessages : public testing::Test {};
-using All = testing::Types<ros::Time, ros::Header, ros::Float64MultiArray, ros::Clock, ros::Pose, ros::PoseStamped,
-                           ros::PoseArray, ros::Transform, ros::TransformStamped, ros::Twist, ros::TwistStamped,
-                           ros::WrenchStamped, ros::TFMessage, ros::LaserScan, ros::Imu, ros::MagneticField,
-                           ros::FluidPressure, ros::Temperature, ros::RelativeHumidity, ros::JointState, ros::Range,
-                           ros::BatteryState, ros::NavSatFix>;
+template <class Tuple>
+struct TypesOf;
+template <class... Each>
+struct TypesOf<std::tuple<Each...>> {
+  using type = testing::Types<Each...>;
+};
+using All = TypesOf<decltype(std::tuple_cat(
+    test::StandardMessages(), test::SimulationMessages(), test::CohortMessages(),
+    std::tuple<ExperimentFiles, ros::ParticipantEntitiesInfo, ros::HumbleParticipantEntitiesInfo,
+               ros::simulation::SetEntityState::FormerRequest>()))>::type;
 TYPED_TEST_SUITE(RosMessages, All);
 
-TYPED_TEST(RosMessages, AreDecodedAsTheyWereEncodedAndCutOffOnesRefused) {
+TYPED_TEST(RosMessages, AreDecodedAsEncodedAndRefusedIfTruncated) {
   test::AnyMessage any;
   for (int i = 0; i < 20; ++i) {
     TypeParam message;
@@ -94,7 +118,33 @@ TYPED_TEST(RosMessages, TakeAnyBytes) {
   }
 }
 
-TEST(RosSchema, HasEachMessageInItOnceInTheOrderOfRosbag2) {
+TEST(ExperimentFiles, ThatAreInvalidAreRefused) {
+  const ExperimentFiles right{.seed = 1,
+                              .duration_ns = 1,
+                              .experiment = "a.yaml",
+                              .working_folder = "/here",
+                              .model_path = {},
+                              .last_model_folders = {"relative"},
+                              .folders = {"/here"},
+                              .files = {{"/here/a.yaml", {1, 2}}, {"/here/w.sdf", {0, 255}}}};
+  EXPECT_EQ(kept_files(right).files[1].bytes, std::string("\0\xff", 2));
+  const std::vector<void (*)(ExperimentFiles&)> wrong = {
+      [](ExperimentFiles& files) { files.experiment.clear(); },
+      [](ExperimentFiles& files) { files.duration_ns = -1; },
+      [](ExperimentFiles& files) { files.working_folder = "here"; },
+      [](ExperimentFiles& files) { files.folders = {""}; },
+      [](ExperimentFiles& files) { files.files[0].path = "a.yaml"; },
+      [](ExperimentFiles& files) { files.files[1].path = files.files[0].path; },
+      [](ExperimentFiles& files) { std::swap(files.files[0], files.files[1]); },
+  };
+  for (std::size_t i = 0; i < wrong.size(); ++i) {
+    ExperimentFiles files = right;
+    wrong[i](files);
+    EXPECT_THROW(kept_files(files), CdrError) << i;
+  }
+}
+
+TEST(RosSchema, HasEachNestedMessageOnceInTheOrderOfRosbag2) {
   const std::string line = "\n" + std::string(80, '=') + "\nMSG: ";
   EXPECT_EQ(messages::schema_text(messages::definition<ros::TFMessage>()),
             "geometry_msgs/TransformStamped[] transforms\n" + line +
@@ -111,6 +161,20 @@ TEST(RosSchema, HasEachMessageInItOnceInTheOrderOfRosbag2) {
             "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
             "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n");
   EXPECT_EQ(messages::definition<ros::NavSatStatus>().text, "int8 status\nuint16 service\n");
+}
+
+struct Bounded {
+  std::string name{};
+  std::vector<std::int16_t> few{};
+  std::vector<std::byte> bytes{};
+  static constexpr const char* type = "test_msgs/msg/Bounded";
+  static constexpr auto fields =
+      std::tuple(field("name", &Bounded::name, 8), field("few", &Bounded::few, 3), field("bytes", &Bounded::bytes));
+};
+
+TEST(RosSchema, HasTheMaximumLengthsOfTextsAndLists) {
+  EXPECT_EQ(messages::definition<Bounded>().text, "string<=8 name\nint16[<=3] few\nbyte[] bytes\n");
+  EXPECT_EQ(messages::definition<ros::Empty>().text, "");
 }
 
 TEST(RosTime, IsSecondsAndNanosecondsAlsoBeforeTheEpochAndAtItsEnds) {

@@ -10,7 +10,7 @@
 #include "tests/support/free_domain.hpp"
 #include "tests/support/keys.hpp"
 
-// Who gets in at a door of the server, tried with real participants and real certificates.
+// Tests which clients a door of the server admits, with real participants and real certificates.
 namespace cohort::wire {
 namespace {
 
@@ -25,7 +25,7 @@ class Door {
         states(participant, "view") {}
 
   Participant participant;
-  std::atomic<std::uint32_t> process = 0;  // of the Join that came last
+  std::atomic<std::uint32_t> process = 0;  // sender of the last Join
   Reader<Join> joins;
   Writer<WorldState> states;
 };
@@ -40,7 +40,7 @@ class Joining {
   Writer<Join> joins;
 };
 
-// What Cyclone DDS has to say while this lives.
+// Captures the log of Cyclone DDS while this lives.
 class Told {
  public:
   Told() {
@@ -52,7 +52,7 @@ class Told {
   Told(const Told&) = delete;
   Told& operator=(const Told&) = delete;
   ~Told() { set_dds_log(nullptr); }
-  // How many have all these texts in them.
+  // Returns the number of messages that contain all these texts.
   static std::size_t count(const std::vector<std::string>& texts) {
     const std::lock_guard lock(mutex);
     return static_cast<std::size_t>(std::ranges::count_if(refusals, [&](const std::string& refusal) {
@@ -75,7 +75,7 @@ class SecureDomain : public ::testing::Test {
 
 class ProtectedDomain : public SecureDomain, public ::testing::WithParamInterface<const char*> {};
 
-TEST_P(ProtectedDomain, AClientGetsInAtItsOwnDoorAndNowhereElse) {
+TEST_P(ProtectedDomain, AClientIsAdmittedOnlyAtItsOwnDoor) {
   const Keys keys(GetParam());
   Door red(domain(), keys.door("red"));
   Door blue(domain(), keys.door("blue"));
@@ -89,7 +89,7 @@ TEST_P(ProtectedDomain, AClientGetsInAtItsOwnDoorAndNowhereElse) {
 INSTANTIATE_TEST_SUITE_P(All, ProtectedDomain, ::testing::Values("sign", "encrypt"),
                          [](const auto& protection) { return std::string(protection.param); });
 
-TEST_F(SecureDomain, WhoHasOtherCertificatesIsRefusedAndBothSidesAreToldOnce) {
+TEST_F(SecureDomain, AClientWithOtherCertificatesIsRefusedAndBothSidesLogItOnce) {
   const Told told;
   const Keys keys, others;
   Door red(domain(), keys.door("red"));
@@ -98,7 +98,7 @@ TEST_F(SecureDomain, WhoHasOtherCertificatesIsRefusedAndBothSidesAreToldOnce) {
   const Joining disguised(domain(), read_identity(keys.disguise("red", "blue")), 2);
   EXPECT_TRUE(eventually([] { return Told::count({"OU=red/CN=client", "unable to get local issuer"}) > 0; }));
   EXPECT_TRUE(eventually([] { return Told::count({"OU=red/CN=server", "signature failure"}) > 0; }));
-  // Two who came later are in when they are not.
+  // Two later clients are admitted, but these are not.
   const Joining first(domain(), keys.client("red"), 3), second(domain(), keys.client("blue"), 4);
   EXPECT_TRUE(eventually([&] { return red.process == 3 && blue.process == 4; }));
   EXPECT_EQ(red.joins.matched(), 1u);
@@ -107,7 +107,7 @@ TEST_F(SecureDomain, WhoHasOtherCertificatesIsRefusedAndBothSidesAreToldOnce) {
   EXPECT_EQ(Told::count({"OU=red/CN=server", "signature failure"}), 1u) << "though it is tried every second";
 }
 
-TEST_F(SecureDomain, WhoHasNoCertificatesNeitherWritesNorReads) {
+TEST_F(SecureDomain, AClientWithoutCertificatesNeitherWritesNorReads) {
   const Keys keys;
   Door door(domain(), keys.door("observer"));
   Participant plain = Participant::client(domain());
@@ -125,7 +125,7 @@ TEST_F(SecureDomain, WhoHasNoCertificatesNeitherWritesNorReads) {
   EXPECT_EQ(door.states.matched(), 1u);
 }
 
-TEST_F(SecureDomain, AProgramIsToldWhatItsIdentityMayNotDo) {
+TEST_F(SecureDomain, AnErrorNamesTheRightThatAnIdentityLacks) {
   const Keys keys;
   Participant observer = Participant::client(domain(), "127.0.0.1", keys.client("observer"));
   EXPECT_THROW(Writer<Command>{observer}, WireError);
@@ -140,7 +140,7 @@ TEST_F(SecureDomain, AProgramIsToldWhatItsIdentityMayNotDo) {
   EXPECT_THROW(admits_in("another"), WireError) << "partitions of permissions count too";
 }
 
-TEST_F(SecureDomain, ACertificateThatIsOverIsNamed) {
+TEST_F(SecureDomain, AnExpiredCertificateIsNamed) {
   const Keys keys("sign", 0);
   try {
     Door(domain(), keys.door("red"));
@@ -160,7 +160,7 @@ void expect_wire_error(const std::function<void()>& action, const std::string& t
   }
 }
 
-TEST(Identities, FilesAreTheirOwnersAloneAndTheAuthoritysKeyIsGone) {
+TEST(Identities, FilesBelongOnlyToTheirOwnerAndTheAuthoritysKeyIsDeleted) {
   const Keys keys;
   int files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(keys.folder())) {
@@ -172,12 +172,12 @@ TEST(Identities, FilesAreTheirOwnersAloneAndTheAuthoritysKeyIsGone) {
   EXPECT_EQ(files, 6 * 6);
 }
 
-TEST(Identities, WhatIsMissingOrMixedUpIsNamed) {
+TEST(Identities, AMissingOrMismatchedFileIsNamed) {
   const Keys keys;
   expect_wire_error([&] { read_identity(keys.folder()); }, "give the folder of one");
   expect_wire_error([&] { read_identity("/nowhere"); }, "/nowhere/identity: No such file");
   expect_wire_error([&] { read_doors(keys.client_folder("red")); }, "no door for observers");
-  expect_wire_error([&] { Participant::client(0, "127.0.0.1", keys.door("red")); }, "is the server's");
+  expect_wire_error([&] { Participant::client(0, "127.0.0.1", keys.door("red")); }, "is the server's identity");
   EXPECT_EQ(read_doors(keys.folder()).size(), 3u);
   EXPECT_EQ(read_doors(keys.folder() + "/server").back().name, "blue");
   fs::remove(keys.client_folder("red") + "/key.pem");

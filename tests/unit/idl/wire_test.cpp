@@ -50,7 +50,7 @@ namespace {
 
 using namespace test;
 
-// Messages with views as they can be kept and compared: as text.
+// Messages with views as text, for storage and comparison.
 template <class... Numbers>
 std::string show_all(const Numbers&... numbers) {
   return ((std::to_string(numbers) + " ") + ...);
@@ -80,7 +80,7 @@ std::string show(const ControllerState& m) {
          show_list(m.data);
 }
 
-// A message as it is kept and compared.
+// A message, for storage and comparison.
 template <class Message>
 auto kept(const Message& message) {
   if constexpr (std::equality_comparable<Message>)
@@ -89,7 +89,7 @@ auto kept(const Message& message) {
     return show(message);
 }
 
-// What a reader received, in order.
+// Samples that a reader received, in order.
 template <class Message>
 class Inbox {
  public:
@@ -260,7 +260,7 @@ TEST_F(WireTest, AReportArrivesUnchangedEitherWay) {
   expect_round_trip(client, free.server, reports);
 }
 
-// One of each, no two of whose fields are the same.
+// One of each operation, with distinct values in all fields.
 const std::vector<Operation> all_operations = {
     GetSimulatorFeatures{},
     GetSimulationState{},
@@ -290,6 +290,8 @@ const std::vector<Operation> all_operations = {
     StopRecording{},
     GoBack{-7},
     GetHistory{6},
+    AdvanceTime{.steps = 8, .release = true},
+    GetExperiment{9},
     UnknownOperation{4711},
 };
 
@@ -307,7 +309,7 @@ TEST_F(WireTest, ARequestOfEachOperationArrivesUnchanged) {
   expect_round_trip<Request>(client, free.server, requests);
 }
 
-TEST(WireFields, AListThatLeavesSomethingOutIsFound) {
+TEST(WireFields, AnIncompleteListIsDetected) {
   EXPECT_FALSE(lists_all_members<HalfListed>());
   EXPECT_FALSE(lists_all_fields<HalfListed>());
   EXPECT_FALSE(lists_all_members<TwiceListed>());
@@ -318,7 +320,7 @@ TEST(WireFields, AListThatLeavesSomethingOutIsFound) {
   EXPECT_TRUE(lists_all_fields<Request>());
 }
 
-// What programs of versions before rely on: docs/protocol.md's numbers, and fields side by side.
+// Programs of earlier versions rely on these: docs/protocol.md's numbers, and fields side by side.
 TEST(WireCompatibility, ARequestHasItsFieldsWhereCohortIdlHasThem) {
   const auto sample_of = [](const Operation& operation, const auto& check) {
     const Request request{.client = 5, .number = 6, .label = "l", .operation = operation};
@@ -351,6 +353,10 @@ TEST(WireCompatibility, ARequestHasItsFieldsWhereCohortIdlHasThem) {
   sample_of(GetHistory{7}, [](const cohort_v1_Request& sample) {
     EXPECT_EQ(sample.operation, 112u);
     EXPECT_EQ(sample.offset, 7u);
+  });
+  sample_of(GetExperiment{8}, [](const cohort_v1_Request& sample) {
+    EXPECT_EQ(sample.operation, 114u);
+    EXPECT_EQ(sample.offset, 8u);
   });
 }
 
@@ -424,7 +430,7 @@ TEST_F(WireTest, AReplyToEachOperationArrivesUnchanged) {
   expect_round_trip<Reply>(free.server, client, replies);
 }
 
-TEST_F(WireTest, ALateReaderGetsWhatTheServerHasToSayToLateJoiners) {
+TEST_F(WireTest, ALateReaderGetsTheServersMessagesForLateJoiners) {
   Writer<RobotDescription> descriptions(free.server);
   Writer<Report> reports(free.server);
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -437,7 +443,7 @@ TEST_F(WireTest, ALateReaderGetsWhatTheServerHasToSayToLateJoiners) {
   EXPECT_TRUE(late_reports.waits_for(3)) << "the last 16";
 }
 
-TEST_F(WireTest, ASecondServerOnADomainIsToldWhatToDo) {
+TEST_F(WireTest, ASecondServerOnADomainFailsWithAdvice) {
   testing::internal::CaptureStderr();
   try {
     Participant::server(free.domain);
@@ -461,7 +467,8 @@ TEST(WireAddress, MistakesAreNamed) {
   };
   EXPECT_NE(message_of([] { Participant::client(60, "no-such-host.invalid"); }).find("no-such-host.invalid"),
             std::string::npos);
-  EXPECT_NE(message_of([] { Participant::server(60, "203.0.113.7"); }).find("no network interface"), std::string::npos);
+  EXPECT_NE(message_of([] { Participant::server(60, "203.0.113.7"); }).find("no active network interface"),
+            std::string::npos);
   EXPECT_NE(message_of([] { Participant::server(233); }).find("0 to 232"), std::string::npos);
 }
 
@@ -514,7 +521,7 @@ TEST_F(WireTest, AWriterThatLeavesIsReportedDeadAtOnce) {
   EXPECT_EQ(alive, sender_of_message);
 }
 
-TEST_F(WireTest, WhatAClientSendsIsKnownToBeOfOneParticipant) {
+TEST_F(WireTest, AllMessagesOfAClientHaveTheSameParticipant) {
   auto second = Participant::client(free.domain);
   std::mutex mutex;
   std::map<std::uint64_t, std::set<std::uint64_t>> participants;  // by client
@@ -557,7 +564,7 @@ TEST(WireTestProcess, DISABLED_JoinsAndStays) {
   for (;;) ::pause();
 }
 
-TEST(WireLiveliness, AKilledClientIsNoticedByTheLeaseOfItsJoin) {
+TEST(WireLiveliness, AKilledClientIsDetectedByTheLeaseOfItsJoin) {
   auto free = take_free_domain();
   std::atomic<bool> joined{false};
   std::atomic<bool> dead{false};

@@ -13,8 +13,8 @@
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/world/read_world.hpp"
 
-/// Files with the odd corners of SDF, URDF, YAML and experiments: those of tests/data/corpus/valid are read, and each
-/// of broken/ is refused with what FILE.expected says.
+/// Unusual files in SDF, URDF, YAML and experiments: those in tests/data/corpus/valid are accepted, and each in broken/
+/// is rejected with the message in FILE.expected.
 namespace cohort::description {
 
 namespace {
@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Corpus, ValidFile, ::testing::ValuesIn(files_in(corpus 
 class BrokenFile : public ::testing::TestWithParam<fs::path> {};
 
 // `LINE: PART OF THE MESSAGE`, or the part alone; line 0 is none.
-TEST_P(BrokenFile, IsRefusedWithAPlaceAndAReason) {
+TEST_P(BrokenFile, IsRejectedWithPositionAndReason) {
   std::ifstream stream(GetParam().string() + ".expected");
   std::string expected;
   ASSERT_TRUE(std::getline(stream, expected)) << "there is no " << GetParam().filename() << ".expected";

@@ -6,7 +6,7 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Breakable joints, user actions, and the events that they and emitters have.
+// Tests of breakable joints, user actions, and events for them and for emitters.
 namespace cohort::description {
 namespace {
 
@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 // ---- Breakable joints ----
 
-// On line 2 a box that moves with a link `arm`, and two static walls; the joint stands on lines 3 and 4.
+// A world with a moving box with a link `arm`, and two static walls, on line 2; the joint is on lines 3 and 4.
 class WorldsWithJoints : public Description {
  protected:
   static std::string content(const std::string& keys, const std::string& name = "hook") {
@@ -25,7 +25,7 @@ class WorldsWithJoints : public Description {
   }
 };
 
-TEST_F(WorldsWithJoints, HaveTheirEndsTheirPlaceAndTheirLimits) {
+TEST_F(WorldsWithJoints, ReadEndsPoseAndLimits) {
   const World world = read(content(
       "<cohort:first>box</cohort:first><cohort:first_link>b</cohort:first_link><cohort:second>team/wall"
       "</cohort:second><cohort:pose>1 2 3 0 0 0</cohort:pose><cohort:breaking_force>12</cohort:breaking_force>"));
@@ -42,7 +42,7 @@ TEST_F(WorldsWithJoints, HaveTheirEndsTheirPlaceAndTheirLimits) {
   EXPECT_TRUE(std::isinf(joint.breaking_torque));
 }
 
-TEST_F(WorldsWithJoints, MayNameObjectsThatComeAfterThemAndThoseOfPopulations) {
+TEST_F(WorldsWithJoints, MayNameLaterObjectsAndThoseOfPopulations) {
   const World world = read(
       "<cohort:breakable_joint name=\"b\"><cohort:first>team/sbot_1</cohort:first><cohort:second>team/sbot_0"
       "</cohort:second></cohort:breakable_joint>" +
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{ends("box", "floor", "\n<cohort:breaking_forc>1</cohort:breaking_forc>"), 6,
              "world/cohort:breakable_joint[hook]/cohort:breaking_forc", "did you mean 'cohort:breaking_force'?"}));
 
-TEST_F(WorldsWithJoints, HaveAnotherNameEach) {
+TEST_F(WorldsWithJoints, RejectDuplicateNames) {
   const std::string joint =
       "\n<cohort:breakable_joint name=\"hook\">" + ends("box", "floor") + "</cohort:breakable_joint>";
   expect_only_flaw({"", 6, "world/cohort:breakable_joint[hook]", "another breakable joint has the name 'hook'"},
@@ -92,13 +92,13 @@ TEST_F(WorldsWithJoints, HaveAnotherNameEach) {
 
 // ---- Actions ----
 
-TEST_F(Description, AModelWithAnActionAloneIsARobot) {
+TEST_F(Description, TreatsAModelWithAnActionAsARobot) {
   const World world = read("<model name=\"m\">" + links("a") + "<cohort:action name=\"open_gate\"/></model>");
   ASSERT_EQ(world.robots.size(), 1u);
   EXPECT_EQ(std::get<UserAction>(world.models[0].devices.at(0)).name, "open_gate");
 }
 
-TEST_F(Description, AnActionHasNoKeysAndANameOfItsOwn) {
+TEST_F(Description, RejectsKeysAndDuplicateNamesOfActions) {
   expect_only_flaw({"", 2, "world/model[m]/cohort:action[a]/cohort:link", "unknown element"},
                    write_world("<model name=\"m\">" + links("a") +
                                "<cohort:action name=\"a\"><cohort:link>a</cohort:link></cohort:action></model>"));
@@ -107,7 +107,8 @@ TEST_F(Description, AnActionHasNoKeysAndANameOfItsOwn) {
                                "<cohort:action name=\"a\"/>\n<cohort:action name=\"a\"/></model>"));
 }
 
-// Robots `a`, `team/b` and `team/c`; b and c can open, c can call; a lamp in a stand with a siren, and a wall.
+// An experiment with robots `a`, `team/b` and `team/c`, of which b and c can open and c can call. There is a lamp in a
+// stand with a siren, and a wall.
 class CourseWithActions : public Description {
  protected:
   CourseWithActions() {
@@ -126,14 +127,14 @@ class CourseWithActions : public Description {
         "<light name=\"sun\" type=\"directional\"/><cohort:breakable_joint name=\"hook\">" + ends("a", "wall") +
         "</cohort:breakable_joint>");
   }
-  // What is added begins on line 4.
+  // The added text begins on line 4.
   std::filesystem::path write_experiment(const std::string& course) const {
     return write("e.yaml", "world: world.sdf\nduration: 10\nteams: [{name: t, robots: all, controller: x}]\n" + course);
   }
   Experiment read_course(const std::string& course) const { return parsing::read_experiment(write_experiment(course)); }
 };
 
-TEST_F(CourseWithActions, HasReactionsOfThoseRobotsThatHaveTheAction) {
+TEST_F(CourseWithActions, SelectsTheRobotsThatHaveTheAction) {
   const Experiment experiment = read_course(
       "events:\n"
       "  - {on: {action: open}, disable: {objects: [wall, stand]}}\n"
@@ -154,20 +155,20 @@ TEST_F(CourseWithActions, HasReactionsOfThoseRobotsThatHaveTheAction) {
   EXPECT_EQ(experiment.world.instances[experiment.reactions[2].events[0].object].name, "d");
 }
 
-TEST_F(CourseWithActions, MayActAtATimeOnWhatAnActionAdds) {
+TEST_F(CourseWithActions, AcceptsTimedEventsForObjectsThatActionsAdd) {
   EXPECT_EQ(read_course("events:\n  - {on: {action: open}, add: {model: model://sbot, name: d}}\n"
                         "  - {at: 1, disable: {objects: d}}\n")
                 .events.size(),
             1u);
 }
 
-TEST_F(CourseWithActions, ChangesTheEmittersThatItNames) {
+TEST_F(CourseWithActions, SelectsEmittersByName) {
   const Experiment experiment = read_course(
       "events:\n"
       "  - {at: 1, set_emitter: {objects: '*', on: false}}\n"
       "  - {at: 2, set_emitter: {objects: stand, emitter: sir*, frequency: 500, intensity: 0}}\n"
       "  - {at: 3, set_emitter: {objects: [sun, stand], color: [0, 0.5, 1]}}\n");
-  ASSERT_EQ(experiment.events.size(), 5u);  // of the objects that have emitters
+  ASSERT_EQ(experiment.events.size(), 5u);  // one for each object with emitters
   const auto& off = std::get<SetEmitters>(experiment.events[0].effect);
   EXPECT_EQ(off.emitters, (std::vector<std::size_t>{0, 1}));
   EXPECT_EQ(off.change.is_on, false);
@@ -202,30 +203,30 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Flaw{"events:\n  - {disable: {objects: wall}}\n", 5, "events[0].at", "or `on`"},
         Flaw{"events:\n  - at: 1\n    on: {action: open}\n    disable: {objects: wall}\n", 6, "events[0].on",
-             "no place beside `at`"},
+             "cannot be used together with `at`"},
         Flaw{"events:\n  - on: {action: open}\n", 5, "events[0]", "missing: one of add, spawn, remove"},
         Flaw{"events:\n  - on: open\n    disable: {objects: wall}\n", 5, "events[0].on", "expected"},
         Flaw{"events:\n  - on: {robots: all}\n    disable: {objects: wall}\n", 5, "events[0].on.action", "missing"},
         Flaw{"events:\n  - on: {action: opn}\n    disable: {objects: wall}\n", 5, "events[0].on.action",
              "did you mean 'open'?"},
         Flaw{"events:\n  - on: {action: call, robots: [a, team/b]}\n    disable: {objects: wall}\n", 5,
-             "events[0].on.action", "no robot that is chosen has an action 'call'"},
+             "events[0].on.action", "none of the selected robots has an action 'call'"},
         Flaw{"events:\n  - on:\n      action: open\n      robots: tem/*\n    disable: {objects: wall}\n", 7,
-             "events[0].on.robots", "no robot is called 'tem/*'"},
+             "events[0].on.robots", "there is no robot 'tem/*'"},
         Flaw{"events:\n  - on: {action: open, robot: all}\n    disable: {objects: wall}\n", 5, "events[0].on.robot",
              "did you mean 'robots'?"},
         Flaw{"events:\n  - on: {action: open}\n    disable: {objects: wal}\n", 6, "events[0].disable.objects",
              "did you mean 'wall'?"},
         Flaw{"events:\n  - at: 1\n    set_emitter: {objects: wall, on: true}\n", 6, "events[0].set_emitter.objects",
-             "none of them has an emitter"},
+             "none of the objects has an emitter"},
         Flaw{"events:\n  - at: 1\n    set_emitter: {objects: stand, emitter: sirn, on: true}\n", 6,
              "events[0].set_emitter.emitter", "did you mean 'siren'?"},
         Flaw{"events:\n  - at: 1\n    set_emitter: {objects: stand}\n", 6, "events[0].set_emitter",
-             "missing: what changes"},
+             "missing: a value to change"},
         Flaw{"events:\n  - at: 1\n    set_emitter: {objects: stand, emitter: lamp, frequency: 3}\n", 6,
-             "events[0].set_emitter.frequency", "is of a sound, and none is chosen"},
+             "events[0].set_emitter.frequency", "applies to a sound, but no such emitter is selected"},
         Flaw{"events:\n  - at: 1\n    set_emitter: {objects: stand, humidity: 3}\n", 6,
-             "events[0].set_emitter.humidity", "is of a climate_source"},
+             "events[0].set_emitter.humidity", "applies to a climate_source"},
         Flaw{"events:\n  - at: 1\n    set_emitter: {objects: stand, color: 0 0 2}\n", 6, "events[0].set_emitter.color",
              "from 0 to 1"},
         Flaw{"events:\n  - at: 1\n    set_emitter: {objects: stand, on: maybe}\n", 6, "events[0].set_emitter.on",
@@ -233,8 +234,10 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"events:\n  - at: 1\n    set_emitter: {objects: stand, frequency: 0}\n", 6,
              "events[0].set_emitter.frequency", "> 0"},
         Flaw{"print:\n  - {quantity: joint_force, joints: hok}\n", 5, "print[0].joints", "did you mean 'hook'?"},
-        Flaw{"print:\n  - {quantity: joint_force, objects: a}\n", 5, "print[0].objects", "has no place"},
-        Flaw{"print:\n  - {quantity: pose, joints: hook}\n", 5, "print[0].joints", "has no place"}));
+        Flaw{"print:\n  - {quantity: joint_force, objects: a}\n", 5, "print[0].objects",
+             "cannot be used with the quantity"},
+        Flaw{"print:\n  - {quantity: pose, joints: hook}\n", 5, "print[0].joints",
+             "cannot be used with the quantity"}));
 
 }  // namespace
 }  // namespace cohort::description

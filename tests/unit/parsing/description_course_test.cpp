@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A robot `a`, one in a team, a static wall, and an experiment that says something of its course.
+// An experiment with a robot `a`, one in a team, a static wall, and a given course.
 class Schedule : public Description {
  protected:
   Schedule() {
@@ -18,14 +18,14 @@ class Schedule : public Description {
         "</name><pose>1 0 0 0 0 0</pose></include>" +
         static_model_sdf("<pose>3 0 0 0 0 0</pose>" + collision("<sphere><radius>0.1</radius></sphere>"), "wall"));
   }
-  // What is added begins on line 4.
+  // The added text begins on line 4.
   std::filesystem::path write_experiment(const std::string& course) const {
     return write("e.yaml", "world: world.sdf\nduration: 10\nteams: [{name: t, robots: all, controller: x}]\n" + course);
   }
   Experiment read_course(const std::string& course) const { return parsing::read_experiment(write_experiment(course)); }
 };
 
-TEST_F(Schedule, HasItsEventsInTheOrderOfTheirTimes) {
+TEST_F(Schedule, OrdersEventsByTime) {
   const Experiment experiment = read_course(
       "events:\n"
       "  - at: 2\n    add: {model: model://sbot, name: team/late, pose: [0, 1, 0, 0, 0, 1.5]}\n"
@@ -59,7 +59,7 @@ TEST_F(Schedule, HasItsEventsInTheOrderOfTheirTimes) {
   EXPECT_EQ(std::get<SetVelocity>(experiment.events[6].effect).angular_W, Eigen::Vector3d::Zero());
 }
 
-TEST_F(Schedule, BringsNewRobotsAtTimesAndWhenRobotsDoSomething) {
+TEST_F(Schedule, SpawnsRobotsAtTimesAndByActions) {
   const Experiment experiment = read_course(
       "events:\n"
       "  - {at: 1, spawn: {model: model://sbot, name: team/late, pose: [0, 1, 0, 0, 0, 0], every: 0.5, most: 3}}\n"
@@ -79,7 +79,7 @@ TEST_F(Schedule, BringsNewRobotsAtTimesAndWhenRobotsDoSomething) {
   EXPECT_EQ(times, (std::vector<std::chrono::nanoseconds>{1s, 1200ms, 1500ms, 2s, 2s}));
 }
 
-TEST_F(Schedule, SaysWhatIsRecorded) {
+TEST_F(Schedule, ReadsWhatIsRecorded) {
   const Recorded defaults = read_course("").recorded;
   EXPECT_EQ(defaults.observed, (std::vector<std::uint32_t>{0, 1}));
   EXPECT_EQ(defaults.pose_rate, 10.0);
@@ -93,7 +93,7 @@ TEST_F(Schedule, SaysWhatIsRecorded) {
   EXPECT_EQ(written.snapshot_interval, 1500ms);
 }
 
-TEST_F(Schedule, HasStopsPrintsAndAHistory) {
+TEST_F(Schedule, ReadsStopsPrintsAndHistory) {
   const Experiment experiment = read_course(
       "stop:\n  - inside: {objects: a, min: [0, 0], max: 1 1, for: 2}\n  - at_rest:  {}\n"
       "print:\n  - {quantity: pose, objects: team/*, every: 0.5}\n  - {quantity: count}\n"
@@ -127,12 +127,11 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"events: 3\n", 4, "events", "expected a list"},
         Flaw{"events:\n  - {remove: {objects: a}}\n", 5, "events[0].at", "missing"},
         Flaw{"events:\n  - {at: 1}\n", 5, "events[0]", "missing: one of add, spawn, remove"},
-        Flaw{"events:\n  - {at: -1, remove: {objects: a}}\n", 5, "events[0].at", "expected from 0 s"},
+        Flaw{"events:\n  - {at: -1, remove: {objects: a}}\n", 5, "events[0].at", "expected a time from 0 s"},
         Flaw{"events:\n  - at: 1\n    remov: {objects: a}\n", 6, "events[0].remov", "did you mean 'remove'?"},
         Flaw{"events:\n  - at: 1\n    remove: {objects: a}\n    disable: {objects: a}\n", 7, "events[0].disable",
-             "second one"},
-        Flaw{"events:\n  - at: 1\n    remove: {objects: c}\n", 6, "events[0].remove.objects",
-             "no object is called 'c'"},
+             "only one of these keys"},
+        Flaw{"events:\n  - at: 1\n    remove: {objects: c}\n", 6, "events[0].remove.objects", "there is no object 'c'"},
         Flaw{"events:\n  - at: 1\n    remove: {object: a}\n", 6, "events[0].remove.object", "did you mean 'objects'?"},
         Flaw{"events:\n  - at: 1\n    move: {objects: a}\n", 6, "events[0].move.pose", "missing"},
         Flaw{"events:\n  - at: 1\n    move: {objects: a, pose: [1, 2]}\n", 6, "events[0].move.pose", "six numbers"},
@@ -140,19 +139,19 @@ INSTANTIATE_TEST_SUITE_P(
              "no model 'sbit'"},
         Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot}\n", 6, "events[0].spawn.name", "missing"},
         Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot, name: /n}\n", 6, "events[0].spawn.name",
-             "expected parts with a slash between them"},
+             "expected a name of parts that are separated by slashes"},
         Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot, name: n, team: u}\n", 6, "events[0].spawn.team",
              "there is no team 'u'; did you mean 't'?"},
         Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot, name: n, area: [-1, 0]}\n", 6,
-             "events[0].spawn.area", "at least 0 m"},
+             "events[0].spawn.area", "expected a size >= 0 m"},
         Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot, name: n, most: 3}\n", 6, "events[0].spawn.most",
-             "no place without `every`"},
+             "cannot be used without `every`"},
         Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot, name: n, every: 1, most: 10001}\n", 6,
-             "events[0].spawn.most", "may bring 10000"},
+             "events[0].spawn.most", "at most 10000 new objects"},
         Flaw{"events:\n  - at: 0\n    spawn: {model: model://sbot, name: n}\n", 6, "events[0].spawn",
-             "nothing can be spawned at 0 s"},
+             "objects cannot be spawned at 0 s"},
         Flaw{"events:\n  - at: -1\n    spawn: {model: model://sbot, name: n}\n", 5, "events[0].at",
-             "expected from 0 s"},
+             "expected a time from 0 s"},
         Flaw{"events:\n  - at: 1\n    add: {model: model://sbit, name: n}\n", 6, "events[0].add", "no model 'sbit'"},
         Flaw{"events:\n  - at: 1\n    add: {model: model://sbot, name: a}\n", 6, "events[0].add", "another object"},
         Flaw{"events:\n  - at: 1\n    set_velocity: {objects: wall}\n", 6, "events[0].set_velocity.objects",
@@ -160,9 +159,9 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"events:\n  - at: 1\n    apply_force: {objects: a, link: turet, for: 1}\n", 6,
              "events[0].apply_force.link", "did you mean 'turret'?"},
         Flaw{"events:\n  - {at: 1, remove: {objects: a}}\n  - {at: 2, enable: {objects: a}}\n", 6, "events[1].enable",
-             "'a' has been removed by then"},
+             "'a' has been removed before this event"},
         Flaw{"events:\n  - {at: 2, add: {model: model://sbot, name: c}}\n  - {at: 1, remove: {objects: c}}\n", 6,
-             "events[1].remove", "'c' has not been added by then"},
+             "events[1].remove", "'c' has not been added before this event"},
         Flaw{"stop:\n  - outside: {}\n", 5, "stop[0].outside", "unknown key"},
         Flaw{"stop:\n  - inside: {objects: a, min: 1 1, max: 0 0}\n", 5, "stop[0].inside.min", "exceeds max"},
         Flaw{"stop:\n  - beyond: {objects: a, point: 0 0, direction: 0 0}\n", 5, "stop[0].beyond.direction",

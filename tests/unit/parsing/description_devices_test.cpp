@@ -7,7 +7,7 @@
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-/// Cameras, techniques and samples of sensors, and the colours of links, in files.
+/// Tests of reading cameras, techniques and samples of sensors, and colours of links.
 namespace cohort::description {
 namespace {
 
@@ -27,7 +27,7 @@ class Devices : public Description {
   }
 };
 
-TEST_F(Devices, ARingHasTheTechniqueThatIsWrittenAndOneRayOtherwise) {
+TEST_F(Devices, UseOneRayWithoutATechnique) {
   write_samples();
   const auto read_ring = [&](const std::string& keys) {
     return std::get<ProximityRing>(read(model_with(ring(keys))).models[0].devices[0]);
@@ -44,7 +44,7 @@ TEST_F(Devices, ARingHasTheTechniqueThatIsWrittenAndOneRayOtherwise) {
   EXPECT_EQ(sampled.samples->readings[2], 0.25);
 }
 
-TEST_F(Devices, WithWrongTechniquesAreReported) {
+TEST_F(Devices, RejectInvalidTechniques) {
   write_samples();
   const std::string path = "world/model[m]/cohort:proximity_ring[r]";
   const auto expect_flaw = [&](const std::string& keys, const std::string& child, const std::string& message) {
@@ -58,7 +58,7 @@ TEST_F(Devices, WithWrongTechniquesAreReported) {
   expect_flaw("<cohort:samples>s.csv</cohort:samples>", "/cohort:samples", "only the technique 'samples'");
 }
 
-TEST_F(Devices, WithSamplesThatCannotBeAreReported) {
+TEST_F(Devices, RejectInvalidSamples) {
   write_samples();
   const auto problems_with = [&](const std::string& file, const std::string& count) {
     std::string device =
@@ -71,7 +71,7 @@ TEST_F(Devices, WithSamplesThatCannotBeAreReported) {
   EXPECT_TRUE(problems_with("s.csv", "2").empty());
   const std::vector<Problem> three = problems_with("s.csv", "3");
   ASSERT_EQ(three.size(), 1u);
-  EXPECT_NE(three[0].message.find("has 2 readings at each place, the device has 3"), std::string::npos);
+  EXPECT_NE(three[0].message.find("has 2 readings at each place, but the device has 3"), std::string::npos);
   const std::vector<Problem> none = problems_with("none.csv", "2");
   ASSERT_EQ(none.size(), 1u);
   EXPECT_EQ(none[0].line, 3);
@@ -82,7 +82,7 @@ TEST_F(Devices, WithSamplesThatCannotBeAreReported) {
   EXPECT_EQ(bad[0].line, 2);
 }
 
-TEST_F(Devices, CamerasAreReadAndCheckTheirElevations) {
+TEST_F(Devices, CheckTheElevationsOfCameras) {
   const std::string place = "<cohort:link>a</cohort:link><cohort:pose>0 0 0.1 0 0 0</cohort:pose>";
   const World world =
       read(model_with("<cohort:omnidirectional_camera name=\"c\">" + place +
@@ -112,14 +112,14 @@ TEST_F(Devices, CamerasAreReadAndCheckTheirElevations) {
   };
   const std::string size = "<cohort:width>90</cohort:width><cohort:height>20</cohort:height>";
   expect_flaw(size + "<cohort:min_elevation>-1.6</cohort:min_elevation>", "/cohort:min_elevation", "from -pi/2");
-  expect_flaw(size + "<cohort:min_elevation>0.9</cohort:min_elevation>", "", "more than the lowest");
+  expect_flaw(size + "<cohort:min_elevation>0.9</cohort:min_elevation>", "", "greater than the minimum elevation");
   expect_flaw(size + "<cohort:sky>0 0 2</cohort:sky>", "/cohort:sky", "from 0 to 1");
   expect_flaw("<cohort:width>3</cohort:width><cohort:height>20</cohort:height>", "/cohort:width", "at least 4");
   expect_flaw("<cohort:width>10000</cohort:width><cohort:height>101</cohort:height>", "/cohort:height",
               "at most 1 000 000");
 }
 
-TEST_F(Devices, ALinkHasTheColorOfItsFirstVisualAndIsGreyWithoutOne) {
+TEST_F(Devices, TakeTheColorOfALinkFromItsFirstVisual) {
   const auto visual = [](const std::string& name, const std::string& material) {
     return "<visual name=\"" + name + "\"><geometry><box><size>1 1 1</size></box></geometry>" + material + "</visual>";
   };

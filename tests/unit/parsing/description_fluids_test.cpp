@@ -3,7 +3,7 @@
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-/// Rotors, fins, drag, air, water and wind in files.
+/// Tests of reading rotors, fins, drag, air, water and wind.
 namespace cohort::description {
 namespace {
 
@@ -20,7 +20,7 @@ std::string rotor(const std::string& keys) {
          keys + "</cohort:rotor>";
 }
 
-TEST_F(Fluids, RotorsAreReadAndHaveTheirDefaults) {
+TEST_F(Fluids, ReadRotorsWithDefaults) {
   const auto read_rotor = [&](const std::string& keys) {
     return std::get<Rotor>(read(vessel(rotor(keys))).models[0].devices.at(0));
   };
@@ -51,7 +51,7 @@ TEST_F(Fluids, RotorsAreReadAndHaveTheirDefaults) {
   EXPECT_EQ(other.readout.noises.at(0).deviation, 0.1);
 }
 
-TEST_F(Fluids, FinsAndDragStandInLinksAndMakeNoRobot) {
+TEST_F(Fluids, ReadFinsAndDragWhichMakeNoRobot) {
   const World world =
       read(vessel("", "",
                   "<cohort:fin name=\"wing\"><cohort:area>0.2</cohort:area><cohort:cla>5</cohort:cla></cohort:fin>"
@@ -73,7 +73,7 @@ TEST_F(Fluids, FinsAndDragStandInLinksAndMakeNoRobot) {
   EXPECT_EQ(model.drags[0].damping, Eigen::Vector3d::Zero());
 }
 
-TEST_F(Fluids, AWorldHasAirAndWindAndWaterIfItSaysSo) {
+TEST_F(Fluids, ReadAirWindAndWater) {
   const World dry = read(vessel(""));
   EXPECT_FALSE(dry.water);
   EXPECT_EQ(dry.air.density, 1.225);
@@ -92,7 +92,7 @@ TEST_F(Fluids, AWorldHasAirAndWindAndWaterIfItSaysSo) {
   EXPECT_EQ(wet.water->current, Eigen::Vector3d(0.1, 0, 0));
 }
 
-TEST_F(Fluids, VectorsOfExtensionsAreListsInYaml) {
+TEST_F(Fluids, AcceptVectorsAsListsInYaml) {
   const auto read_yaml = [&](const std::string& devices) {
     return parsing::read_world(write("world.yaml",
                                      "world:\n  cohort:water: {current: [0.1, 0.2, 0]}\n  model:\n    name: m\n"
@@ -110,7 +110,7 @@ TEST_F(Fluids, VectorsOfExtensionsAreListsInYaml) {
   }
 }
 
-TEST_F(Fluids, LinksFeelTheWindAsTheySayOrAsTheirModelDoes) {
+TEST_F(Fluids, InheritEnableWindFromTheModel) {
   const auto who_feels = [&](const std::string& in_model, const std::string& in_link) {
     const World world = read(vessel("", in_model, in_link));
     EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
@@ -123,7 +123,7 @@ TEST_F(Fluids, LinksFeelTheWindAsTheySayOrAsTheirModelDoes) {
   EXPECT_EQ(who_feels(on, off), std::pair(false, true));
 }
 
-TEST_F(Fluids, FlawsAreReportedWithTheirPlace) {
+TEST_F(Fluids, ReportProblemsWithPosition) {
   const std::string model = "world/model[m]";
   const auto expect_rotor_flaw = [&](const std::string& keys, const std::string& child, const std::string& message) {
     SCOPED_TRACE(keys);

@@ -13,7 +13,7 @@
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Models inside of models, URDF, older versions, mass from density, ground from functions.
+// Tests of nested models, URDF, older versions, mass from density, and ground from functions.
 namespace cohort::description {
 namespace {
 
@@ -21,7 +21,7 @@ constexpr double near = 1e-12;
 
 class Formats : public Description {
  protected:
-  /// A folder robots/arm: two links, an elbow, a frame `tip` 2 m above, and a motor.
+  /// Writes a folder robots/arm: two links, an elbow, a frame `tip` 2 m above, and a motor.
   void write_arm() const {
     write_model("arm",
                 links("u") +
@@ -45,9 +45,9 @@ std::string include(const std::string& uri, const std::string& more = "") {
   return "<include><uri>" + uri + "</uri>" + more + "</include>";
 }
 
-// ---- Models inside of models ----
+// ---- Nested models ----
 
-TEST_F(Formats, AModelInAModelIsPartOfItWithScopedNames) {
+TEST_F(Formats, FlattenNestedModelsWithScopedNames) {
   write_arm();
   const World world = read(
       "<model name=\"m\">" + links("b") + "<model name=\"n\"><pose>0 2 0 0 0 " + std::to_string(std::numbers::pi / 2) +
@@ -69,7 +69,7 @@ TEST_F(Formats, AModelInAModelIsPartOfItWithScopedNames) {
   EXPECT_EQ(motor.joint, 2u);
 }
 
-TEST_F(Formats, AMergedModelKeepsItsOwnFrameAtThePlacementFrame) {
+TEST_F(Formats, KeepTheFrameOfAMergedModel) {
   write_arm();
   const World world =
       read("<model name=\"m\">" + std::string("<include merge=\"true\"><uri>model://arm</uri><placement_frame>tip"
@@ -78,7 +78,7 @@ TEST_F(Formats, AMergedModelKeepsItsOwnFrameAtThePlacementFrame) {
   expect_near(world.models[0].links[1].X_ML.position, {0, 0, 4});
 }
 
-TEST_F(Formats, IncludesArePlacedByFramesOfEachOther) {
+TEST_F(Formats, PlaceIncludesRelativeToEachOther) {
   write_arm();
   const World world = read(include("model://arm", "<placement_frame>tip</placement_frame><pose>0 0 5 0 0 0</pose>") +
                            include("model://arm", "<name>b</name><pose relative_to=\"arm::tip\">1 0 0 0 0 0</pose>") +
@@ -93,7 +93,7 @@ TEST_F(Formats, IncludesArePlacedByFramesOfEachOther) {
   EXPECT_EQ(world.models.size(), 1u);
 }
 
-TEST_F(Formats, ModelsAndIncludesKeepTheirOrder) {
+TEST_F(Formats, KeepTheOrderOfModelsAndIncludes) {
   write_arm();
   const World world = read(include("model://arm", "<name>a</name>") + static_model_sdf(links("l"), "b") +
                            include("model://arm", "<name>c</name><pose relative_to=\"a\"/>") +
@@ -103,14 +103,14 @@ TEST_F(Formats, ModelsAndIncludesKeepTheirOrder) {
   EXPECT_EQ(names, "abcde");
 }
 
-TEST_F(Formats, APathInAnIncludedFileIsRelativeToThatFile) {
+TEST_F(Formats, ResolvePathsRelativeToTheIncludedFile) {
   write_arm();
   write("parts/inner.sdf", "<sdf version=\"1.9\"><model name=\"i\">" + links("l") + "</model></sdf>");
   write("parts/outer.sdf", "<sdf version=\"1.9\"><model name=\"o\">" + include("inner.sdf") + "</model></sdf>");
   EXPECT_EQ(read(include("parts/outer.sdf")).models[0].links[0].name, "i::l");
 }
 
-TEST_F(Formats, AnAxisOfAnOldFileInTheModelsFrameIsTurnedIntoTheJoint) {
+TEST_F(Formats, TransformAxesOfOldFilesIntoTheFrameOfTheJoint) {
   const World world = parsing::read_world(
       write("world.sdf",
             "<sdf version=\"1.5\"><world name=\"w\"><model name=\"m\">" + links("p") +
@@ -135,7 +135,7 @@ std::string urdf_joint(const std::string& name, const std::string& type, const s
          "\"/><origin xyz=\"0 0 1\"/><axis xyz=\"0 1 0\"/>" + more + "</joint>";
 }
 
-TEST_F(Formats, AUrdfRobotHasItsLinksJointsAndLimits) {
+TEST_F(Formats, ReadLinksJointsAndLimitsOfAUrdf) {
   const World world = read_urdf(
       urdf_link("a") + urdf_link("b", "<collision><geometry><sphere radius=\"0.5\"/></geometry></collision>") +
       urdf_joint("j", "revolute", "a", "b",
@@ -151,7 +151,7 @@ TEST_F(Formats, AUrdfRobotHasItsLinksJointsAndLimits) {
   expect_near(model.joints[0].axis.direction, {0, 1, 0});
 }
 
-TEST_F(Formats, AUrdfRobotHasItsDevicesAndSensorsInGazeboBlocks) {
+TEST_F(Formats, ReadDevicesAndSensorsOfAUrdf) {
   const std::string ns = "xmlns:cohort=\"https://cohort-sim.org/sdf/1\"";
   const std::string text =
       "<robot name=\"r\" " + ns + ">" + urdf_link("a") + urdf_link("b") + urdf_joint("j", "continuous", "a", "b") +
@@ -172,7 +172,7 @@ TEST_F(Formats, AUrdfRobotHasItsDevicesAndSensorsInGazeboBlocks) {
   EXPECT_EQ(model.grip_rings[0].radius, 0.1);
 }
 
-TEST_F(Formats, AUrdfRobotHasTheSurfacesAndTheGravityOfItsGazeboBlocks) {
+TEST_F(Formats, ReadSurfacesAndGravityOfAUrdf) {
   write("r.urdf",
         "<robot name=\"r\"><link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" "
         "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><box size=\"1 1 1\"/></geometry></collision>"
@@ -190,7 +190,7 @@ TEST_F(Formats, AUrdfRobotHasTheSurfacesAndTheGravityOfItsGazeboBlocks) {
   EXPECT_EQ(surface.damping, 10.0);
 }
 
-TEST_F(Formats, WhatOfAUrdfIsLeftOutIsSaidWithItsLine) {
+TEST_F(Formats, WarnOfUnsupportedElementsOfAUrdf) {
   const World world =
       read_urdf(urdf_link("a") + urdf_link("b") + urdf_link("c") + urdf_joint("j", "continuous", "a", "b") + "\n" +
                 urdf_joint("k", "continuous", "a", "c", "<mimic joint=\"j\" multiplier=\"-0.5\"/>") +
@@ -206,7 +206,7 @@ TEST_F(Formats, WhatOfAUrdfIsLeftOutIsSaidWithItsLine) {
   EXPECT_EQ(world.models[0].links.size(), 4u);
 }
 
-TEST_F(Formats, ProblemsOfAConvertedUrdfHaveTheLinesOfTheUrdf) {
+TEST_F(Formats, ReportProblemsWithLinesOfTheUrdf) {
   const auto problems = problems_of([&] {
     read_urdf(
         urdf_link("a") + "\n" +
@@ -217,7 +217,7 @@ TEST_F(Formats, ProblemsOfAConvertedUrdfHaveTheLinesOfTheUrdf) {
   EXPECT_EQ(problems[0].line, 5) << problems[0].text();
 }
 
-TEST_F(Formats, OfAnElementThatIsGivenTwiceTheFirstCountsWithAWarning) {
+TEST_F(Formats, UseTheFirstOfRepeatedElements) {
   const World world = read(
       "<model name=\"m\"><link name=\"l\"><inertial><mass>3</mass>\n<mass>4</mass><inertia/>"
       "</inertial></link></model>");
@@ -229,7 +229,7 @@ TEST_F(Formats, OfAnElementThatIsGivenTwiceTheFirstCountsWithAWarning) {
 
 // ---- Mass from density ----
 
-TEST_F(Formats, DensityGivesALinkTheMassOfItsCollisions) {
+TEST_F(Formats, ComputeTheMassOfALinkFromDensity) {
   const World world = read(
       "<model name=\"m\"><link name=\"l\"><cohort:density>2</cohort:density>"
       "<collision name=\"a\"><pose>1 0 0 0 0 0</pose><geometry><box><size>1 1 1</size></box></geometry></collision>"
@@ -243,8 +243,8 @@ TEST_F(Formats, DensityGivesALinkTheMassOfItsCollisions) {
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
-// Two halves put together are the whole, whatever the shape of the whole.
-TEST(MassProperties, TwoHalvesOfABoxAreTheBox) {
+// The properties of two halves together equal those of the whole, for any shape.
+TEST(MassProperties, AddUp) {
   const parsing::MassProperties half = parsing::mass_properties(Box{{1.0, 2.0, 1.5}}, 3.0);
   const parsing::MassProperties whole = parsing::mass_properties(Box{{1.0, 2.0, 3.0}}, 3.0);
   const parsing::MassProperties both =
@@ -254,7 +254,7 @@ TEST(MassProperties, TwoHalvesOfABoxAreTheBox) {
   EXPECT_LT((both.inertia - whole.inertia).norm(), near);
 }
 
-// Against the sum over many thin discs along z, each pi r(z)^2 dz.
+// Compares with the sum over many thin discs along z, each pi r(z)^2 dz.
 void expect_body_of_revolution(const Shape& shape, double half_length, const std::function<double(double)>& radius) {
   constexpr int count = 20000;
   const double dz = 2.0 * half_length / count;
@@ -274,7 +274,7 @@ void expect_body_of_revolution(const Shape& shape, double half_length, const std
   EXPECT_NEAR(found.inertia(1, 1), across, 1e-6 * across);
 }
 
-TEST(MassProperties, ClosedFormsAreTheIntegralsOverDiscs) {
+TEST(MassProperties, EqualIntegralsOverDiscs) {
   expect_body_of_revolution(Cylinder{0.5, 2.0}, 1.0, [](double) { return 0.5; });
   expect_body_of_revolution(Sphere{0.7}, 0.7, [](double z) { return std::sqrt(0.49 - z * z); });
   expect_body_of_revolution(Ellipsoid{{0.3, 0.3, 1.2}}, 1.2,
@@ -285,7 +285,7 @@ TEST(MassProperties, ClosedFormsAreTheIntegralsOverDiscs) {
   });
 }
 
-TEST(MassProperties, AMeshOfABoxHasThoseOfTheBoxWhereverItIs) {
+TEST(MassProperties, AreTheSameForABoxAndItsMesh) {
   const Eigen::Vector3d offset(3.0, -2.0, 5.0);
   std::vector<Eigen::Vector3d> corners;
   for (const double x : {-0.5, 0.5})
@@ -328,7 +328,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // ---- Ground from functions ----
 
-TEST_F(Formats, ATerrainStandsInPlaceOfAnImage) {
+TEST_F(Formats, ReadTerrainInsteadOfAnImage) {
   const World world = read(heightmap("<cohort:kind>ramp</cohort:kind><cohort:spacing>0.5</cohort:spacing>", "2 1 0.4"));
   const HeightGrid& grid = *std::get<Heightmap>(world.models[0].links[0].collisions[0].shape).grid;
   EXPECT_EQ(grid.columns, 5u);
@@ -338,7 +338,7 @@ TEST_F(Formats, ATerrainStandsInPlaceOfAnImage) {
   EXPECT_DOUBLE_EQ(grid.height(4, 0), 0.4);
 }
 
-TEST(Terrain, StepsAreLevelAndReachTheTop) {
+TEST(Terrain, HasLevelStepsThatReachTheTop) {
   const HeightGrid grid = parsing::terrain_heights({"steps", {1.0, 0.1, 0.3}, 0.05, 0.25, 0});
   EXPECT_DOUBLE_EQ(grid.height(0, 0), 0.0);
   EXPECT_DOUBLE_EQ(grid.height(4, 0), 0.0);
@@ -346,7 +346,7 @@ TEST(Terrain, StepsAreLevelAndReachTheTop) {
   EXPECT_DOUBLE_EQ(grid.height(20, 0), 0.3);
 }
 
-TEST(Terrain, HeightsAreWithinTheSizeAndFollowTheSeed) {
+TEST(Terrain, HasHeightsWithinItsSizeThatDependOnTheSeed) {
   for (const std::string kind : {"sine", "hills", "rough"}) {
     const HeightGrid grid = parsing::terrain_heights({kind, {3.0, 2.0, 0.5}, 0.1, 0.7, 1});
     const auto [least, greatest] = std::minmax_element(grid.heights.begin(), grid.heights.end());
@@ -370,7 +370,7 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-TEST_F(Formats, TheTimeToReadIncludesGrowsWithTheirNumberAndNotFaster) {
+TEST_F(Formats, ReadIncludesInLinearTime) {
   const auto time_for = [&](int count) {
     std::string content;
     for (int i = 0; i < count; ++i)

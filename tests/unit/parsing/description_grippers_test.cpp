@@ -28,7 +28,7 @@ const std::string gripper =
 
 using Grippers = Description;
 
-TEST_F(Grippers, AreReadAndWhatTheyHoldOnToToo) {
+TEST_F(Grippers, AreReadWithGrippableObjects) {
   const World world = read(robot(gripper,
                                  "<cohort:grip_ring name=\"r\"><cohort:pose>0 0 0.02 0 0 0</cohort:pose>"
                                  "<cohort:radius>0.06</cohort:radius></cohort:grip_ring>",
@@ -53,7 +53,7 @@ TEST_F(Grippers, AreReadAndWhatTheyHoldOnToToo) {
   EXPECT_TRUE(model.links[1].collisions[0].surface.is_grippable);
 }
 
-TEST_F(Grippers, MotorsAndForceSensorsAreReadWithTheInertiaOfTheirRotors) {
+TEST_F(Grippers, ReadMotorsAndForceSensorsWithRotorInertia) {
   const World world =
       read(robot("<cohort:position_motor "
                  "name=\"p\"><cohort:joint>elevation</cohort:joint><cohort:max_velocity>1</cohort:max_velocity>"
@@ -69,7 +69,7 @@ TEST_F(Grippers, MotorsAndForceSensorsAreReadWithTheInertiaOfTheirRotors) {
   EXPECT_EQ(std::get<TractionSensor>(world.models[0].devices.at(2)).joint, 0u);
 }
 
-TEST_F(Grippers, WhatIsWrongIsReportedWithTheNearestName) {
+TEST_F(Grippers, ReportProblemsWithASuggestion) {
   const auto problems = problems_of([&] {
     read(
         robot("<cohort:effort_motor name=\"e\"><cohort:joint>elevaton</cohort:joint>"
@@ -79,7 +79,7 @@ TEST_F(Grippers, WhatIsWrongIsReportedWithTheNearestName) {
   EXPECT_NE(problems[0].message.find("elevation"), std::string::npos) << problems[0].message;
 }
 
-TEST_F(Grippers, AreWrittenBackAsTheyWereRead) {
+TEST_F(Grippers, AreWrittenUnchanged) {
   const World first =
       read(robot(gripper, "<cohort:grip_ring name=\"r\"><cohort:radius>0.06</cohort:radius></cohort:grip_ring>",
                  "<cohort:grippable>true</cohort:grippable>"));

@@ -3,7 +3,7 @@
 #include "server/core/infinity.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Joints, and the devices that name them.
+// Tests of reading joints, and devices on them.
 namespace cohort::description {
 namespace {
 
@@ -28,7 +28,7 @@ std::string gearbox(double ratio, const std::string& parent, const std::string& 
 }
 const std::string in_mimic = "world/model[m]/joint[k]/cohort:mimic";
 
-TEST_F(Joints, AUniversalJointHasTwoAxesWithLimitsAndDynamicsOfTheirOwn) {
+TEST_F(Joints, ReadBothAxesOfAUniversalJoint) {
   const World world = read(model(
       links("ab") + universal("<axis2><xyz>0 2 0</xyz><limit><lower>-1</lower><upper>0.5</upper></limit><dynamics>"
                               "<damping>0.1</damping><friction>0.2</friction><spring_stiffness>3</spring_stiffness>"
@@ -48,7 +48,7 @@ TEST_F(Joints, AUniversalJointHasTwoAxesWithLimitsAndDynamicsOfTheirOwn) {
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
-TEST_F(Joints, LimitsAreRigidUnlessTheirStiffnessIsBelowThatOfSdf) {
+TEST_F(Joints, HaveRigidLimitsByDefault) {
   const auto with = [](const std::string& give) {
     return model(links("ab") + joint("j", "a", "b",
                                      "<xyz>0 0 1</xyz><limit><lower>-1</lower><upper>1</upper>" + give + "</limit>",
@@ -67,7 +67,7 @@ TEST_F(Joints, LimitsAreRigidUnlessTheirStiffnessIsBelowThatOfSdf) {
             std::string::npos);
 }
 
-TEST_F(Joints, ABallHasDampingAndFrictionAndNoAxis) {
+TEST_F(Joints, ReadDampingAndFrictionOfABallJoint) {
   const World world =
       read(model(links("abc") +
                  joint("j", "a", "b",
@@ -81,7 +81,7 @@ TEST_F(Joints, ABallHasDampingAndFrictionAndNoAxis) {
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
-TEST_F(Joints, LimitsAndASpringOfABallAreSaidToBeIgnored) {
+TEST_F(Joints, WarnOfLimitsAndSpringsOfABallJoint) {
   const World world =
       read(model(links("ab") + joint("j", "a", "b",
                                      "<xyz>0 0 1</xyz>\n<limit><lower>-1</lower><upper>1</upper></limit>\n<dynamics>"
@@ -95,7 +95,7 @@ TEST_F(Joints, LimitsAndASpringOfABallAreSaidToBeIgnored) {
   EXPECT_NE(all.find(":4: world/model[m]/joint[j]/axis/dynamics/spring_stiffness: "), std::string::npos) << all;
 }
 
-TEST_F(Joints, AJointToTheWorldAnchorsTheRoot) {
+TEST_F(Joints, FixTheRootToTheWorld) {
   const World world =
       read(model(links("cab") + joint("one", "a", "b") + joint("hinge", "world", "a") + joint("two", "b", "c")));
   const Model& found = world.models[0];
@@ -107,14 +107,14 @@ TEST_F(Joints, AJointToTheWorldAnchorsTheRoot) {
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
-TEST_F(Joints, LinksOfAModelCollideWithEachOtherIfItSaysSo) {
+TEST_F(Joints, ReadSelfCollision) {
   EXPECT_FALSE(read(model(links("a"))).models[0].self_collide);
   const World world = read(model("<self_collide>true</self_collide>" + links("a")));
   EXPECT_TRUE(world.models[0].self_collide);
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
-TEST_F(Joints, MotorsAreBoundByTheLimitsOfTheirJoints) {
+TEST_F(Joints, LimitTheirMotors) {
   const std::string limit = "<xyz>0 0 1</xyz><limit><effort>3</effort><velocity>2</velocity></limit>";
   const auto motor_of = [](double effort) {
     return "\n<cohort:velocity_motor "
@@ -134,14 +134,14 @@ TEST_F(Joints, MotorsAreBoundByTheLimitsOfTheirJoints) {
   }
 }
 
-TEST_F(Joints, LimitsOfZeroOfAMotorAreNone) {
+TEST_F(Joints, IgnoreMotorLimitsOfZero) {
   const World world = read(model(
       links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz><limit><effort>0</effort><velocity>0</velocity></limit>")));
   EXPECT_EQ(world.models[0].joints[0].axis.max_effort, infinity);
   EXPECT_EQ(world.models[0].joints[0].axis.max_velocity, infinity);
 }
 
-TEST_F(Joints, AJointTooManyClosesALoop) {
+TEST_F(Joints, CloseLoops) {
   const World world = read(model(links("abc") + joint("i", "a", "b") + joint("j", "a", "c") + joint("k", "b", "c") +
                                  joint("l", "world", "a") + joint("m", "world", "b")));
   const Model& found = world.models[0];
@@ -154,7 +154,7 @@ TEST_F(Joints, AJointTooManyClosesALoop) {
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
-TEST_F(Joints, ALimitOfALoopsJointIsSaidToBeIgnored) {
+TEST_F(Joints, WarnOfLimitsInLoops) {
   const World world = read(model(links("ab") + joint("i", "a", "b") + joint("j", "world", "a") + "\n" +
                                  joint("k", "world", "b", "<xyz>0 0 1</xyz><limit><lower>0</lower></limit>")));
   EXPECT_NE(texts_of(world.warnings).find(":3: world/model[m]/joint[k]: the joint 'k' closes a loop"),
@@ -162,7 +162,7 @@ TEST_F(Joints, ALimitOfALoopsJointIsSaidToBeIgnored) {
       << texts_of(world.warnings);
 }
 
-TEST_F(Joints, ScrewsAndTwoHingesInARow) {
+TEST_F(Joints, ReadScrewsAndRevolute2) {
   const World world =
       read(model(links("abc") +
                  "<joint name=\"s\" type=\"screw\"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis>"
@@ -174,7 +174,7 @@ TEST_F(Joints, ScrewsAndTwoHingesInARow) {
   EXPECT_EQ(world.models[0].joints[1].type, JointType::universal);
 }
 
-TEST_F(Joints, FollowOthersByMimicAndByGearbox) {
+TEST_F(Joints, FollowOtherJointsByMimicAndGearbox) {
   const World followed =
       read(model(links("abc") + joint("j", "a", "c") +
                  mimic("<cohort:multiplier>-2</cohort:multiplier><cohort:offset>0.5</cohort:offset>", "j")));
@@ -184,7 +184,7 @@ TEST_F(Joints, FollowOthersByMimicAndByGearbox) {
   EXPECT_EQ(followed.models[0].couplings[0].multiplier, -2.0);
   EXPECT_EQ(followed.models[0].couplings[0].offset, 0.5);
 
-  // The second joint turns the other way round: against the axis of the gearbox.
+  // The second joint turns in the opposite direction, against the axis of the gearbox.
   for (const double along : {1.0, -1.0}) {
     const World geared = read(model(links("abc") + joint("i", "a", "b") +
                                     joint("j", "a", "c", along > 0.0 ? "<xyz>0 0 1</xyz>" : "<xyz>0 0 -1</xyz>") +
@@ -215,14 +215,14 @@ std::string cart() {
          joint("to_e", "b", "e") + "\n";
 }
 
-TEST_F(Joints, MotorAndEncoderOfAUniversalJointAreOnItsFirstAxis) {
+TEST_F(Joints, DriveAndMeasureTheFirstAxisOfAUniversalJoint) {
   const World world = read(model(links("ab") + universal("<axis2><xyz>0 1 0</xyz></axis2>") +
                                  device("velocity_motor", motor_of("j")) + device("joint_encoder", key("joint", "j"))));
   EXPECT_EQ(std::get<VelocityMotor>(world.models[0].devices[0]).joint, 0u);
   EXPECT_EQ(std::get<JointEncoder>(world.models[0].devices[1]).joint, 0u);
 }
 
-TEST_F(Joints, ATreelDriveNamesTheWheelsThatItStandsFor) {
+TEST_F(Joints, ReadTheWheelsOfATreelDrive) {
   const World world = read(
       model(cart() + drive_with(key("left_wheel", "to_d") + key("right_wheel", "to_c") + key("left_wheel", "to_b"))));
   const auto& drive = std::get<TreelDrive>(world.models[0].devices[0]);
@@ -262,7 +262,7 @@ INSTANTIATE_TEST_SUITE_P(
              "expected a finite position"},
         Flaw{model(links("ab") + universal("<axis2><xyz>0 0 0</xyz></axis2>")), 3, in_joint + "/axis2/xyz", "not zero"},
         Flaw{model(links("ab") + universal("<axis2><xyz>-1 0 0</xyz></axis2>")), 3, in_joint + "/axis2",
-             "another direction than that of <axis>"},
+             "a direction that is not parallel to <axis>"},
         Flaw{model(links("ab") +
                    universal("<axis2><xyz>0 1 0</xyz><limit><lower>1</lower><upper>0</upper></limit></axis2>")),
              3, in_joint + "/axis2/limit", "the lower limit exceeds"},
@@ -296,16 +296,16 @@ INSTANTIATE_TEST_SUITE_P(
                    drive_with(key("right_wheel", "j"))),
              4, in_drive + "/cohort:right_wheel", "is not revolute"},
         Flaw{model(cart() + drive_with(key("left_wheel", "to_b") + "\n" + key("right_wheel", "to_b"))), 6,
-             in_drive + "/cohort:right_wheel", "is a wheel's already"},
+             in_drive + "/cohort:right_wheel", "is already listed as the joint of a wheel"},
         Flaw{model(cart() + drive_with(key("left_wheel", "to_b") + "\n" + key("left_wheel", "to_c") + "\n" +
                                        key("left_wheel", "to_b"))),
-             7, in_drive + "/cohort:left_wheel", "is a wheel's already"},
+             7, in_drive + "/cohort:left_wheel", "is already listed as the joint of a wheel"},
         Flaw{model(cart() + drive_with(key("left_wheel", "to_b")) + "<cohort:velocity_motor name=\"n\">\n" +
                    motor_of("to_b") + "</cohort:velocity_motor>"),
-             6, "world/model[m]/cohort:velocity_motor[n]/cohort:joint", "is a wheel's of a treel_drive"},
+             6, "world/model[m]/cohort:velocity_motor[n]/cohort:joint", "belongs to a wheel of a treel_drive"},
         Flaw{model(cart() + "<cohort:velocity_motor name=\"n\">" + motor_of("to_b") + "</cohort:velocity_motor>" +
                    drive_with(key("left_wheel", "to_b"))),
-             5, in_drive + "/cohort:left_wheel", "has a motor already"}));
+             5, in_drive + "/cohort:left_wheel", "already has a motor"}));
 
 }  // namespace
 }  // namespace cohort::description

@@ -4,7 +4,7 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Surfaces, materials, and the settings of physics.
+// Tests of reading surfaces, materials, and settings of physics.
 namespace cohort::description {
 namespace {
 
@@ -27,7 +27,7 @@ std::string contact(const std::string& content) {
 
 using Surfaces = Description;
 
-TEST_F(Surfaces, HaveTheRollingResistanceThatBulletsElementGives) {
+TEST_F(Surfaces, ReadRollingResistanceFromBullet) {
   const World world = read(static_model_sdf(
       collision(ball,
                 "<surface><friction><ode><mu>0.3</mu></ode><bullet><rolling_friction>0.002</rolling_friction>"
@@ -40,7 +40,7 @@ TEST_F(Surfaces, HaveTheRollingResistanceThatBulletsElementGives) {
             0.0);
 }
 
-TEST_F(Surfaces, HaveTheStiffnessAndTheDampingOfOdeOrElseOfBullet) {
+TEST_F(Surfaces, ReadStiffnessAndDampingFromOdeOrBullet) {
   for (const char* const content : {"<ode><kp>2e5</kp><kd>30</kd></ode>", "<bullet><kp>2e5</kp><kd>30</kd></bullet>"}) {
     const World world = read(contact(content));
     EXPECT_EQ(surface_of(world, 0).stiffness, 2e5);
@@ -56,7 +56,7 @@ std::string bounce(const std::string& content) {
   return static_model_sdf(collision(ball, "<surface>\n<bounce>" + content + "</bounce></surface>"));
 }
 
-TEST_F(Surfaces, HaveTheLeastVelocityThatBouncesIfTheyGiveIt) {
+TEST_F(Surfaces, ReadTheBounceThreshold) {
   const World world = read(bounce("<threshold>0.3</threshold>"));
   EXPECT_EQ(surface_of(world, 0).bounce_threshold, 0.3);
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
@@ -67,7 +67,7 @@ std::string friction(const std::string& content) {
   return static_model_sdf(collision(ball, "<surface><friction>" + content + "</friction></surface>"));
 }
 
-TEST_F(Surfaces, HaveFrictionAlongAndAcrossADirection) {
+TEST_F(Surfaces, ReadFrictionAlongAndAcrossADirection) {
   for (const char* const content : {"<ode><mu>0.3</mu><mu2>0.7</mu2><fdir1>0 2 0</fdir1></ode>",
                                     "<bullet><friction>0.3</friction><friction2>0.7</friction2><fdir1>0 1 0</fdir1>"
                                     "</bullet>"}) {
@@ -85,7 +85,7 @@ TEST_F(Surfaces, HaveFrictionAlongAndAcrossADirection) {
   }
 }
 
-TEST_F(Surfaces, BulletsOwnFrictionIsSaidToBeIgnoredEachByNameBesideOdes) {
+TEST_F(Surfaces, WarnOfFrictionOfBulletBesideOde) {
   const World world =
       read(static_model_sdf(collision(ball,
                                       "<surface><friction><ode><mu>0.3</mu></ode><bullet><friction>0.5</"
@@ -97,7 +97,7 @@ TEST_F(Surfaces, BulletsOwnFrictionIsSaidToBeIgnoredEachByNameBesideOdes) {
     EXPECT_NE(all.find(name), std::string::npos) << all;
 }
 
-TEST_F(Surfaces, HaveBitmasksOf16BitsAndTheCategoryIsTheOtherIfItIsNotGiven) {
+TEST_F(Surfaces, ReadBitmasksOf16Bits) {
   const auto bits = [&](const std::string& content) {
     const World world = read(contact(content));
     EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
@@ -114,7 +114,7 @@ std::string torsional(const std::string& content) {
       collision(ball, "<surface><friction><torsional>" + content + "</torsional></friction></surface>"));
 }
 
-TEST_F(Surfaces, HaveTheSpinningResistanceOfTheirPatchOfContact) {
+TEST_F(Surfaces, ComputeSpinningResistanceFromTheContactPatch) {
   const World world = read(torsional("<coefficient>0.4</coefficient><patch_radius>0.03</patch_radius>"));
   EXPECT_NEAR(surface_of(world, 0).spinning_resistance, 3.0 * M_PI / 16.0 * 0.03 * 0.4, 1e-15);
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
@@ -122,10 +122,10 @@ TEST_F(Surfaces, HaveTheSpinningResistanceOfTheirPatchOfContact) {
   const World by_depth =
       read(torsional("<use_patch_radius>false</use_patch_radius><surface_radius>0.1</surface_radius>"));
   EXPECT_EQ(surface_of(by_depth, 0).spinning_resistance, 0.0);
-  EXPECT_NE(texts_of(by_depth.warnings).find("use_patch_radius: a patch that grows"), std::string::npos);
+  EXPECT_NE(texts_of(by_depth.warnings).find("a contact patch that grows with depth"), std::string::npos);
 }
 
-TEST_F(Surfaces, AreOfLinksThatMayNotFeelGravity) {
+TEST_F(Surfaces, ReadLinksWithoutGravity) {
   const auto link = [](const std::string& content) {
     return "<model name=\"m\"><link name=\"l\">" + content +
            "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link></model>";
@@ -138,7 +138,7 @@ TEST_F(Surfaces, AreOfLinksThatMayNotFeelGravity) {
   }
 }
 
-TEST_F(Surfaces, AreOfLinksThatMayBeKinematicIfTheyAreFree) {
+TEST_F(Surfaces, ReadKinematicLinksIfTheyAreFree) {
   const auto two_links = [](const std::string& of_a, const std::string& of_b, const std::string& parent) {
     const std::string inertial =
         "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>";
@@ -152,11 +152,12 @@ TEST_F(Surfaces, AreOfLinksThatMayBeKinematicIfTheyAreFree) {
   EXPECT_FALSE(world.models[0].links[1].is_kinematic);
   const World held = read(two_links("", "<kinematic>true</kinematic>", "a"));
   EXPECT_FALSE(held.models[0].links[1].is_kinematic);
-  EXPECT_NE(texts_of(held.warnings).find("<kinematic> of the link 'b' is ignored: a joint holds it"), std::string::npos)
+  EXPECT_NE(texts_of(held.warnings).find("<kinematic> of the link 'b' is ignored because a joint holds the link"),
+            std::string::npos)
       << texts_of(held.warnings);
 }
 
-TEST_F(Surfaces, AreOfMaterialsInTheOrderInWhichTheyAreNamed) {
+TEST_F(Surfaces, NumberMaterialsInOrderOfAppearance) {
   const World world = read(made_of("rubber", "a") + made_of("wood", "b") + made_of("rubber", "c") +
                            static_model_sdf(collision(ball), "d") +
                            pair("wood", "rubber", "<cohort:restitution>0.1</cohort:restitution>") +
@@ -176,7 +177,7 @@ TEST_F(Surfaces, AreOfMaterialsInTheOrderInWhichTheyAreNamed) {
   EXPECT_EQ(world.material_pairs[1].rolling_resistance, 0.01);
 }
 
-TEST_F(Surfaces, AMaterialOfAnIncludedModelCounts) {
+TEST_F(Surfaces, ReadMaterialsOfIncludedModels) {
   write_model("tyre",
               made_of("rubber").substr(std::string("<model name=\"m\">").size(),
                                        made_of("rubber").size() - std::string("<model name=\"m\"></model>").size()));
@@ -188,7 +189,7 @@ using PhysicsOfAWorld = Description;
 
 std::string physics(const std::string& keys) { return "<cohort:physics>\n" + keys + "</cohort:physics>"; }
 
-TEST_F(PhysicsOfAWorld, HasTheDefaultsOfTheManualWhereNothingIsGiven) {
+TEST_F(PhysicsOfAWorld, HasTheDefaultsOfTheManual) {
   for (const std::string& content : {std::string(), physics("")}) {
     const PhysicsSettings settings = read(content).physics;
     EXPECT_EQ(settings.fidelity, Fidelity::treel);
@@ -200,7 +201,7 @@ TEST_F(PhysicsOfAWorld, HasTheDefaultsOfTheManualWhereNothingIsGiven) {
   }
 }
 
-TEST_F(PhysicsOfAWorld, IsReadWholly) {
+TEST_F(PhysicsOfAWorld, ReadsAllSettings) {
   const PhysicsSettings settings =
       read(physics("<cohort:fidelity>articulated</cohort:fidelity><cohort:solver>hybrid</cohort:solver>"
                    "<cohort:iterations>50</cohort:iterations><cohort:direct_bodies>8</cohort:direct_bodies>"
@@ -256,13 +257,13 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{static_model_sdf(collision(ball, "\n<cohort:materiel>a</cohort:materiel>")), 3,
              in_collision + "/cohort:materiel", "did you mean 'cohort:material'?"},
         Flaw{static_model_sdf("\n<cohort:material>a</cohort:material>" + collision(ball)), 3,
-             "world/model[m]/cohort:material", "belongs in <collision>"},
+             "world/model[m]/cohort:material", "must be in <collision>"},
         Flaw{made_of("rubber") + pair("ruber", "rubber"), 5, in_pair + "/cohort:first",
-             "nothing is made of 'ruber'; did you mean 'rubber'?"},
+             "no collision has the material 'ruber'; did you mean 'rubber'?"},
         Flaw{made_of("rubber") + pair("rubber", "steel"), 6, in_pair + "/cohort:second",
-             "nothing is made of 'steel'; known: rubber"},
+             "no collision has the material 'steel'; known: rubber"},
         Flaw{made_of("rubber") + made_of("wood", "n") + pair("rubber", "wood") + pair("wood", "rubber"), 8, in_pair,
-             "another <cohort:material_pair> is of 'wood' and 'rubber'"},
+             "there is already a <cohort:material_pair> for 'wood' and 'rubber'"},
         Flaw{made_of("rubber") + pair("rubber", "rubber", "<cohort:restitution>1.5</cohort:restitution>"), 6,
              in_pair + "/cohort:restitution", "expected a number from 0 to 1, not '1.5'"},
         Flaw{made_of("rubber") + "\n<cohort:material_pair><cohort:first>rubber</cohort:first><cohort:second>rubber</"
@@ -295,7 +296,7 @@ class PhysicsOfAnExperiment : public Description {
   }
 };
 
-TEST_F(PhysicsOfAnExperiment, ReplacesThatOfTheWorldKeyByKey) {
+TEST_F(PhysicsOfAnExperiment, OverridesSingleKeysOfTheWorld) {
   EXPECT_EQ(parsing::read_experiment(write_experiment("")).world.physics.iterations, 20u);
   const PhysicsSettings settings =
       parsing::read_experiment(

@@ -31,7 +31,7 @@ class Populations : public Description {
 
 double heading(const Pose& pose) { return 2.0 * std::atan2(pose.orientation.z(), pose.orientation.w()); }
 Eigen::Vector2d place_of(const World& world, std::uint32_t robot) { return world.robot(robot).X_WM.position.head<2>(); }
-// The difference of two angles, in (-pi, pi].
+// Returns the difference of two angles, in (-pi, pi].
 double apart(double a, double b) { return std::remainder(a - b, 2.0 * std::numbers::pi); }
 
 double nearest_pair(const World& world) {
@@ -42,7 +42,7 @@ double nearest_pair(const World& world) {
   return nearest;
 }
 
-TEST_F(Populations, OfAGridStandInRowsAroundItsCentre) {
+TEST_F(Populations, FormRowsAroundTheCentreOfAGrid) {
   const World world = read(population(
       6, key("grid", key("center", "1 2") + key("spacing", "0.5") + key("columns", "3")) + key("yaw", "0.25")));
   ASSERT_EQ(world.robots.size(), 6u);
@@ -54,14 +54,14 @@ TEST_F(Populations, OfAGridStandInRowsAroundItsCentre) {
   }
 }
 
-TEST_F(Populations, OfATurnedGridAreTurnedAboutItsCentre) {
+TEST_F(Populations, RotateWithTheirGrid) {
   const World world =
       read(population(4, key("grid", key("spacing", "1") + key("yaw", std::to_string(std::numbers::pi / 2)))));
   EXPECT_LT((place_of(world, 0) - Eigen::Vector2d(0.5, -0.5)).norm(), 1e-5);
   EXPECT_LT((place_of(world, 1) - Eigen::Vector2d(0.5, 0.5)).norm(), 1e-5);
 }
 
-TEST_F(Populations, OfARingStandEvenlyAndLookAlongTowardsOrAway) {
+TEST_F(Populations, AreEvenlySpacedOnARingWithAllHeadings) {
   const std::string ring = key("ring", key("center", "1 0") + key("radius", "2") + key("first_bearing", "0.3"));
   const World along = read(population(5, ring + key("heading", "along")));
   const World in = read(population(5, ring + key("heading", "towards") + key("point", "1 0")));
@@ -76,7 +76,7 @@ TEST_F(Populations, OfARingStandEvenlyAndLookAlongTowardsOrAway) {
   }
 }
 
-TEST_F(Populations, OfALineReachFromEndToEnd) {
+TEST_F(Populations, IncludeBothEndsOfALine) {
   const World world = read(population(3, key("line", key("from", "0 0") + key("to", "1 1")) + key("heading", "along")));
   EXPECT_EQ(place_of(world, 0), Eigen::Vector2d(0, 0));
   EXPECT_EQ(place_of(world, 1), Eigen::Vector2d(0.5, 0.5));
@@ -84,7 +84,7 @@ TEST_F(Populations, OfALineReachFromEndToEnd) {
   EXPECT_NEAR(heading(world.robot(1).X_WM), std::numbers::pi / 4, 1e-12);
 }
 
-TEST_F(Populations, OfAFormationKeepTheirPlacesInItsTurnedFrame) {
+TEST_F(Populations, RotateWithTheirFormation) {
   const std::string quarter = key("yaw", std::to_string(std::numbers::pi / 2));
   const World listed = read(population(
       2, key("formation", key("center", "1 1") + key("member", "0 0 0") + key("member", "0.5 0.2 -0.5")) + quarter));
@@ -95,14 +95,14 @@ TEST_F(Populations, OfAFormationKeepTheirPlacesInItsTurnedFrame) {
   EXPECT_LT((place_of(wedge, 2) - Eigen::Vector2d(-0.3, -0.3)).norm(), 1e-12);
 }
 
-TEST_F(Populations, InAFormationMayTouchWithoutAGap) {
+TEST_F(Populations, MayTouchInAFormationWithoutGap) {
   const World world =
       read(population(10, key("formation", key("pattern", "column") + key("spacing", std::to_string(2 * sbot_radius))) +
                               key("gap", "0")));
   EXPECT_EQ(world.robots.size(), 10u);
 }
 
-TEST_F(Populations, OfAGaussianHaveItsMeanAndDeviation) {
+TEST_F(Populations, HaveTheMeanAndDeviationOfAGaussian) {
   constexpr int count = 2000;
   const World world = read(population(count, key("gaussian", key("center", "5 -3") + key("deviation", "4"))));
   Eigen::Vector2d sum = Eigen::Vector2d::Zero(), squares = Eigen::Vector2d::Zero();
@@ -118,7 +118,7 @@ TEST_F(Populations, OfAGaussianHaveItsMeanAndDeviation) {
   EXPECT_GE(nearest_pair(world), 2 * sbot_radius + 0.01 - 1e-12);
 }
 
-TEST_F(Populations, ThatMayBeFewerLeaveTakenPlacesOutAndSaySo) {
+TEST_F(Populations, SkipOccupiedPositionsIfTheyMayBeFewer) {
   const std::string places = key("line", key("from", "0 0") + key("to", "4 0"));
   const std::string pillar = box_model("0.2 0.2 1", "2 0 0.5 0 0 0", "pillar");
   const auto problems = problems_of([&] { read(pillar + population(5, places)); });
@@ -132,7 +132,7 @@ TEST_F(Populations, ThatMayBeFewerLeaveTakenPlacesOutAndSaySo) {
   EXPECT_NE(world.warnings[0].message.find("only 4 of 5 fit"), std::string::npos) << world.warnings[0].text();
 }
 
-TEST_F(Populations, AsFarApartAsNumbersGoFitOrAreSaidNotTo) {
+TEST_F(Populations, HandleExtremeDistances) {
   for (const std::string& layout :
        {key("uniform", key("min", "-1e308 -1e308") + key("max", "1e308 1e308")),
         key("gaussian", key("deviation", "1e308")), key("grid", key("spacing", "1e308")),
@@ -144,7 +144,7 @@ TEST_F(Populations, AsFarApartAsNumbersGoFitOrAreSaidNotTo) {
   }
 }
 
-TEST_F(Populations, AnotherOneBehindThemMovesNobody) {
+TEST_F(Populations, AreNotMovedByLaterPopulations) {
   const std::string area = key("uniform", key("min", "-1 -1") + key("max", "1 1"));
   const World alone = read(population(20, area));
   const World both = read(population(20, area) + population(20, area, "", "model://sbot", "q"));
@@ -156,7 +156,7 @@ TEST_F(Populations, AnotherOneBehindThemMovesNobody) {
   EXPECT_GE(nearest_pair(both), 2 * sbot_radius + 0.01 - 1e-12);
 }
 
-TEST_F(Populations, StandOnTheirLowestPoint) {
+TEST_F(Populations, TouchTheGroundWithTheirLowestPoint) {
   write_model("ball",
               "<link name=\"l\"><inertial><mass>1</mass><inertia/></inertial><collision name=\"c\"><geometry>"
               "<sphere><radius>0.2</radius></sphere></geometry></collision></link>");
@@ -165,7 +165,7 @@ TEST_F(Populations, StandOnTheirLowestPoint) {
   EXPECT_DOUBLE_EQ(world.instances.back().X_WM.position.z(), 0.2);
 }
 
-TEST_F(Populations, StandOnASlopeWithoutBeingInIt) {
+TEST_F(Populations, DoNotPenetrateASlope) {
   const double slope = 0.3;
   const World world =
       read(static_model_sdf("<pose>0 0 0 0 " + std::to_string(slope) + " 0</pose>" + collision("<plane/>"), "floor") +
@@ -173,7 +173,7 @@ TEST_F(Populations, StandOnASlopeWithoutBeingInIt) {
   EXPECT_NEAR(world.robot(0).X_WM.position.z(), (2.0 + sbot_radius) * std::tan(slope), 1e-5);
 }
 
-TEST_F(Populations, StandOnAPlatformUpToTheLevelAndBesideWhatIsHigher) {
+TEST_F(Populations, UsePlatformsUpToTheLevelAsGround) {
   const std::string platform = box_model("2 2 0.5", "0 0 0.25 0 0 0", "platform");
   const std::string place = key("line", key("from", "0 0") + key("to", "0 0"));
   EXPECT_EQ(problems_of([&] { read(platform + population(1, place)); }).size(), 1u);
@@ -181,7 +181,7 @@ TEST_F(Populations, StandOnAPlatformUpToTheLevelAndBesideWhatIsHigher) {
   EXPECT_DOUBLE_EQ(world.robot(0).X_WM.position.z(), 0.5);
 }
 
-TEST_F(Populations, FitIntoARoomThatIsOneMeshAndNotIntoASolidOne) {
+TEST_F(Populations, FitIntoAHollowMeshButNotIntoASolidOne) {
   // Four walls of a room of 2 m by 2 m, 0.5 m high, as a skin, with a floor.
   write("room.obj",
         "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 0.5\nv 1 -1 0.5\nv 1 1 0.5\nv -1 1 0.5\n"
@@ -208,7 +208,7 @@ TEST_F(Populations, FitIntoARoomThatIsOneMeshAndNotIntoASolidOne) {
   for (std::uint32_t i = 0; i < 30; ++i) EXPECT_GT(place_of(solid, i).cwiseAbs().maxCoeff(), 1.0);
 }
 
-TEST_F(Populations, OfTenThousandTakeLessThanASecondOfTheProcessor) {
+TEST_F(Populations, PlaceTenThousandInstancesInASecond) {
   const std::string world = static_model_sdf(collision("<plane/>"), "floor") +
                             population(10'000, key("uniform", key("min", "-20 -20") + key("max", "20 20")));
   const std::filesystem::path file = write_world(world);
@@ -219,7 +219,7 @@ TEST_F(Populations, OfTenThousandTakeLessThanASecondOfTheProcessor) {
   RecordProperty("milliseconds", static_cast<int>(1000.0 * seconds));
 }
 
-TEST(Triangles, AreHighestOnADiscAtACornerAnEdgeOrUphill) {
+TEST(Triangles, FindTheHighestPointOnADisc) {
   const placement::Triangle slope = {Eigen::Vector3d(-10, -10, -10), Eigen::Vector3d(10, -10, 10),
                                      Eigen::Vector3d(-10, 10, -10)};
   EXPECT_NEAR(*placement::highest_on_disc(slope, {-5, -5}, 1.0), -4.0, 1e-12);  // z is x: up the slope
@@ -229,8 +229,8 @@ TEST(Triangles, AreHighestOnADiscAtACornerAnEdgeOrUphill) {
   EXPECT_FALSE(placement::highest_on_disc(slope, {20, 20}, 1.0));
 }
 
-TEST(Triangles, AreAsFarAsTheirPartBetweenTheHeights) {
-  // Leans from the y axis at z = 0 over x = 1 at z = 1.
+TEST(Triangles, MeasureTheDistanceBetweenTwoHeights) {
+  // A triangle that is inclined from the y axis at z = 0 to x = 1 at z = 1.
   const placement::Triangle leaning = {Eigen::Vector3d(0, -5, 0), Eigen::Vector3d(0, 5, 0), Eigen::Vector3d(1, 0, 1)};
   EXPECT_NEAR(placement::distance_between_heights(leaning, 0.0, 0.25, {2, 0}), 1.75, 1e-12);
   EXPECT_EQ(placement::distance_between_heights(leaning, 0.0, 0.25, {0.2, 0}), 0.0);
@@ -257,10 +257,10 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{some_line + "<cohort:heading>backwards</cohort:heading>", 3, in_placement + "/cohort:heading",
              "'backwards'"},
         Flaw{some_line + "<cohort:heading>towards</cohort:heading>", 3, in_placement + "/cohort:heading",
-             "needs a <cohort:point>"},
+             "requires a <cohort:point>"},
         Flaw{some_line + "<cohort:point>0 0</cohort:point>", 3, in_placement + "/cohort:point", "'towards' and 'away'"},
         Flaw{"<cohort:grid><cohort:spacing>1</cohort:spacing></cohort:grid><cohort:heading>along</cohort:heading>", 3,
-             in_placement + "/cohort:heading", "'along' is for"},
+             in_placement + "/cohort:heading", "'along' can only be used with"},
         Flaw{"<cohort:formation/>", 3, in_placement + "/cohort:formation", "either a <cohort:pattern>"},
         Flaw{"<cohort:formation><cohort:pattern>row</cohort:pattern></cohort:formation>", 3,
              in_placement + "/cohort:formation/cohort:spacing", "missing"},

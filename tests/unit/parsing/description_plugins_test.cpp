@@ -9,7 +9,7 @@
 #include "server/parsing/writing/write_world.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-/// Plugins of Gazebo in files.
+/// Tests of reading plugins of Gazebo.
 namespace cohort::description {
 namespace {
 
@@ -17,7 +17,7 @@ std::string plugin(const std::string& filename, const std::string& parameters, c
   return "<plugin filename=\"" + filename + "\" name=\"" + name + "\">" + parameters + "</plugin>";
 }
 std::string limited(const std::string& effort) { return "<xyz>0 1 0</xyz><limit>" + effort + "</limit>"; }
-// What is written in the model is on line 3.
+// The content of the model is on line 3.
 std::string model_with(const std::string& plugins, const std::string& axis = "<xyz>0 1 0</xyz>") {
   return "<model name=\"m\">" + links("abc") + joint("l", "a", "b", axis) + joint("r", "a", "c", axis) + "\n" +
          plugins + "\n</model>";
@@ -48,8 +48,8 @@ class Plugins : public Description {
   }
 };
 
-// In worlds, in models, and in models of which nothing but their parts stays.
-TEST_F(Plugins, OfAnIncludeBelongToTheModelThatItBrings) {
+// For includes in worlds, in models, and in models of which only the parts are kept.
+TEST_F(Plugins, InAnIncludeBelongToTheIncludedModel) {
   const std::string axis = "<xyz>0 1 0</xyz>";
   write_model("cart", links("abc") + joint("l", "a", "b", axis) + joint("r", "a", "c", axis));
   const auto include = [](const std::string& name, const std::string& parts, const std::string& merge = "") {
@@ -66,10 +66,10 @@ TEST_F(Plugins, OfAnIncludeBelongToTheModelThatItBrings) {
             (std::map<std::string, std::size_t>{{"driven", 1}, {"bare", 0}, {"outer", 1}, {"merged", 1}, {"odd", 0}}));
   ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
   expect_problem(world.warnings, folder_ / "world.sdf",
-                 {"", 7, "world/model[odd]/plugin[odd]", "has no counterpart here"});
+                 {"", 7, "world/model[odd]/plugin[odd]", "is not supported and is ignored"});
 }
 
-TEST_F(Plugins, AreKnownByTheirFilesOfEveryGenerationAndByTheirClasses) {
+TEST_F(Plugins, AreFoundByFilesOfAllGenerationsAndByClasses) {
   for (const char* file :
        {"gz-sim-diff-drive-system", "libgz-sim-diff-drive-system.so", "gz-sim8-diff-drive-system",
         "ignition-gazebo-diff-drive-system", "libignition-gazebo-diff-drive-system.so",
@@ -79,9 +79,9 @@ TEST_F(Plugins, AreKnownByTheirFilesOfEveryGenerationAndByTheirClasses) {
     EXPECT_EQ(device<DifferentialDrive>(plugin("anything", wheels, name)).name, "cmd_vel") << name;
 }
 
-TEST_F(Plugins, ThatAreUnknownAreNamedOnceInAFile) {
+TEST_F(Plugins, WarnOnceOfUnknownPlugins) {
   const std::string unknown = plugin("libfoo.so", "<x/>") + plugin("libfoo.so", "<y/>");
-  expect_warning(unknown, "the plugin 'libfoo.so' has no counterpart here and is ignored");
+  expect_warning(unknown, "the plugin 'libfoo.so' is not supported and is ignored");
   const World world = read(unknown + "\n" + plugin("gz-sim-physics-system", "") +
                            model_with(unknown + plugin("gz-sim-elevator-system", "")));
   ASSERT_EQ(world.warnings.size(), 2u) << texts_of(world.warnings);
@@ -89,7 +89,7 @@ TEST_F(Plugins, ThatAreUnknownAreNamedOnceInAFile) {
   EXPECT_NE(world.warnings[1].message.find("gz-sim-elevator-system"), std::string::npos);
 }
 
-TEST_F(Plugins, ThatNeedNothingHereAreNotSpokenOf) {
+TEST_F(Plugins, IgnorePluginsThatNeedNoEquivalent) {
   for (const parsing::PluginKind& kind : parsing::plugin_kinds()) {
     if (kind.in_model != nullptr || kind.in_world != nullptr) continue;
     const std::string known = plugin(std::string(kind.name), "<a/>");
@@ -98,7 +98,7 @@ TEST_F(Plugins, ThatNeedNothingHereAreNotSpokenOf) {
   }
 }
 
-TEST_F(Plugins, DiffDriveIsADifferentialDrive) {
+TEST_F(Plugins, ConvertDiffDrive) {
   const std::string whole = wheels +
                             "<wheel_separation>0.5</wheel_separation><wheel_radius>0.1</wheel_radius>"
                             "<topic>t</topic><max_linear_velocity>2</max_linear_velocity>"
@@ -129,13 +129,13 @@ TEST_F(Plugins, DiffDriveIsADifferentialDrive) {
   EXPECT_EQ(classic.max_torque, 7.0);
 }
 
-TEST_F(Plugins, WithFlawsAreReportedWithTheirPlace) {
+TEST_F(Plugins, ReportProblemsWithPosition) {
   const auto drive = [](const std::string& parameters) { return plugin("gz-sim-diff-drive-system", parameters); };
   expect_flaw(drive("<left_joint>l</left_joint><right_joint>x</right_joint>"), "/right_joint", "has no joint 'x'");
   expect_flaw(drive("<left_joint>l</left_joint>"), "/right_joint", "missing");
   expect_flaw(drive(wheels + "<wheel_radius>0</wheel_radius>"), "/wheel_radius", "a number > 0");
   expect_flaw(drive(wheels) + plugin("gz-sim-joint-controller-system", "<joint_name>l</joint_name>"), "/joint_name",
-              "has a motor already");
+              "already has a motor");
   expect_flaw(plugin("gz-sim-lift-drag-system", "<link_name>z</link_name>"), "/link_name", "has no link 'z'");
   expect_flaw(plugin("gz-sim-lift-drag-system", "<link_name>a</link_name><upward>1 0 0</upward>"), "", "different");
   expect_flaw(plugin("gz-sim-hydrodynamics-system", "<link_name>a</link_name><xU>5</xU>"), "/xU", "at most 0");
@@ -144,10 +144,10 @@ TEST_F(Plugins, WithFlawsAreReportedWithTheirPlace) {
                      "<jointName>l</jointName><linkName>b</linkName><turningDirection>up</turningDirection>"),
               "/turningDirection", "did you mean 'cw'?");
   expect_warning(drive(wheels + "<max_jerk>1</max_jerk><min_jerk>1</min_jerk><max_jerk>1</max_jerk>"),
-                 "nothing is made of <max_jerk>, <min_jerk>");
+                 "this plugin does not support <max_jerk>, <min_jerk>");
 }
 
-TEST_F(Plugins, DoNotDriveWhatADeviceOfOursDrives) {
+TEST_F(Plugins, DoNotDriveJointsOfDevices) {
   const Model model = read_model(
       plugin("gz-sim-diff-drive-system", wheels) +
       "<cohort:velocity_motor name=\"v\"><cohort:joint>l</cohort:joint><cohort:max_velocity>1</cohort:max_velocity>"
@@ -156,7 +156,7 @@ TEST_F(Plugins, DoNotDriveWhatADeviceOfOursDrives) {
   EXPECT_EQ(name_of(model.devices[0]), "v");
 }
 
-TEST_F(Plugins, OfOneJointAreMotorsAndEncoders) {
+TEST_F(Plugins, ConvertJointControllersToMotorsAndEncoders) {
   const Model both =
       read_model(plugin("gz-sim-joint-controller-system", "<joint_name>r</joint_name><joint_name>l</joint_name>"),
                  limited("<effort>5</effort><velocity>6</velocity>"));
@@ -182,7 +182,7 @@ TEST_F(Plugins, OfOneJointAreMotorsAndEncoders) {
             1u);
 }
 
-TEST_F(Plugins, OfPropellersAreRotorsOfWhatCarriesThem) {
+TEST_F(Plugins, ConvertPropellersToRotors) {
   const auto rotor = device<Rotor>(
       plugin("libignition-gazebo-multicopter-motor-model-system.so",
              "<jointName>l</jointName><linkName>b</linkName><turningDirection>ccw</turningDirection><motorNumber>0"
@@ -207,7 +207,7 @@ TEST_F(Plugins, OfPropellersAreRotorsOfWhatCarriesThem) {
   EXPECT_TRUE((thruster.X_LR.orientation * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d::UnitY(), 1e-12));
 }
 
-TEST_F(Plugins, LiftDragAndHydrodynamicsArePartsOfLinks) {
+TEST_F(Plugins, ConvertLiftDragAndHydrodynamics) {
   const Model model = read_model(
       plugin("gz-sim-lift-drag-system",
              "<link_name>b</link_name><area>0.5</area><a0>0.1</a0><cla>4</cla><cp>1 2 3</cp>"
@@ -231,7 +231,7 @@ TEST_F(Plugins, LiftDragAndHydrodynamicsArePartsOfLinks) {
   EXPECT_EQ(drag.quadratic_angular_damping, Eigen::Vector3d(0, 0, 3));
 }
 
-TEST_F(Plugins, LinearBatteryPluginIsABattery) {
+TEST_F(Plugins, ConvertLinearBatteryPlugin) {
   const auto battery =
       device<Battery>(plugin("gz-sim-linearbatteryplugin-system",
                              "<battery_name>cell</battery_name><voltage>12</voltage><capacity>2"
@@ -242,7 +242,7 @@ TEST_F(Plugins, LinearBatteryPluginIsABattery) {
   EXPECT_EQ(battery.idle_power, 5.0);
 }
 
-TEST_F(Plugins, OfTheWorldAreWaterAirAndWind) {
+TEST_F(Plugins, ConvertPluginsOfTheWorldToWaterAirAndWind) {
   const World graded =
       read(plugin("gz-sim-buoyancy-system",
                   "<graded_buoyancy><default_density>1020</default_density><density_change><above_depth>2"
@@ -267,7 +267,7 @@ std::string controller(const std::string& parameters) {
 }
 const std::string tracks = track("left", "b") + track("right", "c");
 
-TEST_F(Plugins, TrackedVehicleIsATrackedDrive) {
+TEST_F(Plugins, ConvertTrackedVehicle) {
   const std::string whole =
       tracks +
       "<tracks_separation>0.4</tracks_separation><tracks_height>0.18</tracks_height><steering_efficiency>0.6"
@@ -291,7 +291,7 @@ TEST_F(Plugins, TrackedVehicleIsATrackedDrive) {
   EXPECT_EQ(plain.max_angular, 2.0 * 10.0 * 0.5 / 1.0);
 }
 
-TEST_F(Plugins, TrackControllerIsABelt) {
+TEST_F(Plugins, ConvertTrackController) {
   const auto belt = device<Belt>(
       controller("<link>b</link><min_velocity>-2</min_velocity><max_velocity>2</max_velocity>"
                  "<velocity_topic>t</velocity_topic><track_orientation>0 0 1.5707963267948966</track_orientation>"));
@@ -303,23 +303,23 @@ TEST_F(Plugins, TrackControllerIsABelt) {
   EXPECT_EQ(device<Belt>(controller("<link>b</link>")).max_velocity, 10.0);
   expect_warning(plugin("gz-sim-track-controller-system",
                         "<link>b</link><max_velocity>1</max_velocity><max_acceleration>1</max_acceleration>"),
-                 "of this plugin nothing is made of <max_acceleration>");
+                 "this plugin does not support <max_acceleration>");
 }
 
-TEST_F(Plugins, TrackControllerOfAStaticModelIsIgnoredWithAWarning) {
+TEST_F(Plugins, WarnOfTrackControllerInAStaticModel) {
   const World world = read("<model name=\"m\"><static>true</static>" + links("b") + "\n" +
                            plugin("gz-sim-track-controller-system", "<link>b</link>") + "</model>");
   ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
   expect_problem(world.warnings, folder_ / "world.sdf", {"", 3, "world/model[m]/plugin[p]", "the model is static"});
 }
 
-TEST_F(Plugins, OfTracksHaveTheirFlawsReportedWithTheirPlace) {
+TEST_F(Plugins, ReportProblemsOfTracksWithPosition) {
   const auto vehicle = [](const std::string& parameters) {
     return plugin("gz-sim-tracked-vehicle-system", parameters);
   };
   expect_flaw(vehicle(track("left", "b")), "/right_track", "missing: a track");
   expect_flaw(vehicle(track("left", "b") + track("right", "x")), "/right_track/link", "has no link 'x'");
-  expect_flaw(vehicle(track("left", "b") + track("right", "b")), "/right_track/link", "has a belt already");
+  expect_flaw(vehicle(track("left", "b") + track("right", "b")), "/right_track/link", "already has a belt");
   expect_flaw(vehicle(tracks + "<right_track/>"), "/right_track/link", "missing: the link");
   expect_flaw(vehicle(tracks + "<tracks_separation>0</tracks_separation>"), "/tracks_separation", "a number > 0");
   expect_flaw(vehicle(tracks + "<steering_efficiency>2</steering_efficiency>"), "/steering_efficiency", "at most 1");
@@ -337,13 +337,13 @@ TEST_F(Plugins, DoNotDriveTheBeltsOfDevices) {
   EXPECT_EQ(std::get<Belt>(model.devices[2]).name, "c") << "a loudspeaker on it drives nothing";
 }
 
-// A world with a model of this plugin, on line 3, and a crate on line 5.
+// Returns a world with a model with this plugin on line 3, and a crate on line 5.
 std::string with_crate(const std::string& parameters) {
   return model_with(plugin("gz-sim-detachable-joint-system", parameters)) + "\n<model name=\"crate\">" + links("xy") +
          joint("j", "x", "y", "<xyz>0 1 0</xyz>") + "</model>";
 }
 
-TEST_F(Plugins, DetachableJointHoldsAnObject) {
+TEST_F(Plugins, ConvertDetachableJoint) {
   const World world =
       read(with_crate("<parent_link>b</parent_link><child_model>crate</child_model><child_link>y</child_link>"
                       "<detach_topic>t</detach_topic><attach_topic>t</attach_topic><output_topic>t</output_topic>"));
@@ -356,17 +356,17 @@ TEST_F(Plugins, DetachableJointHoldsAnObject) {
   EXPECT_FALSE(its.may_be_missing);
 }
 
-TEST_F(Plugins, DetachableJointOfAnObjectThatIsNotThereIsAWarningUnlessItIsSuppressed) {
+TEST_F(Plugins, WarnOfMissingChildrenOfDetachableJoints) {
   const std::string missing = "<parent_link>b</parent_link><child_model>crat</child_model><child_link>y</child_link>";
   const World world = read(with_crate(missing));
   ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
   expect_problem(world.warnings, folder_ / "world.sdf",
                  {"", 3, "world/model[m]/plugin[p]/child_model",
-                  "no object is called 'crat'; did you mean 'crate'?; nothing is held"});
+                  "there is no object 'crat'; did you mean 'crate'?; nothing is attached"});
   EXPECT_TRUE(read(with_crate(missing + "<suppress_child_warning>true</suppress_child_warning>")).warnings.empty());
 }
 
-TEST_F(Plugins, DetachableJointWithFlawsIsReportedWithItsPlace) {
+TEST_F(Plugins, ReportProblemsOfDetachableJointsWithPosition) {
   const auto expect = [&](const std::string& parameters, const std::string& child, const std::string& message) {
     SCOPED_TRACE(parameters);
     expect_only_flaw({"", 3, "world/model[m]/plugin[p]" + child, message}, write_world(with_crate(parameters)));
@@ -379,7 +379,7 @@ TEST_F(Plugins, DetachableJointWithFlawsIsReportedWithItsPlace) {
   expect(link, "/child_model", "missing");
 }
 
-TEST_F(Plugins, OfAModelInsideOfAModelDriveItsJoints) {
+TEST_F(Plugins, InANestedModelDriveItsJoints) {
   const Model model =
       read("<model name=\"o\">" + links("a") + "\n" + model_with(plugin("libgz-sim-diff-drive-system.so", wheels)) +
            joint("j", "a", "m::a", "", "fixed") + "</model>")
@@ -390,7 +390,7 @@ TEST_F(Plugins, OfAModelInsideOfAModelDriveItsJoints) {
   EXPECT_EQ(model.joints[drive.left_joints.at(0)].name, "m::l");
 }
 
-TEST_F(Plugins, OfAUrdfStandInItsGazeboBlocks) {
+TEST_F(Plugins, AreReadFromGazeboBlocksOfAUrdf) {
   const auto file = write("robot.urdf",
                           "<robot name='r'><link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' "
                           "ixy='0' ixz='0' iyz='0'/></inertial></link><link name='b'><inertial><mass value='1'/>"
@@ -403,7 +403,7 @@ TEST_F(Plugins, OfAUrdfStandInItsGazeboBlocks) {
   EXPECT_EQ(std::get<VelocityMotor>(world.models.at(0).devices.at(0)).name, "j");
 }
 
-TEST_F(Plugins, OfOlderVersionsOfSdfAreReadAsWell) {
+TEST_F(Plugins, AreReadFromOlderVersionsOfSdf) {
   const auto file =
       write("old.sdf", "<sdf version=\"1.6\"><world name=\"w\">" +
                            model_with(plugin("libgazebo_ros_diff_drive.so",
@@ -432,7 +432,7 @@ TEST_F(Plugins, AreWrittenBackAsDevices) {
   EXPECT_EQ(parsing::xml_text(parsing::sdf_of(again, folder_)), text);
 }
 
-TEST_F(Plugins, ThatAreKnownAreInTheDocuments) {
+TEST_F(Plugins, AreListedInTheManual) {
   std::ifstream file(source / "docs/gazebo.md");
   std::stringstream text;
   text << file.rdbuf();

@@ -9,7 +9,7 @@
 #include "server/geometry/shapes/footprint.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Shapes, and the files that hold some of them.
+// Tests of reading shapes and their files.
 namespace cohort::description {
 namespace {
 
@@ -48,7 +48,7 @@ const std::string dae = R"(<?xml version="1.0"?>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>
 )";
 
-// What makes its triangle orange.
+// Materials that make its triangle orange.
 const std::string dae_materials = R"(<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert>
 <diffuse><color>1 0.2 0 1</color></diffuse></lambert></technique></profile_COMMON></effect></library_effects>
 <library_materials><material id="paint" name="paint"><instance_effect url="#e"/></material></library_materials>
@@ -113,7 +113,7 @@ class Shapes : public Description {
   }
 };
 
-TEST_F(Shapes, ACapsuleAndAnEllipsoidAreRead) {
+TEST_F(Shapes, ReadCapsulesAndEllipsoids) {
   const World world =
       read(static_model_sdf(collision("<capsule><radius>0.1</radius><length>0.4</length></capsule>"), "a") +
            static_model_sdf(collision("<ellipsoid><radii>1 2 3</radii></ellipsoid>"), "b"));
@@ -122,7 +122,7 @@ TEST_F(Shapes, ACapsuleAndAnEllipsoidAreRead) {
   EXPECT_EQ(std::get<Ellipsoid>(collision_of(world, 1).shape).radii, Vector3d(1, 2, 3));
 }
 
-TEST_F(Shapes, AStaticMeshIsItsTrianglesAndAMovingOneItsHull) {
+TEST_F(Shapes, UseTheTrianglesOfStaticMeshesAndTheHullOfMovingOnes) {
   const World world = read(static_model_sdf(collision(mesh("box.obj")), "a") + moving(mesh("box.obj")));
   EXPECT_FALSE(std::get<Mesh>(collision_of(world, 0).shape).convex);
   EXPECT_EQ(mesh_of(world, 0).vertices.size(), 8u);
@@ -133,13 +133,13 @@ TEST_F(Shapes, AStaticMeshIsItsTrianglesAndAMovingOneItsHull) {
   EXPECT_NEAR(volume_of(mesh_of(world, 1)), 6.0, 1e-12);
 }
 
-TEST_F(Shapes, VerticesThatAMeshRepeatsAreOne) {
+TEST_F(Shapes, MergeRepeatedVertices) {
   const World world = read(static_model_sdf(collision(mesh("corner.stl"))));
   EXPECT_EQ(mesh_of(world).vertices.size(), 4u);
   EXPECT_NEAR(volume_of(mesh_of(world)), 1.0 / 6.0, 1e-12);
 }
 
-TEST_F(Shapes, AScaledMeshStaysRightSideOutAlsoWhenMirrored) {
+TEST_F(Shapes, KeepTheOrientationOfMirroredMeshes) {
   const World world = read(static_model_sdf(collision(mesh("box.obj", "<scale>2 1 -0.5</scale>"))));
   EXPECT_NEAR(volume_of(mesh_of(world)), 6.0, 1e-12);
   double lowest = 0.0;
@@ -147,7 +147,7 @@ TEST_F(Shapes, AScaledMeshStaysRightSideOutAlsoWhenMirrored) {
   EXPECT_EQ(lowest, -1.5);
 }
 
-TEST_F(Shapes, AColladaMeshHasItsUnitAndItsNodesButKeepsItsAxes) {
+TEST_F(Shapes, ReadUnitAndNodesOfColladaMeshesButNotTheUpAxis) {
   write("triangle.dae", dae);
   const World world = read(static_model_sdf(collision(mesh("triangle.dae"))));
   ASSERT_EQ(mesh_of(world).triangles.size(), 1u);
@@ -155,7 +155,7 @@ TEST_F(Shapes, AColladaMeshHasItsUnitAndItsNodesButKeepsItsAxes) {
   EXPECT_TRUE(last.isApprox(Vector3d(0, 2, 3), 1e-6)) << last.transpose();
 }
 
-TEST_F(Shapes, TrianglesHaveTheColoursOfMaterialsWhereTheFileHasAny) {
+TEST_F(Shapes, ReadTheColoursOfMaterials) {
   write("triangle.dae", dae);
   const std::string plain_instance = "<instance_geometry url=\"#g\"/>";
   std::string painted = dae;
@@ -175,7 +175,7 @@ TEST_F(Shapes, TrianglesHaveTheColoursOfMaterialsWhereTheFileHasAny) {
   EXPECT_EQ(colors("painted.obj"), (Colors{{153, 0, 0}, {0, 255, 51}}));
 }
 
-TEST_F(Shapes, MeshesOfOneFileAndScaleShareTheirTriangles) {
+TEST_F(Shapes, ShareMeshesOfTheSameFileAndScale) {
   const World world =
       read(static_model_sdf(collision(mesh("box.obj")), "a") + static_model_sdf(collision(mesh("box.obj")), "b") +
            static_model_sdf(collision(mesh("box.obj", "<scale>2 2 2</scale>")), "c"));
@@ -183,7 +183,7 @@ TEST_F(Shapes, MeshesOfOneFileAndScaleShareTheirTriangles) {
   EXPECT_NE(&mesh_of(world, 0), &mesh_of(world, 2));
 }
 
-TEST_F(Shapes, AMeshIsFoundInAModelsFolderOrBesideTheFileThatNamesIt) {
+TEST_F(Shapes, FindMeshesInModelFoldersAndBesideTheFile) {
   write("robots/rock/meshes/rock.obj", box_obj);
   write_model("rock", "<static>true</static>" + collision(mesh("meshes/rock.obj")));
   write_model("boulder", "<include merge=\"true\"><uri>model://rock</uri></include>");
@@ -193,14 +193,14 @@ TEST_F(Shapes, AMeshIsFoundInAModelsFolderOrBesideTheFileThatNamesIt) {
   for (std::size_t model = 0; model < 3; ++model) EXPECT_EQ(&mesh_of(world, model), &mesh_of(world, 0));
 }
 
-TEST_F(Shapes, ASubmeshIsSaidToBeIgnored) {
+TEST_F(Shapes, WarnOfSubmeshes) {
   const World world = read(static_model_sdf(collision(mesh("box.obj", "\n<submesh><name>x</name></submesh>"))));
   ASSERT_EQ(world.warnings.size(), 1u);
   EXPECT_EQ(world.warnings[0].line, 4);
   EXPECT_EQ(world.warnings[0].element, in_geometry + "/mesh/submesh");
 }
 
-TEST_F(Shapes, AHeightmapHasAHeightForEachPixelTheUpperEdgeFarthestAlongY) {
+TEST_F(Shapes, ReadAHeightForEachPixelOfAHeightmap) {
   const World world =
       read(static_model_sdf(collision(height_image("ridge.png",
                                                    "<size>4 2 0.5</size><pos>1 2 3</pos><texture>"
@@ -215,14 +215,14 @@ TEST_F(Shapes, AHeightmapHasAHeightForEachPixelTheUpperEdgeFarthestAlongY) {
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
-TEST_F(Shapes, AHeightmapMayHaveSixteenBits) {
+TEST_F(Shapes, ReadHeightmapsOfSixteenBits) {
   write_png<png_uint_16>("fine.png", PNG_FORMAT_LINEAR_Y, 2, 2, {0, 1, 256, 65535});
   const World world = read(static_model_sdf(collision(height_image("fine.png", "<size>1 1 65535</size>"))));
   const HeightGrid& grid = *std::get<Heightmap>(collision_of(world).shape).grid;
   EXPECT_EQ(grid.heights, (std::vector<double>{256, 65535, 0, 1}));
 }
 
-TEST_F(Shapes, NothingIsPrintedAboutBrokenFiles) {
+TEST_F(Shapes, PrintNothingAboutInvalidFiles) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   for (const char* const file : {"broken.dae", "nan.stl", "no_triangle.obj"})
@@ -257,7 +257,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{still(mesh("none.obj")), 3, in_mesh, "there is no such file"},
         Flaw{still(mesh("robots")), 3, in_mesh, "this is a folder"},
         Flaw{still(mesh("model://bt/box.obj")), 3, in_mesh, "there is no 'bt/box.obj'"},
-        Flaw{still(mesh("https://somewhere/box.obj")), 3, in_mesh, "cannot be fetched"},
+        Flaw{still(mesh("https://somewhere/box.obj")), 3, in_mesh, "cannot be downloaded"},
         Flaw{still(mesh("box.step")), 3, in_mesh, "expected .stl, .obj or .dae"},
         Flaw{still(mesh("broken.dae")), 3, in_mesh, "cannot be read: "},
         Flaw{still(mesh("nan.stl")), 3, in_mesh, "a vertex is not finite"},
@@ -267,7 +267,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{still(mesh("box.obj", "\n<scale>1 1</scale>")), 4, in_geometry + "/mesh/scale",
              "cannot have the value '1 1'"},
         Flaw{moving(height_image("ridge.png")), 2, in_geometry + "/heightmap",
-             "a heightmap needs <static>true</static>"},
+             "a heightmap requires <static>true</static>"},
         Flaw{still(height_image("ridge.png", "\n<size>1 1 0</size>")), 4, in_geometry + "/heightmap/size",
              "expected a size > 0"},
         Flaw{still(height_image("none.png")), 3, in_heightmap, "there is no such file"},
@@ -290,7 +290,7 @@ void expect_hull(const TriangleMesh& hull, const std::vector<Vector3d>& points) 
   EXPECT_EQ(hull.vertices.size() + hull.triangles.size(), edges.size() / 2 + 2) << "Euler's formula";
 }
 
-TEST(ConvexHull, HoldsRandomPointsAndHasNoOthers) {
+TEST(ConvexHull, ContainsRandomPointsAndHasNoOthers) {
   const RandomStream random(3, "description_test", "hull");
   std::vector<Vector3d> points;
   for (std::uint64_t n = 0; n < 500; ++n)
@@ -298,7 +298,7 @@ TEST(ConvexHull, HoldsRandomPointsAndHasNoOthers) {
   expect_hull(geometry::convex_hull(points), points);
 }
 
-TEST(ConvexHull, OfAGridOfPointsIsTheBoxAroundThem) {
+TEST(ConvexHull, IsABoxForAGridOfPoints) {
   std::vector<Vector3d> points;
   for (int x = 0; x < 6; ++x)
     for (int y = 0; y < 6; ++y)
@@ -308,7 +308,7 @@ TEST(ConvexHull, OfAGridOfPointsIsTheBoxAroundThem) {
   EXPECT_NEAR(volume_of(hull), 0.5 * 1.0 * 1.5, 1e-12);
 }
 
-TEST(ConvexHull, OfARoundBodyHasAllItsPoints) {
+TEST(ConvexHull, HasAllPointsOfARoundBody) {
   std::vector<Vector3d> points;
   for (int ring = 0; ring < 40; ++ring)
     for (int i = 0; i < 50; ++i) {
@@ -321,7 +321,7 @@ TEST(ConvexHull, OfARoundBodyHasAllItsPoints) {
   EXPECT_EQ(hull.vertices.size(), points.size());
 }
 
-TEST(ConvexHull, OfPointsWithoutVolumeIsRefused) {
+TEST(ConvexHull, RejectsPointsWithoutVolume) {
   EXPECT_THROW(geometry::convex_hull({}), std::invalid_argument);
   EXPECT_THROW(geometry::convex_hull({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}}), std::invalid_argument);
   EXPECT_THROW(geometry::convex_hull({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}), std::invalid_argument);
@@ -334,7 +334,7 @@ Pose turned(double angle, const Vector3d& axis) {
   return {{1, 2, 3}, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis))};
 }
 
-TEST(Footprints, OfACapsuleIsExactHoweverItLies) {
+TEST(Footprints, AreExactForTiltedCapsules) {
   const auto upright = geometry::footprint_of(Capsule{0.5, 4.0}, turned(0.0, Vector3d::UnitX()));
   EXPECT_NEAR(upright->distance({3.0, 2.0}), 1.5, 1e-12);
   EXPECT_NEAR(upright->highest, 5.5, 1e-12);
@@ -344,7 +344,7 @@ TEST(Footprints, OfACapsuleIsExactHoweverItLies) {
   EXPECT_NEAR(leaning->lowest, 3.0 - 2.0 * std::sqrt(0.75) - 0.5, 1e-12);
 }
 
-TEST(Footprints, OfAnEllipsoidHoldsItAndTouchesItsEnds) {
+TEST(Footprints, ContainAndTouchEllipsoids) {
   const auto round = geometry::footprint_of(Ellipsoid{{2, 2, 1}}, turned(0.3, Vector3d::UnitZ()));
   EXPECT_NEAR(round->distance({4.0, 2.0}), 1.0, 1e-12);
   const auto lying = geometry::footprint_of(Ellipsoid{{3, 1, 2}}, turned(std::numbers::pi / 2, Vector3d::UnitZ()));
@@ -363,7 +363,7 @@ TEST(Footprints, OfAnEllipsoidHoldsItAndTouchesItsEnds) {
   EXPECT_NEAR(any->highest, highest, 1e-2);
 }
 
-TEST(Footprints, OfAMeshIsTheLeastRectangle) {
+TEST(Footprints, AreTheSmallestRectangleOfAMesh) {
   const std::vector<Vector3d> corners = {{-1, -2, 0}, {1, -2, 0}, {1, 2, 0}, {-1, 2, 0}, {0, 0, 5}};
   const Mesh pyramid{std::make_shared<const TriangleMesh>(geometry::convex_hull(corners))};
   const auto footprint = geometry::footprint_of(pyramid, turned(0.5, Vector3d::UnitZ()));
@@ -375,7 +375,7 @@ TEST(Footprints, OfAMeshIsTheLeastRectangle) {
   EXPECT_EQ(footprint->highest, 8.0);
 }
 
-TEST(Footprints, OfAHeightmapIsNone) {
+TEST(Footprints, DoNotExistForHeightmaps) {
   EXPECT_FALSE(geometry::footprint_of(
       Heightmap{std::make_shared<const HeightGrid>(HeightGrid{2, 2, {1, 1}, {0, 0, 0, 0}})}, Pose{}));
 }

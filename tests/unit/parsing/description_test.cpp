@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -16,8 +14,6 @@
 #include "server/description/world.hpp"
 #include "server/geometry/shapes/footprint.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "server/parsing/keys/experiment_keys.hpp"
-#include "server/parsing/keys/extensions.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
@@ -47,9 +43,9 @@ std::string uniform(const std::string& min, const std::string& max) {
   return "<cohort:uniform><cohort:min>" + min + "</cohort:min><cohort:max>" + max + "</cohort:max></cohort:uniform>";
 }
 
-// ---- What ships ----
+// ---- Shipped worlds ----
 
-TEST(ShippedWorlds, TheExperimentHasSixteenRobotsThatShareOneModel) {
+TEST(ShippedWorlds, HaveSixteenRobotsWithOneModel) {
   const Experiment experiment = parsing::read_experiment(shipped_experiment);
   EXPECT_EQ(experiment.name, "obstacle_avoidance");
   EXPECT_EQ(experiment.duration, 60s);
@@ -66,7 +62,7 @@ TEST(ShippedWorlds, TheExperimentHasSixteenRobotsThatShareOneModel) {
   EXPECT_TRUE(experiment.world.warnings.empty()) << experiment.world.warnings[0].text();
 }
 
-TEST(ShippedWorlds, TheArenaHasFourWallsTwentyFourObstaclesAndAGround) {
+TEST(ShippedWorlds, HaveFourWallsTwentyFourObstaclesAndAGround) {
   const World world = parsing::read_world(shipped_arena, 1);
   EXPECT_EQ(world.step, 10ms);
   EXPECT_EQ(world.gravity, Eigen::Vector3d(0.0, 0.0, -9.81));
@@ -97,7 +93,7 @@ TEST(ShippedWorlds, TheArenaHasFourWallsTwentyFourObstaclesAndAGround) {
   }
 }
 
-TEST(ShippedWorlds, TheSbotHasItsFramesMassesAndDevices) {
+TEST(ShippedWorlds, HaveAnSbotWithFramesMassesAndDevices) {
   const World world = parsing::read_world(shipped_arena, 1);
   const Model& sbot = world.robot_model(0);
   ASSERT_EQ(sbot.links.size(), 2u);
@@ -124,35 +120,9 @@ TEST(ShippedWorlds, TheSbotHasItsFramesMassesAndDevices) {
   EXPECT_DOUBLE_EQ(ring.first_bearing, std::numbers::pi / 15);
 }
 
-TEST(ShippedWorlds, TheManualListsEveryKeyAsTheReaderKnowsIt) {
-  std::string manual;
-  for (const char* const file : {"docs/worlds.md", "docs/devices.md"}) {
-    std::ifstream stream(source / file);
-    manual.append(std::istreambuf_iterator<char>(stream), {});
-  }
-  const auto expect_keys = [&](const parsing::Extension& extension) {
-    for (const parsing::ExtensionKey& key : extension.keys) {
-      const std::string row = "| `" + std::string(key.name) + "` | " + std::string(key.unit) + " | " +
-                              (key.required() ? "required" : std::string(key.fallback)) + " | " + std::string(key.doc) +
-                              " |";
-      EXPECT_NE(manual.find(row), std::string::npos) << row;
-    }
-  };
-  for (const parsing::Extension& extension : parsing::extensions()) {
-    EXPECT_NE(manual.find("`<cohort:" + std::string(extension.name)), std::string::npos) << extension.name;
-    expect_keys(extension);
-  }
-  for (const parsing::Extension& part : parsing::experiment_parts()) {
-    if (!part.parent.empty()) {
-      EXPECT_NE(manual.find("`" + std::string(part.name) + "`"), std::string::npos) << part.name;
-    }
-    expect_keys(part);
-  }
-}
-
 // ---- Populations ----
 
-TEST_F(Description, TheSameSeedPlacesAlikeAndAnotherSeedElsewhere) {
+TEST_F(Description, PlacesByTheSeed) {
   const World one = parsing::read_world(shipped_arena, 1), again = parsing::read_world(shipped_arena, 1),
               other = parsing::read_world(shipped_arena, 2);
   for (std::uint32_t id = 0; id < 16; ++id) {
@@ -162,7 +132,7 @@ TEST_F(Description, TheSameSeedPlacesAlikeAndAnotherSeedElsewhere) {
   }
 }
 
-TEST_F(Description, PlacedRobotsKeepTheirGapToEverything) {
+TEST_F(Description, KeepsTheGapBetweenPlacedRobots) {
   constexpr double radius = 0.058, gap = 0.08;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     const World world = parsing::read_world(shipped_arena, seed);
@@ -180,7 +150,7 @@ TEST_F(Description, PlacedRobotsKeepTheirGapToEverything) {
   }
 }
 
-TEST_F(Description, ThousandsOfRobotsFitWithoutTouching) {
+TEST_F(Description, PlacesThousandsOfRobots) {
   const World world = read(population("3000", uniform("-8 -8", "8 8")));
   ASSERT_EQ(world.robots.size(), 3000u);
   EXPECT_EQ(world.models.size(), 1u);
@@ -191,14 +161,14 @@ TEST_F(Description, ThousandsOfRobotsFitWithoutTouching) {
   EXPECT_GE(nearest, 2 * 0.058 + 0.01);
 }
 
-TEST_F(Description, APopulationThatDoesNotFitSaysHowManyDid) {
+TEST_F(Description, ReportsHowManyInstancesFit) {
   const auto problems = problems_of([&] { read(population("100", uniform("0 0", "0.5 0.5"))); });
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].line, 2);
   EXPECT_NE(problems[0].message.find(" of 100 fit"), std::string::npos) << problems[0].message;
 }
 
-TEST_F(Description, AFloorAndABridgeAreNotInTheWayOfAPopulation) {
+TEST_F(Description, PlacesOnAFloorAndUnderABridge) {
   const std::string slab = collision("<box><size>9 9 0.1</size></box>");
   const World world =
       read(static_model_sdf("<pose>0 0 -0.05 0 0 0</pose>" + slab, "floor") +
@@ -206,7 +176,7 @@ TEST_F(Description, AFloorAndABridgeAreNotInTheWayOfAPopulation) {
   EXPECT_EQ(world.robots.size(), 3u);
 }
 
-TEST(Footprints, AreExactForUprightBoxesAndHoldTiltedCylinders) {
+TEST(Footprints, AreExactForUprightBoxesAndContainTiltedCylinders) {
   const auto turned = [](double angle, const Eigen::Vector3d& axis) {
     return Pose{Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis))};
   };
@@ -223,7 +193,7 @@ TEST(Footprints, AreExactForUprightBoxesAndHoldTiltedCylinders) {
 
 // ---- Models, frames and files ----
 
-TEST_F(Description, IncludesOfOneModelShareItAndAStaticOneIsNoRobot) {
+TEST_F(Description, SharesModelsBetweenIncludes) {
   const World world = read(
       "<include><uri>model://sbot</uri></include>"
       "<include><name>second</name><uri>robots/sbot</uri><pose>1 0 0 0 0 0</pose></include>"
@@ -241,7 +211,7 @@ TEST_F(Description, IncludesOfOneModelShareItAndAStaticOneIsNoRobot) {
   EXPECT_NE(world.warnings[0].message.find("not a robot"), std::string::npos);
 }
 
-TEST_F(Description, PosesResolveThroughFrames) {
+TEST_F(Description, ResolvesPosesThroughFrames) {
   const World world = read(
       "<frame name=\"corner\"><pose degrees=\"true\">1 2 0 0 0 90</pose></frame>"
       "<include><name>a</name><uri>model://sbot</uri><pose relative_to=\"corner\">1 0 0 0 0 0</pose></include>"
@@ -262,7 +232,7 @@ TEST_F(Description, PosesResolveThroughFrames) {
   EXPECT_TRUE(link.collisions[0].X_LC.position.isApprox(Eigen::Vector3d(0, -1, 2), 1e-12));
 }
 
-TEST_F(Description, LinksAreOrderedFromTheRootAndJointsFollow) {
+TEST_F(Description, OrdersLinksFromTheRoot) {
   const World world =
       read("<model name=\"m\">" + links("dbca") + joint("one", "c", "d") + joint("two", "a", "b") +
            joint("three", "b", "c", "<xyz>1 0 0</xyz><limit><lower>-1</lower><upper>2</upper></limit>", "prismatic") +
@@ -278,7 +248,7 @@ TEST_F(Description, LinksAreOrderedFromTheRootAndJointsFollow) {
   EXPECT_EQ(model.joints[0].axis.lower, -std::numeric_limits<double>::infinity());
 }
 
-TEST_F(Description, AnAxisExpressedInAnotherFrameIsTurnedIntoTheJoints) {
+TEST_F(Description, TransformsAxesIntoTheFrameOfTheJoint) {
   const World world =
       read("<model name=\"m\"><frame name=\"f\"><pose degrees=\"true\">0 0 0 0 0 90</pose></frame>" + links("ab") +
            joint("j", "a", "b",
@@ -290,7 +260,7 @@ TEST_F(Description, AnAxisExpressedInAnotherFrameIsTurnedIntoTheJoints) {
   EXPECT_EQ(found.axis.damping, 0.5);
 }
 
-TEST_F(Description, AMergedModelBringsItsLinksAndDevices) {
+TEST_F(Description, AddsLinksAndDevicesOfMergedModels) {
   write_model("tall",
               "<include merge=\"true\"><uri>model://sbot</uri></include>" + links("m") + joint("mast", "turret", "m") +
                   "<cohort:joint_encoder name=\"mast\"><cohort:joint>mast</cohort:joint></cohort:joint_encoder>");
@@ -299,7 +269,7 @@ TEST_F(Description, AMergedModelBringsItsLinksAndDevices) {
   EXPECT_EQ(world.models[0].devices.size(), 15u);
 }
 
-TEST_F(Description, TheEnvironmentsModelPathComesFirstAndTheWorkingDirectoryNever) {
+TEST_F(Description, SearchesTheModelPathFirstAndNeverTheWorkingDirectory) {
   write("mine/sbot/model.config", "<model><name>x</name><sdf version=\"1.9\">model.sdf</sdf></model>");
   write("mine/sbot/model.sdf", "<sdf version=\"1.9\"><model name=\"mine\">" + links("a") + "</model></sdf>");
   const fs::path world = write_world("<include><uri>model://sbot</uri></include>");
@@ -312,7 +282,7 @@ TEST_F(Description, TheEnvironmentsModelPathComesFirstAndTheWorkingDirectoryNeve
   unsetenv("COHORT_MODEL_PATH");
 }
 
-TEST_F(Description, TheFoldersOfTheInstallationComeLast) {
+TEST_F(Description, SearchesTheFoldersOfTheInstallationLast) {
   write("installed/sbot/model.config", "<model><name>x</name><sdf version=\"1.9\">model.sdf</sdf></model>");
   write("installed/sbot/model.sdf", "<sdf version=\"1.9\"><model name=\"theirs\">" + links("a") + "</model></sdf>");
   const fs::path world = write_world("<include><uri>model://sbot</uri></include>");
@@ -321,7 +291,7 @@ TEST_F(Description, TheFoldersOfTheInstallationComeLast) {
   EXPECT_EQ(parsing::read_world(world, 1, {folder_ / "nowhere", folder_ / "installed"}).models[0].name, "theirs");
 }
 
-TEST_F(Description, AModelThatIsNowhereIsAnsweredWithTheFoldersSearched) {
+TEST_F(Description, ReportsTheSearchedFoldersForAMissingModel) {
   const auto message_of = [&](const std::vector<fs::path>& last_folders) {
     const auto problems = problems_of([&] { parsing::read_world(folder_ / "world.sdf", 1, last_folders); });
     return problems.empty() ? "" : problems.front().message;
@@ -330,28 +300,28 @@ TEST_F(Description, AModelThatIsNowhereIsAnsweredWithTheFoldersSearched) {
   fs::create_directories(folder_ / "installed");
   EXPECT_EQ(message_of({folder_ / "nowhere", folder_ / "installed"}),
             "there is no model 'sbit' in " + (folder_ / "robots").string() + ", " + (folder_ / "installed").string() +
-                "; COHORT_MODEL_PATH may name more");
+                "; set COHORT_MODEL_PATH to search more folders");
   fs::remove_all(folder_ / "robots");
-  EXPECT_NE(message_of({}).find("no folder 'robots' or 'objects' is beside the world file"), std::string::npos);
+  EXPECT_NE(message_of({}).find("there is no folder 'robots' or 'objects' beside the world file"), std::string::npos);
 }
 
-TEST_F(Description, AnEmptyWorldHasSdfsGravityAndOurStep) {
+TEST_F(Description, HasDefaultGravityAndStep) {
   const World world = read("<physics type=\"ode\"/>");
   EXPECT_EQ(world.step, 10ms);
   EXPECT_EQ(world.gravity, Eigen::Vector3d(0.0, 0.0, -9.8));
   EXPECT_TRUE(world.instances.empty());
 }
 
-TEST_F(Description, AnotherEngineIsNamed) {
+TEST_F(Description, WarnsOfOtherEngines) {
   EXPECT_EQ(texts_of(read("<physics type=\"bullet\"/>").warnings), "");
   EXPECT_EQ(texts_of(read("").warnings), "");
   const World world = read("\n<physics type=\"dart\"/>");
   EXPECT_EQ(world.warnings.size(), 1u);
-  EXPECT_NE(texts_of(world.warnings).find(":3: world/physics: the engine 'dart' is not here"), std::string::npos)
+  EXPECT_NE(texts_of(world.warnings).find(":3: world/physics: the engine 'dart' is not supported"), std::string::npos)
       << texts_of(world.warnings);
 }
 
-TEST_F(Description, WhatIsNotSimulatedIsSaidOnceEach) {
+TEST_F(Description, WarnsOnceOfEachUnsupportedElement) {
   const World world = read(
       "<state world_name=\"w\"/>\n"
       "<model name=\"m\"><gripper name=\"g\"><gripper_link>l</gripper_link><palm_link>l</palm_link></gripper>"
@@ -365,7 +335,7 @@ TEST_F(Description, WhatIsNotSimulatedIsSaidOnceEach) {
   EXPECT_NE(all.find(":4: world/model[m]/link[l]/sensor[s]: "), std::string::npos) << all;
 }
 
-TEST_F(Description, NothingIsPrintedWhateverIsWrong) {
+TEST_F(Description, PrintsNothingForInvalidFiles) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   problems_of([&] { read("<model name=\"m\"><link name=\"l\"><inertial><mass>x</mass></inertial></link></model>"); });
@@ -375,7 +345,7 @@ TEST_F(Description, NothingIsPrintedWhateverIsWrong) {
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }
 
-// ---- Flaws of worlds ----
+// ---- Invalid worlds ----
 
 class FlawOfAWorld : public Description, public testing::WithParamInterface<Flaw> {};
 
@@ -425,7 +395,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{static_model_sdf(links("a"), "sbot") + "\n<include><uri>model://sbot</uri></include>", 3,
              "world/include[sbot]", "another model"},
         Flaw{"\n<include><uri>model://sbit</uri></include>", 3, "world/include/uri", "there is no model 'sbit'"},
-        Flaw{"<include>\n<uri>https://somewhere/sbot</uri></include>", 3, "world/include/uri", "cannot be fetched"},
+        Flaw{"<include>\n<uri>https://somewhere/sbot</uri></include>", 3, "world/include/uri", "cannot be downloaded"},
         Flaw{"<physics type=\"ode\">\n<max_step_size>0</max_step_size></physics>", 3, "world/physics/max_step_size",
              "expected a step > 0"},
         Flaw{"<physics type=\"ode\">\n<max_step_size>1.5e-9</max_step_size></physics>", 3,
@@ -457,23 +427,23 @@ INSTANTIATE_TEST_SUITE_P(
              5, in_motor + "/cohort:max_efort", "did you mean 'cohort:max_effort'?"},
         Flaw{motor("", "cohort:velocity_moter"), 3, "world/model[m]/cohort:velocity_moter[d]",
              "did you mean 'cohort:velocity_motor'?"},
-        Flaw{motor("", "cohort:population"), 3, "world/model[m]/cohort:population[d]", "belongs in <world>"},
+        Flaw{motor("", "cohort:population"), 3, "world/model[m]/cohort:population[d]", "must be in <world>"},
         Flaw{population("0", uniform("0 0", "1 1")), 2, "world/cohort:population[p]/cohort:count", "not '0'"},
         Flaw{population("1", "\n" + uniform("0 0", "1 -1")), 3,
              "world/cohort:population[p]/cohort:placement/cohort:uniform/cohort:min", "exceeds"}));
 
-TEST_F(Description, ABrokenXmlFileIsReportedWithTheLine) {
+TEST_F(Description, ReportsInvalidXmlWithTheLine) {
   const fs::path file = write("w.sdf", "<sdf version=\"1.9\">\n<world name=\"w\">\n<model>\n</world></sdf>");
   const auto problems = problems_of([&] { parsing::read_world(file, 1); });
   expect_problem(problems, file, {"", 4, "", "</world> does not close <model> of line 3"});
 }
 
-TEST_F(Description, AFileThatIsNotThereIsSaidToBeMissing) {
+TEST_F(Description, ReportsMissingFiles) {
   const auto problems = problems_of([&] { parsing::read_world(folder_ / "none.sdf", 1); });
   expect_problem(problems, folder_ / "none.sdf", {"", 0, "", "no such file"});
 }
 
-TEST_F(Description, FlawsOfIncludedFilesAndOfTheWorldAreReportedTogetherAndOnce) {
+TEST_F(Description, ReportsProblemsOfIncludedFilesOnce) {
   write_model("bad", "<link name=\"l\">\n<inertial><mass>-1</mass></inertial></link>");
   write_model("worse", "<link name=\"l\">\n<inertial><mass>x</mass></inertial></link>");
   const fs::path file = write_world(
@@ -489,7 +459,7 @@ TEST_F(Description, FlawsOfIncludedFilesAndOfTheWorldAreReportedTogetherAndOnce)
   EXPECT_EQ(problems.size(), 5u);  // the population misses three things
 }
 
-TEST_F(Description, EveryValueThatIsNoneIsReportedTogetherWithWhatElseIsWrong) {
+TEST_F(Description, ReportsInvalidValuesTogetherWithOtherProblems) {
   const fs::path file = write_world(
       "<gravity>0 0 x</gravity><model name=\"m\"><link name=\"l\">\n<inertial><mass>heavy</mass></inertial>\n"
       "<collision name=\"c\"><geometry><box><size>1 1</size></box></geometry></collision>\n"
@@ -512,7 +482,7 @@ class Experiments : public Description {
   fs::path write_experiment(const std::string& text) const { return write("e.yaml", text); }
 };
 
-TEST_F(Experiments, TeamsHaveTheirRobotsAndPolicies) {
+TEST_F(Experiments, ReadTeamsWithRobotsAndPolicies) {
   const Experiment experiment = parsing::read_experiment(write_experiment(
       "world: world.sdf\nduration: 0.25\nseed: 18446744073709551615\nteams:\n"
       "  - {name: a, robots: [3, p/*_0], controller: x, period: 3, phase: 2, delay: 1, on_late: hold, deadline: 0.05}\n"
@@ -533,7 +503,7 @@ TEST_F(Experiments, TeamsHaveTheirRobotsAndPolicies) {
   EXPECT_EQ(experiment.teams[1].controller_line, 6);
 }
 
-TEST_F(Experiments, ParametersAreFlattenedInTheirOrder) {
+TEST_F(Experiments, FlattenParametersInOrder) {
   const Experiment experiment = parsing::read_experiment(write_experiment(
       "world: world.sdf\nduration: 1\nteams:\n  - name: a\n    robots: all\n    controller: x\n    parameters:\n"
       "      wheel/0/velocity:\n        bias: 0.2\n        eye/*/reading: [1, -2]\n      mode: fast\n"));
@@ -548,7 +518,7 @@ TEST_F(Experiments, ParametersAreFlattenedInTheirOrder) {
   EXPECT_EQ(team.parameters[2].values, std::vector<std::string>{"fast"});
 }
 
-TEST_F(Experiments, SeedAndDurationOfTheCallerStandInForTheFiles) {
+TEST_F(Experiments, UseSeedAndDurationOfTheCaller) {
   const fs::path file = write_experiment("world: world.sdf\nteams: [{name: a, robots: all, controller: x}]\n");
   const Experiment experiment = parsing::read_experiment(file, 7, 2s);
   EXPECT_EQ(experiment.seed, 7u);
@@ -557,7 +527,7 @@ TEST_F(Experiments, SeedAndDurationOfTheCallerStandInForTheFiles) {
             parsing::read_world(folder_ / "world.sdf", 7).robot(0).X_WM.position);
 }
 
-TEST_F(Experiments, SelectorsMeanRobotsOrSayWhyNot) {
+TEST_F(Experiments, ResolveSelectors) {
   const World world = parsing::read_world(folder_ / "world.sdf", 1);
   using Ids = std::vector<std::uint32_t>;
   EXPECT_EQ(select_robots(world, "all"), (Ids{0, 1, 2, 3}));
@@ -568,6 +538,15 @@ TEST_F(Experiments, SelectorsMeanRobotsOrSayWhyNot) {
   EXPECT_EQ(select_robots(world, "*_1"), (Ids{1}));
   for (const char* const wrong : {"", "4", "0..4", "3..1", "p/sbot_", "P/*", "1..", "-1"})
     EXPECT_THROW(select_robots(world, wrong), std::invalid_argument) << wrong;
+
+  World large = world;
+  while (large.robots.size() < 40) large.robots.push_back(large.robots[large.robots.size() % 4]);
+  try {
+    select_robots(large, "green/*");
+    FAIL() << "no robot is called so";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "there is no robot 'green/*'; known: p/sbot_*") << "of many, how they are called";
+  }
 }
 
 class FlawOfAnExperiment : public Experiments, public testing::WithParamInterface<Flaw> {};
@@ -603,30 +582,30 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{team("all", "    restart: nevr\n"), 7, "teams[0].restart", "did you mean 'never'?"},
         Flaw{team("all", "    restart: sometimes\n"), 7, "teams[0].restart", "known: on_failure, never"},
         Flaw{team("all", "    on_late: zero\n"), 4, "teams[0].deadline", "missing"},
-        Flaw{team("all", "    deadline: 1\n"), 7, "teams[0].deadline", "waits for ever"},
+        Flaw{team("all", "    deadline: 1\n"), 7, "teams[0].deadline", "waits without limit"},
         Flaw{team("all", "    parameters: [1]\n"), 7, "teams[0].parameters", "'NAME: VALUE' lines, not a list"},
         Flaw{team("all", "    parameters:\n      gain:\n"), 8, "teams[0].parameters.gain", "not nothing"},
         Flaw{team("all", "    parameters:\n      a:\n        b: [[1]]\n"), 9, "teams[0].parameters.a.b",
              "a list of something else"},
         Flaw{team("all", "    parameters:\n      a: 1\n      a: 2\n"), 9, "teams[0].parameters.a", "given twice"},
-        Flaw{team("p/bot_1"), 6, "teams[0].robots", "no robot is called 'p/bot_1'; did you mean 'p/sbot_1'?"},
+        Flaw{team("p/bot_1"), 6, "teams[0].robots", "there is no robot 'p/bot_1'; did you mean 'p/sbot_1'?"},
         Flaw{team("[0..3, 9]"), 6, "teams[0].robots[1]", "the robots of this world are 0..3"},
-        Flaw{team("[0, 1, 3]"), 4, "teams", "in no team: 'p/sbot_2'"},
+        Flaw{team("[0, 1, 3]"), 4, "teams", "robots that are not in any team: 'p/sbot_2'"},
         Flaw{team("all", "  - {name: b, controller: x, robots: 1..2}\n"), 7, "teams[1].robots",
              "'p/sbot_1', 'p/sbot_2' ('a')"},
         Flaw{team("0..1", "  - {name: a, controller: x, robots: 2..3}\n"), 7, "teams[1].name", "another team"},
         Flaw{top + "teams: 4\n", 3, "teams", "expected a list"}, Flaw{top, 1, "teams", "missing"},
         Flaw{"world: none.sdf\nduration: 1\nteams: []\n", 1, "world", "there is no"},
         Flaw{"world: world.sdf\nduration: 1e300\nteams: [{name: a, controller: x, robots: all}]\n", 2, "duration",
-             "at most"},
+             "<= 9e9 s"},
         Flaw{"world: world.sdf\nduration: 5 s\nteams: [{name: a, controller: x, robots: all}]\n", 2, "duration",
              "not '5 s'"}));
 
-TEST_F(Experiments, FlawsOfTheWorldAreReportedWithThoseOfTheExperiment) {
+TEST_F(Experiments, ReportProblemsOfTheWorldToo) {
   const fs::path world = write_world("<include><uri>model://sbit</uri></include>");
   const fs::path file = write_experiment("world: world.sdf\nduration: 0\nteams: [{name: a, robots: all}]\n");
   const auto problems = problems_of([&] { parsing::read_experiment(file); });
-  expect_problem(problems, file, {"", 2, "duration", "more than 0 s"});
+  expect_problem(problems, file, {"", 2, "duration", "a time > 0 s"});
   expect_problem(problems, file, {"", 3, "teams[0].controller", "missing"});
   expect_problem(problems, world, {"", 2, "world/include/uri", "there is no model 'sbit'"});
   EXPECT_EQ(problems.size(), 3u);

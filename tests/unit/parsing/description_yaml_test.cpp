@@ -17,7 +17,8 @@
 namespace cohort::description {
 namespace {
 
-// An element without its lines, with its attributes in order and its white space as one blank: what a round trip keeps.
+// Returns the parts of an element that a round trip preserves: without lines, with sorted attributes and white space as
+// single blanks.
 std::string canonical(const parsing::XmlNode& node) {
   std::vector<std::pair<std::string, std::string>> attributes = node.attributes;
   std::sort(attributes.begin(), attributes.end());
@@ -40,7 +41,7 @@ parsing::XmlNode from_yaml(const std::string& text) {
 
 std::string as_xml(const std::string& yaml) { return canonical(from_yaml(yaml)); }
 
-// As XML, with the prefix of extensions declared.
+// Returns XML with the prefix of extensions declared.
 std::string xml(const std::string& content) {
   return canonical(
       parsing::outline_xml(R"(<sdf version="1.9" xmlns:cohort="https://cohort-sim.org/sdf/1">)" + content + "</sdf>")
@@ -49,7 +50,7 @@ std::string xml(const std::string& content) {
 
 // ---- From YAML to SDF ----
 
-TEST(YamlWorlds, KeysAreAttributesOrElementsAsTheSchemaHasIt) {
+TEST(YamlWorlds, DistinguishAttributesAndElementsByTheSchema) {
   EXPECT_EQ(as_xml("world:\n"
                    "  name: w\n"
                    "  gravity: [0, 0, -9.81]\n"
@@ -61,7 +62,7 @@ TEST(YamlWorlds, KeysAreAttributesOrElementsAsTheSchemaHasIt) {
                 "<joint name='j' type='ball'><parent>a</parent><child>b</child></joint></model></world>"));
 }
 
-TEST(YamlWorlds, AListRepeatsAnElementAndNumbersInAListAreOneVector) {
+TEST(YamlWorlds, ReadListsAsRepeatedElementsOrVectors) {
   EXPECT_EQ(as_xml("model: {name: m, link: [{name: a, pose: [1, 2, 3, 0, 0, 0]}, {name: b}]}"),
             xml("<model name='m'><link name='a'><pose>1 2 3 0 0 0</pose></link><link name='b'/></model>"));
   EXPECT_EQ(as_xml("model: {name: m, link: {name: l, collision: {name: c, geometry: {polyline: {height: 1, point: [[0, "
@@ -71,12 +72,12 @@ TEST(YamlWorlds, AListRepeatsAnElementAndNumbersInAListAreOneVector) {
                 "</model>"));
 }
 
-TEST(YamlWorlds, AnElementWithAttributesHasItsValueUnderValue) {
+TEST(YamlWorlds, ReadTheValueOfElementsWithAttributesFromValue) {
   EXPECT_EQ(as_xml("model: {name: m, pose: {relative_to: f, value: [0, 0, 1, 0, 0, 0]}}"),
             xml("<model name='m'><pose relative_to='f'>0 0 1 0 0 0</pose></model>"));
 }
 
-TEST(YamlWorlds, KeysInExtensionsHaveTheirPrefixImplied) {
+TEST(YamlWorlds, ImplyThePrefixInExtensions) {
   const std::string expected =
       xml("<world name='w'><cohort:population name='p'><cohort:uri>model://sbot</cohort:uri><cohort:placement>"
           "<cohort:uniform><cohort:min>0 1</cohort:min></cohort:uniform></cohort:placement></cohort:population>"
@@ -89,13 +90,13 @@ TEST(YamlWorlds, KeysInExtensionsHaveTheirPrefixImplied) {
             expected);
 }
 
-TEST(YamlWorlds, NamesOfLinksAndCollisionsMayBeLeftOut) {
+TEST(YamlWorlds, AcceptMissingNamesOfLinksAndCollisions) {
   EXPECT_EQ(as_xml("model: {name: m, link: [{collision: {}}, {visual: [{}, {}]}]}"),
             xml("<model name='m'><link name='link'><collision name='collision'/></link><link name='link_1'>"
                 "<visual name='visual'/><visual name='visual_1'/></link></model>"));
 }
 
-TEST(YamlWorlds, AliasesAndMergedMapsStandForWhatTheyName) {
+TEST(YamlWorlds, ResolveAliasesAndMergedMaps) {
   EXPECT_EQ(as_xml("world:\n"
                    "  name: w\n"
                    "  model:\n"
@@ -105,12 +106,12 @@ TEST(YamlWorlds, AliasesAndMergedMapsStandForWhatTheyName) {
                 "<static>true</static><pose>0 0 1 0 0 0</pose></model></world>"));
 }
 
-TEST(YamlWorlds, ElementsOfDifferentNamesMayStandInAnyOrder) {
+TEST(YamlWorlds, AcceptElementsInAnyOrder) {
   EXPECT_EQ(as_xml("world: {name: w, elements: [{model: {name: a}}, {include: {uri: x}}, {model: {name: b}}]}"),
             xml("<world name='w'><model name='a'/><include><uri>x</uri></include><model name='b'/></world>"));
 }
 
-TEST(YamlWorlds, InfinityIsWrittenAsInYaml) {
+TEST(YamlWorlds, ReadInfinityOfYaml) {
   EXPECT_EQ(as_xml("model: {name: m, joint: {name: j, type: revolute, axis: {limit: {lower: -.inf, upper: .inf}}}}"),
             xml("<model name='m'><joint name='j' type='revolute'><axis><limit><lower>-inf</lower><upper>inf</upper>"
                 "</limit></axis></joint></model>"));
@@ -156,7 +157,7 @@ class YamlDescription : public Description {
   World read_yaml(const std::string& content) const { return parsing::read_world(write("world.yaml", content), 1); }
 };
 
-TEST_F(YamlDescription, AWorldIsTheSameInBothSpellings) {
+TEST_F(YamlDescription, ReadsTheSameWorldFromXmlAndYaml) {
   const std::string text = test::read_file(source / "worlds/arenas/obstacles.sdf");
   const World from_sdf = parsing::read_world(write("world.sdf", text), 7);
   const World from_yaml =
@@ -172,7 +173,7 @@ TEST_F(YamlDescription, AWorldIsTheSameInBothSpellings) {
   }
 }
 
-TEST_F(YamlDescription, TheManualsWorldIsTheSameInBothSpellingsAndTheOneInWorldsMdReads) {
+TEST_F(YamlDescription, ReadsTheExamplesOfTheManual) {
   const auto block = [](const std::string& text, const std::string& language) {
     const std::string fence = "```" + language + "\n";
     const std::size_t begin = text.find(fence) + fence.size();
@@ -181,10 +182,10 @@ TEST_F(YamlDescription, TheManualsWorldIsTheSameInBothSpellingsAndTheOneInWorlds
   const std::string readme = test::read_file(source / "worlds/README.md");
   EXPECT_EQ(as_xml(block(readme, "yaml")), canonical(parsing::outline_xml(block(readme, "xml")).root));
   EXPECT_EQ(read_yaml(block(readme, "yaml")).robots.size(), 8u);
-  EXPECT_EQ(read_yaml(block(test::read_file(source / "docs/worlds.md"), "yaml")).robots.size(), 8u);
+  EXPECT_EQ(read_yaml(block(test::read_file(source / "docs/worlds-in-yaml.md"), "yaml")).robots.size(), 8u);
 }
 
-TEST_F(YamlDescription, AnArenaTakesTenLines) {
+TEST_F(YamlDescription, ReadsAnArenaOfTenLines) {
   const World world = read_yaml(
       "world:\n"
       "  name: arena\n"
@@ -201,7 +202,7 @@ TEST_F(YamlDescription, AnArenaTakesTenLines) {
   EXPECT_EQ(world.instances.size(), 7u);
 }
 
-TEST_F(YamlDescription, ExperimentsAndWorldsAreToldApartByTheirContent) {
+TEST_F(YamlDescription, DistinguishesExperimentsAndWorldsByContent) {
   EXPECT_EQ(parsing::kind_of_file(write("a.yaml", "world:\n  name: w\n")), parsing::FileKind::sdf);
   EXPECT_EQ(parsing::kind_of_file(write("b.yml", "sdf: {version: 1.9}\n")), parsing::FileKind::sdf);
   EXPECT_EQ(parsing::kind_of_file(write("c.yaml", "model:\n  name: w\n")), parsing::FileKind::sdf);
@@ -210,7 +211,7 @@ TEST_F(YamlDescription, ExperimentsAndWorldsAreToldApartByTheirContent) {
   EXPECT_EQ(parsing::kind_of_file("w.urdf"), parsing::FileKind::sdf);
 }
 
-TEST_F(YamlDescription, AnExperimentTakesAWorldInYaml) {
+TEST_F(YamlDescription, AcceptsAWorldInYamlForAnExperiment) {
   write("w.yaml", "world: {name: w, include: {uri: 'model://sbot'}}\n");
   const Experiment experiment = parsing::read_experiment(
       write("e.yaml", "world: w.yaml\nduration: 1\nteams: [{name: t, robots: all, controller: c}]\n"));
@@ -218,14 +219,14 @@ TEST_F(YamlDescription, AnExperimentTakesAWorldInYaml) {
   EXPECT_EQ(parsing::read_experiment(folder_ / "w.yaml").world.robots.size(), experiment.world.robots.size());
 }
 
-TEST_F(YamlDescription, AModelAloneCanBeRead) {
+TEST_F(YamlDescription, ReadsASingleModel) {
   const World world = parsing::read_world_or_model(
       write("m.yaml", "model: {name: m, link: {inertial: {mass: 1, inertia: {ixx: 1}}}}\n"), 1);
   ASSERT_EQ(world.instances.size(), 1u);
   EXPECT_EQ(world.instances[0].name, "m");
 }
 
-TEST_F(YamlDescription, AllProblemsAreSaidAtOnce) {
+TEST_F(YamlDescription, ReportsAllProblemsTogether) {
   const auto file = write("world.yaml",
                           "world:\n"
                           "  gravty: [0, 0, -9]\n"
@@ -258,9 +259,9 @@ TEST_P(FlawInYaml, IsReportedWithItsLine) { expect_only_flaw(GetParam(), write("
 INSTANTIATE_TEST_SUITE_P(
     Worlds, FlawInYaml,
     ::testing::Values(
-        Flaw{"", 0, "", "there is nothing in this file"}, Flaw{"hello\n", 1, "", "expected 'world:' or 'model:'"},
+        Flaw{"", 0, "", "this file is empty"}, Flaw{"hello\n", 1, "", "expected 'world:' or 'model:'"},
         Flaw{"world:\n  name: [a\n", 3, "", "not YAML"}, Flaw{"world:\n  a: b\n c: d\n", 3, "", "not YAML"},
-        Flaw{"world:\n  name: w\n---\nworld:\n", 3, "", "a second document"},
+        Flaw{"world:\n  name: w\n---\nworld:\n", 3, "", "unexpected second document"},
         Flaw{"world: {name: w}\nduration: 3\n", 2, "duration", "unknown key; known: version, world"},
         Flaw{"world:\n  physics:\n    type: ode\n    max_step_size: 0.01 s\n", 4, "world/physics/max_step_size",
              "'s' is not a number"},
@@ -273,17 +274,17 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"world:\n  model: {name: m, static: true, link: box}\n", 2, "world/model[m]/link",
              "expected 'KEY: VALUE' lines, not 'box'"},
         Flaw{"world:\n  gravity: [[0, 0], [0, 0, 1]]\n", 2, "world/gravity", "cannot have the value '0 0'"},
-        Flaw{"world:\n  model:\n    - [1, 2]\n", 3, "world/model", "a list in a list"},
+        Flaw{"world:\n  model:\n    - [1, 2]\n", 3, "world/model", "unexpected list in a list"},
         Flaw{"world:\n  ? [a, b]\n  : c\n", 2, "world", "expected the name of an element as a key, not a list"},
         Flaw{"world:\n  a b: 1\n", 2, "world", "'a b' cannot be the name of an element"},
         Flaw{"world:\n  name: {a: 1}\n", 2, "world", "expected a value for 'name', not a map"},
         Flaw{"world:\n  name: \"a\\0b\"\n", 2, "", "a control character"},
-        Flaw{"world:\n  gravity: &g [0, *g]\n", 2, "", "something that it is a part of"},
+        Flaw{"world:\n  gravity: &g [0, *g]\n", 2, "", "refers to a value that contains it"},
         Flaw{"sdf: {version: 1.6, world: {}}\n", 1, "sdf", "expected the version 1.9"},
-        Flaw{bomb(), 4, "", "stand for more than"}, Flaw{std::string(2000, '['), 1, "", "levels deep"},
+        Flaw{bomb(), 4, "", "expand to more than"}, Flaw{std::string(2000, '['), 1, "", "levels deep"},
         Flaw{"world:\n  include:\n    uri: model://sbt\n", 3, "world/include/uri", "there is no model 'sbt'"},
         Flaw{"world:\n  model: {name: m, static: true, link: {}, cohort:population: {name: p}}\n", 2,
-             "world/model[m]/cohort:population", "belongs in <world>"},
+             "world/model[m]/cohort:population", "must be in <world>"},
         Flaw{"world:\n  cohort:physics:\n    fidelity: treel\n    solvr: direct\n", 4,
              "world/cohort:physics/cohort:solvr", "did you mean 'cohort:solver'?"}));
 

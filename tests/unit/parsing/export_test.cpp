@@ -18,13 +18,13 @@ namespace fs = std::filesystem;
 
 class ExportedWorlds : public Description {
  protected:
-  // What is exported names the files of what it was made of.
+  // Exported worlds name the files of their source.
   ExportedWorlds() { setenv("COHORT_ALLOW_FILES", source.c_str(), 1); }
   ~ExportedWorlds() override { unsetenv("COHORT_ALLOW_FILES"); }
   fs::path write_back(const World& world, const std::string& name = "exported.sdf") const {
     return write(name, parsing::xml_text(parsing::sdf_of(world, folder_)));
   }
-  // Every number of it, as text.
+  // Returns every number of the world as text.
   std::string text_of(const World& world) const { return parsing::xml_text(parsing::sdf_of(world, folder_)); }
 
   static std::uint64_t hash_after(const World& world, std::uint64_t seed, int ticks) {
@@ -51,14 +51,14 @@ class ExportedWorlds : public Description {
     const World from_yaml =
         parsing::read_world(write("exported.yaml", parsing::yaml_of_sdf(parsing::sdf_of(world, folder_))), seed);
     EXPECT_EQ(text_of(from_yaml), text_of(world));
-    // What an event brings is not in the world.
+    // Objects that events add are not in the exported world.
     if (std::ranges::all_of(world.instances, &Instance::is_present)) {
       EXPECT_EQ(hash_after(again, seed, 100), hash_after(world, seed, 100));
     }
   }
 };
 
-TEST_F(ExportedWorlds, OfEveryArenaThatShipsGiveTheSameHashAfterAHundredTicks) {
+TEST_F(ExportedWorlds, GiveTheSameHashForEveryShippedArena) {
   int arenas = 0;
   for (const auto& entry : fs::directory_iterator(source / "worlds/arenas")) {
     if (entry.path().extension() != ".sdf") continue;
@@ -69,7 +69,7 @@ TEST_F(ExportedWorlds, OfEveryArenaThatShipsGiveTheSameHashAfterAHundredTicks) {
   EXPECT_GE(arenas, 12);
 }
 
-TEST_F(ExportedWorlds, OfEveryExperimentThatShipsHaveItsSeedItsStepAndItsPhysics) {
+TEST_F(ExportedWorlds, KeepSeedStepAndPhysicsOfEveryShippedExperiment) {
   for (const auto& entry : fs::directory_iterator(source / "worlds/experiments")) {
     if (entry.path().extension() != ".yaml") continue;
     SCOPED_TRACE(entry.path().filename().string());
@@ -78,7 +78,7 @@ TEST_F(ExportedWorlds, OfEveryExperimentThatShipsHaveItsSeedItsStepAndItsPhysics
   }
 }
 
-TEST_F(ExportedWorlds, OfASeaWithWhatFliesAndSwimsGiveTheSameHash) {
+TEST_F(ExportedWorlds, GiveTheSameHashWithFluids) {
   const std::string model =
       "<pose>0 0 0.1 0.01 0.02 0.7</pose><enable_wind>true</enable_wind>"
       "<link name=\"a\"><inertial><mass>3.1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia>"
@@ -106,8 +106,8 @@ TEST_F(ExportedWorlds, OfASeaWithWhatFliesAndSwimsGiveTheSameHash) {
   expect_the_same_again(world);
 }
 
-// Rotations, axes and normals that no short number has, frames, every shape, every joint, materials.
-TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
+// Rotations, axes and normals without short numbers; also frames, every shape, every joint, and materials.
+TEST_F(ExportedWorlds, KeepUnusualNumbersExactly) {
   write("t.obj", "v 0.1 0 0\nv 0 0.3 0\nv 0 0 0.7\nv 0 0 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n");
   const std::string inertial =
       "<inertial><pose>0.013 -0.0071 0.003 0.31 -0.7 "
@@ -174,7 +174,7 @@ TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
   expect_the_same_again(read(content));
 }
 
-TEST_F(ExportedWorlds, HaveAllThatSurfacesAndLinksSay) {
+TEST_F(ExportedWorlds, KeepSurfacesAndLinks) {
   const std::string surface =
       "<surface><friction><ode><mu>0.31</mu><mu2>0.7</mu2><fdir1>1 2 "
       "-0.3</fdir1></ode><torsional><coefficient>0.37</coefficient><patch_radius>0.013</patch_radius></torsional>"
@@ -191,7 +191,7 @@ TEST_F(ExportedWorlds, HaveAllThatSurfacesAndLinksSay) {
   expect_the_same_again(world);
 }
 
-TEST_F(ExportedWorlds, HaveTheirColorsTechniquesCamerasAndFilesOfSamples) {
+TEST_F(ExportedWorlds, KeepColorsTechniquesCamerasAndSampleFiles) {
   write("data/s.csv", "distance [m],angle [rad],reading_0 [1],reading_1 [1]\n0.1,0,0.5,2\n0.2,0,0.25,1\n");
   const std::string link = "<cohort:link>a</cohort:link>";
   const std::string ring = link +
@@ -227,7 +227,7 @@ TEST_F(ExportedWorlds, HaveTheirColorsTechniquesCamerasAndFilesOfSamples) {
   expect_the_same_again(world);
 }
 
-TEST_F(ExportedWorlds, HaveTheirActionsAndBreakableJoints) {
+TEST_F(ExportedWorlds, KeepActionsAndBreakableJoints) {
   const auto hung = [](const std::string& name, const std::string& x) {
     return "<model name=\"" + name + "\"><pose>" + x + " 0 0.7 0.1 0.2 0.3</pose>" + links("ab") +
            joint("j", "a", "b") + "<cohort:action name=\"open_" + name + "\"/></model>";
@@ -243,7 +243,7 @@ TEST_F(ExportedWorlds, HaveTheirActionsAndBreakableJoints) {
   expect_the_same_again(world);
 }
 
-TEST_F(ExportedWorlds, HaveTheModelsInsideOfModelsAsOne) {
+TEST_F(ExportedWorlds, FlattenNestedModels) {
   const World world =
       read("<model name=\"outer\">" + links("a") + "<model name=\"inner\"><pose>0.3 0.2 0.1 0.1 0.2 0.3</pose>" +
            links("b") + "<cohort:joint_encoder name=\"e\"><cohort:joint>k</cohort:joint></cohort:joint_encoder>" +
@@ -255,27 +255,27 @@ TEST_F(ExportedWorlds, HaveTheModelsInsideOfModelsAsOne) {
   EXPECT_EQ(hash_after(again, 1, 100), hash_after(world, 1, 100));
 }
 
-TEST_F(ExportedWorlds, WithAHeightMapNameItsFileFromWhereTheyAre) {
+TEST_F(ExportedWorlds, NameHeightMapFilesByRelativePaths) {
   const World world = parsing::read_world(source / "worlds/arenas/rough_terrain.sdf", 1);
   const std::string text = text_of(world);
   EXPECT_NE(text.find("terrain/rough_terrain.png</uri>"), std::string::npos);
   EXPECT_NE(text.find("<size>4 4 0.25</size>"), std::string::npos);
 }
 
-TEST_F(ExportedWorlds, WithGroundFromAFunctionHaveTheFunction) {
+TEST_F(ExportedWorlds, KeepTheFunctionOfTerrain) {
   expect_the_same_again(read(static_model_sdf(
       "<link name=\"l\"><collision name=\"c\"><geometry><heightmap><size>3 2 0.4</size><cohort:terrain>"
       "<cohort:kind>hills</cohort:kind><cohort:spacing>0.1</cohort:spacing><cohort:wavelength>0.7</cohort:wavelength>"
       "<cohort:seed>3</cohort:seed></cohort:terrain></heightmap></geometry></collision></link>")));
 }
 
-TEST_F(ExportedWorlds, EscapeNamesThatXmlWouldMisread) {
+TEST_F(ExportedWorlds, EscapeSpecialCharactersInNames) {
   const World world = read(static_model_sdf(links("a"), "a&amp;b&lt;&quot;c"));
   EXPECT_EQ(world.instances[0].name, "a&b<\"c");
   expect_the_same_again(world);
 }
 
-TEST_F(ExportedWorlds, ReadAQuaternionThatIsNoUnitAsOne) {
+TEST_F(ExportedWorlds, NormaliseQuaternions) {
   const World world = read(static_model_sdf("<pose rotation_format=\"quat_xyzw\">1 2 3 0 0 2 2</pose>" + links("a")));
   const Eigen::Quaterniond q = world.instances[0].X_WM.orientation;
   EXPECT_NEAR(q.z(), std::sqrt(0.5), 1e-15);

@@ -10,13 +10,14 @@
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Files that were not written for Cohort: what moves is honoured or named, the rest never stops them.
+// Tests of files that were not written for Cohort: what affects motion is used or reported, and the rest never prevents
+// reading them.
 namespace cohort::description {
 namespace {
 
 class ForeignFiles : public Description {
  protected:
-  /// The content of <world> starts on line 2; nothing in it is ours.
+  /// The content of <world> starts on line 2 and has no `cohort:` elements.
   World read_foreign(const std::string& content, const std::string& version = "1.9") const {
     return parsing::read_world(
         write("world.sdf", "<sdf version=\"" + version + "\"><world name=\"w\">\n" + content + "\n</world></sdf>\n"),
@@ -44,7 +45,7 @@ void expect_warning(const World& world, const std::string& part) {
                                                                     << texts_of(world.warnings);
 }
 
-TEST_F(ForeignFiles, WhatSdfDoesNotKnowIsToldOnceForEachNameWithItsFirstPlace) {
+TEST_F(ForeignFiles, ReportEachUnknownNameOnce) {
   const World world =
       read_foreign("<model name=\"m\" odd=\"1\"><static>1</static>\n" +
                    collision("<sphere><radius>1</radius></sphere>\n<new_word>1</new_word>") + "<new_word/></model>");
@@ -55,7 +56,7 @@ TEST_F(ForeignFiles, WhatSdfDoesNotKnowIsToldOnceForEachNameWithItsFirstPlace) {
   expect_warning(world, "2 times");
 }
 
-TEST_F(ForeignFiles, WhatAnOldVersionDoesNotKnowIsToldWithItsLineToo) {
+TEST_F(ForeignFiles, ReportUnknownNamesOfOldVersionsWithLines) {
   const World world = read_foreign(
       "<model name=\"m\"><static>1</static>\n<link name=\"l\" visualise=\"1\">\n<velocity_dekay/></link></model>",
       "1.5");
@@ -64,24 +65,24 @@ TEST_F(ForeignFiles, WhatAnOldVersionDoesNotKnowIsToldWithItsLineToo) {
   expect_warning(world, "did you mean 'velocity_decay'?");
 }
 
-TEST_F(ForeignFiles, AFileThatDeclaresOurPrefixIsHeldToTheLetter) {
+TEST_F(ForeignFiles, AreNotFilesThatDeclareThePrefixOfCohort) {
   expect_only_flaw({"<model name=\"m\"><static>1</static><link name=\"l\"/><new_word/></model>", 2,
                     "world/model[m]/new_word", "unknown element"},
                    write_world("<model name=\"m\"><static>1</static><link name=\"l\"/><new_word/></model>"));
 }
 
-TEST_F(ForeignFiles, InertiaThatNoBodyHasBecomesTheNearestThatOneCanHave) {
+TEST_F(ForeignFiles, ReplaceImpossibleInertiaByTheNearestPossible) {
   const std::string heavy =
       "<model name=\"m\"><link name=\"l\"><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>5</izz>"
       "</inertia></inertial></link></model>";
   const World world = read_foreign(heavy);
   EXPECT_LT((world.models[0].links[0].inertial.inertia.diagonal() - Eigen::Vector3d(2, 2, 4)).norm(), 1e-12)
       << world.models[0].links[0].inertial.inertia;
-  expect_warning(world, "the nearest that a body can have");
+  expect_warning(world, "the nearest physically possible inertia");
   EXPECT_EQ(problems_of([&] { read(heavy); }).size(), 1u);
 }
 
-TEST_F(ForeignFiles, EachFreeRootOfAModelIsABodyOfItsOwn) {
+TEST_F(ForeignFiles, MakeEachFreeRootASeparateBody) {
   const World world = read("<model name=\"m\"><pose>1 0 0 0 0 0</pose>" + links("abc") + joint("j", "a", "c") +
                            "<model name=\"n\"><pose>0 0 2 0 0 0</pose>" + links("de") + joint("k", "d", "e") +
                            "<cohort:joint_encoder name=\"i\"><cohort:joint>k</cohort:joint></cohort:joint_encoder>"
@@ -98,7 +99,7 @@ TEST_F(ForeignFiles, EachFreeRootOfAModelIsABodyOfItsOwn) {
   EXPECT_EQ(world.robots, (std::vector<std::size_t>{2}));
 }
 
-TEST_F(ForeignFiles, AJointFromARootToWhatHangsOnAnotherOneIsTurnedRound) {
+TEST_F(ForeignFiles, ReverseJointsFromARootToAnotherTree) {
   const World world =
       read("<model name=\"m\">" + links("abc") + joint("j", "a", "c") + joint("k", "b", "c") + "</model>");
   ASSERT_EQ(world.instances.size(), 1u);
@@ -109,7 +110,7 @@ TEST_F(ForeignFiles, AJointFromARootToWhatHangsOnAnotherOneIsTurnedRound) {
   EXPECT_EQ(model.joints[1].axis.direction, Eigen::Vector3d(0, 0, -1));
 }
 
-TEST_F(ForeignFiles, BulletsContactIsTheSurfaceOfALink) {
+TEST_F(ForeignFiles, ReadSurfacesFromContactOfBullet) {
   const World world = read_urdf(weighing(
       "a",
       "<contact><lateral_friction value=\"0.3\"/><rolling_friction value=\"0.01\"/><spinning_friction value=\"0.02\"/>"
@@ -125,7 +126,7 @@ TEST_F(ForeignFiles, BulletsContactIsTheSurfaceOfALink) {
   expect_warning(world, "inertia_scaling");
 }
 
-TEST_F(ForeignFiles, ACollisionOfNoSizeInAUrdfIsLeftOutAndToldOnce) {
+TEST_F(ForeignFiles, IgnoreCollisionsOfZeroSizeInAUrdf) {
   const auto shaped = [](const std::string& shape) {
     return "<collision><geometry>" + shape + "</geometry></collision>";
   };
@@ -135,11 +136,10 @@ TEST_F(ForeignFiles, ACollisionOfNoSizeInAUrdfIsLeftOutAndToldOnce) {
   ASSERT_EQ(world.models[0].links[0].collisions.size(), 1u);
   EXPECT_EQ(std::get<Box>(world.models[0].links[0].collisions[0].shape).size, Eigen::Vector3d(1, 2, 3));
   ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
-  expect_warning(world,
-                 "r.urdf:2: robot/link[a]/collision/geometry: a collision of size 0, which is left out; it stands 3");
+  expect_warning(world, "r.urdf:2: robot/link[a]/collision/geometry: a collision of size 0 is ignored; it occurs 3");
 }
 
-TEST_F(ForeignFiles, TheSunAndTheGroundOfGazeboComeWithCohort) {
+TEST_F(ForeignFiles, FindTheSunAndTheGroundOfGazebo) {
   const auto file = write("world.sdf",
                           "<sdf version=\"1.6\"><world name=\"w\"><include><uri>model://sun</uri></include>\n"
                           "<include><uri>model://ground_plane</uri></include></world></sdf>");
@@ -152,7 +152,7 @@ TEST_F(ForeignFiles, TheSunAndTheGroundOfGazeboComeWithCohort) {
   EXPECT_EQ(again.world.instances.size(), 1u);
 }
 
-TEST_F(ForeignFiles, ACapsuleOfAUrdfIsOne) {
+TEST_F(ForeignFiles, ReadCapsulesOfAUrdf) {
   const World world =
       read_urdf(weighing("a",
                          "<collision><geometry><sphere radius=\"1\"/></geometry></collision>"
@@ -164,29 +164,29 @@ TEST_F(ForeignFiles, ACapsuleOfAUrdfIsOne) {
   EXPECT_EQ(capsule->length, 2.0);
 }
 
-TEST_F(ForeignFiles, ARootOfAUrdfWithoutMassIsHeldByTheWorld) {
+TEST_F(ForeignFiles, FixARootWithoutMassInAUrdfToTheWorld) {
   const World world = read_urdf("<link name=\"base\"/>" + weighing("a") + joined("j", "continuous", "base", "a"));
   const Model& model = world.models[0];
   ASSERT_EQ(model.links.size(), 2u);
-  EXPECT_STREQ(model.why_fixed(), "is tied to the world by a joint");
-  expect_warning(world, "robot/link[base]: has no mass and is the root: the world holds it");
+  EXPECT_STREQ(model.why_fixed(), "is attached to the world by a joint");
+  expect_warning(world, "robot/link[base]: is a root link without mass and is fixed to the world");
 }
 
-TEST_F(ForeignFiles, ARootWithoutMassThatIsFixedToALinkIsPartOfIt) {
+TEST_F(ForeignFiles, MergeARootWithoutMassIntoALinkFixedToIt) {
   const World world = read_urdf("<link name=\"footprint\"/>" + weighing("a") + joined("j", "fixed", "footprint", "a"));
   EXPECT_EQ(world.models[0].links.size(), 1u);
   EXPECT_EQ(world.models[0].why_fixed(), nullptr);
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
-TEST_F(ForeignFiles, JointsOfAUrdfWithoutLimitsHaveNone) {
+TEST_F(ForeignFiles, AcceptJointsOfAUrdfWithoutLimits) {
   const World world = read_urdf(weighing("a") + weighing("b") + weighing("c") + joined("j", "revolute", "a", "b") +
                                 joined("k", "prismatic", "b", "c") + "\n");
   for (const Joint& joint : world.models[0].joints) EXPECT_FALSE(std::isfinite(joint.axis.upper)) << joint.name;
   EXPECT_EQ(world.models[0].joints[1].type, JointType::prismatic);
 }
 
-TEST_F(ForeignFiles, AFloatingJointLetsGo) {
+TEST_F(ForeignFiles, ReleaseTheChildOfAFloatingJoint) {
   const World world = read_urdf(weighing("a") + weighing("b") + joined("j", "floating", "a", "b"));
   ASSERT_EQ(world.instances.size(), 2u);
   EXPECT_LT((world.models[1].links[0].X_ML.position - Eigen::Vector3d(0, 0, 1)).norm(), 1e-12);
@@ -195,7 +195,7 @@ TEST_F(ForeignFiles, AFloatingJointLetsGo) {
   EXPECT_EQ(alone.models[0].why_fixed(), nullptr);
 }
 
-TEST_F(ForeignFiles, WhatIsOnlySeenNeverStopsAUrdf) {
+TEST_F(ForeignFiles, IgnoreErrorsInVisualsOfAUrdf) {
   EXPECT_NO_THROW(
       read_urdf("<material name=\"m\"><color rgba=\"1 0 0 1\"/></material><material name=\"m\"><color rgba=\"1 0 "
                 "0\"/></material>" +
@@ -204,7 +204,7 @@ TEST_F(ForeignFiles, WhatIsOnlySeenNeverStopsAUrdf) {
                          "<material name=\"nowhere\"/></visual>")));
 }
 
-TEST_F(ForeignFiles, APackageIsAFolderWithAPackageXmlAboveTheFile) {
+TEST_F(ForeignFiles, FindPackagesByPackageXml) {
   write("arms/my_arm/package.xml", "<package><name>arm_description</name></package>");
   write("arms/my_arm/meshes/tip.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   for (const char* const name : {"arm_description", "my_arm"}) {
@@ -217,7 +217,7 @@ TEST_F(ForeignFiles, APackageIsAFolderWithAPackageXmlAboveTheFile) {
   }
 }
 
-/// With a program `xacro` that leaves a trace when it runs.
+/// Tests with a program `xacro` that leaves a trace when it runs.
 class XacroFiles : public ForeignFiles {
  protected:
   XacroFiles() {
@@ -242,12 +242,12 @@ class XacroFiles : public ForeignFiles {
   std::filesystem::path trace_ = folder_ / "trace";
 };
 
-TEST_F(XacroFiles, AreExpandedWhereAPersonNamesThemAndSaysSo) {
+TEST_F(XacroFiles, AreExpandedOnRequest) {
   EXPECT_EQ(read_expanded(write_macros("r.urdf.xacro")).models[0].name, "made");
   EXPECT_TRUE(has_run());
 }
 
-TEST_F(XacroFiles, AreRefusedOtherwiseWithTheLineAndWhatToDo) {
+TEST_F(XacroFiles, AreRejectedWithARemedyOtherwise) {
   for (const char* const name : {"r.urdf.xacro", "r.urdf"}) {
     const auto file = write_macros(name);
     const auto problems = problems_of([&] { parsing::read_world_or_model(file, 1); });
@@ -260,7 +260,7 @@ TEST_F(XacroFiles, AreRefusedOtherwiseWithTheLineAndWhatToDo) {
   EXPECT_FALSE(has_run());
 }
 
-TEST_F(XacroFiles, AreNeverExpandedWhereAWorldIncludesThem) {
+TEST_F(XacroFiles, AreNeverExpandedInIncludes) {
   write_macros("robots/evil/evil.urdf");
   write("robots/evil/model.config", "<model><name>evil</name><sdf version=\"1.9\">evil.urdf</sdf></model>");
   const auto in_yaml = write("world.yaml", "world:\n  name: w\n  include: {uri: robots/evil/evil.urdf}\n");
@@ -276,7 +276,7 @@ TEST_F(XacroFiles, AreNeverExpandedWhereAWorldIncludesThem) {
   EXPECT_FALSE(has_run());
 }
 
-TEST_F(XacroFiles, WhatXacroComplainsOfIsInOurError) {
+TEST_F(XacroFiles, PassOnErrorsOfXacro) {
   const auto file = write_macros("r.urdf.xacro");
   write_program("#!/bin/sh\nprintf 'no such \\033[1mproperty:\\n  size\\n' >&2\nexit 2\n");
   const auto problems = problems_of([&] { read_expanded(file); });
@@ -289,7 +289,7 @@ TEST_F(XacroFiles, WhatXacroComplainsOfIsInOurError) {
   EXPECT_TRUE(long_ones[0].message.ends_with("the end")) << long_ones[0].text();
 }
 
-TEST_F(ForeignFiles, NamesWithColonsOfOldFilesMayReferToWhatIsOutsideOfTheirModel) {
+TEST_F(ForeignFiles, AcceptNamesWithColonsInOldVersions) {
   const std::string parts = "<model name=\"m\">" + links("c") + "<link name=\"a\"/><link name=\"a::b\"/>" +
                             joint("a::j", "c", "a::b") + joint("a::k", "a", "a::b") +
                             "<frame name=\"a::f\" attached_to=\"c\"/></model>";
@@ -301,16 +301,16 @@ TEST_F(ForeignFiles, NamesWithColonsOfOldFilesMayReferToWhatIsOutsideOfTheirMode
   }
 }
 
-TEST_F(ForeignFiles, NamesWithColonsOfNewFilesAreToldOnceAndHavePointsInstead) {
+TEST_F(ForeignFiles, ReplaceColonsInNamesOfNewVersions) {
   const World world = read_foreign("<model name=\"m\">" + links("a") + "<link name=\"x::b\"/><link name=\"x::c\"/>" +
                                    joint("j", "a", "x::b") + joint("k", "a", "x::c") +
                                    "<frame name=\"f\" attached_to=\"x::c\"/></model>");
   EXPECT_EQ(world.models[0].links.size(), 3u);
-  expect_warning(world, "world.sdf:2: world/model[m]/link[x::b]: a name cannot have '::' in it");
+  expect_warning(world, "world.sdf:2: world/model[m]/link[x::b]: a name cannot contain '::'");
   expect_warning(world, "2 times");
 }
 
-TEST_F(ForeignFiles, NamesInASensorThatNobodyKnowsMayBeAnything) {
+TEST_F(ForeignFiles, AcceptAnyNamesInUnknownSensors) {
   const World world = read_foreign(
       "<model name=\"m\"><link name=\"l\"><sensor name=\"s\" type=\"smell\"><nose name=\"a::b\"/></sensor>"
       "<sensor name=\"c\" type=\"custom\"><foo:nose name=\"a::b\" xmlns:foo=\"x\"/><nose name=\"a::b\"/></sensor>"
@@ -318,19 +318,19 @@ TEST_F(ForeignFiles, NamesInASensorThatNobodyKnowsMayBeAnything) {
   EXPECT_EQ(world.models.size(), 1u);
 }
 
-TEST_F(ForeignFiles, ABareNameIsAModel) {
+TEST_F(ForeignFiles, TreatABareNameAsAModel) {
   write_model("x500", links("l"));
   EXPECT_EQ(read_foreign("<include><uri>x500</uri></include>").instances[0].name, "x500");
 }
 
-TEST_F(ForeignFiles, AnAddressOfFuelIsSaidWithTheCommandThatFetchesIt) {
+TEST_F(ForeignFiles, SuggestTheCommandThatDownloadsAFuelModel) {
   const std::string uri = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Depot";
   const auto problems = problems_of([&] { read_foreign("<include><uri>" + uri + "</uri></include>"); });
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_NE(problems[0].message.find("gz fuel download -u"), std::string::npos) << problems[0].text();
 }
 
-TEST_F(ForeignFiles, InertiaByDensityAndMimicJointsOfNewerVersionsAreRead) {
+TEST_F(ForeignFiles, ReadInertiaByDensityAndMimicJointsOfNewerVersions) {
   const World world = read_foreign(
       "<model name=\"m\"><link name=\"l\"><inertial auto=\"true\"><density>500</density></inertial>" +
           std::string("<collision name=\"c\"><geometry><box><size>1 1 1</size></box></geometry></collision>") +
@@ -349,7 +349,7 @@ TEST_F(ForeignFiles, InertiaByDensityAndMimicJointsOfNewerVersionsAreRead) {
   EXPECT_EQ(model.couplings[0].offset, -5.0);
 }
 
-TEST_F(ForeignFiles, AFixedJointInAWorldHoldsTwoModels) {
+TEST_F(ForeignFiles, ConnectTwoModelsByAFixedJointInAWorld) {
   const World world = read_foreign(
       "<model name=\"m\">" + links("a") + "</model><model name=\"n\"><pose>0 0 3 0 0 0</pose>" + links("b") +
           "</model><joint name=\"j\" type=\"fixed\"><parent>m::a</parent><child>n::b</child></joint>",

@@ -40,7 +40,7 @@ std::vector<std::string> shipped_experiments() {
 
 class KeptExperiment : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(KeptExperiment, IsTheSameWhenItsFilesAreGone) {
+TEST_P(KeptExperiment, IsReadAgainWithoutItsFiles) {
   const fs::path folder = fs::temp_directory_path() / ("cohort_kept_" + GetParam() + std::to_string(getpid()));
   fs::create_directories(folder);
   fs::copy(description::source / "worlds", folder / "worlds", fs::copy_options::recursive);
@@ -54,7 +54,7 @@ TEST_P(KeptExperiment, IsTheSameWhenItsFilesAreGone) {
   EXPECT_EQ(again.inputs, first.inputs);
 }
 
-/// A copy of the shipped worlds, from whose folder of experiments files are named; gone with this.
+/// A temporary copy of the shipped worlds, which is removed with this. Files are named from its folder of experiments.
 class CopyOfWorlds {
  public:
   explicit CopyOfWorlds(const std::string& name)
@@ -73,7 +73,7 @@ class CopyOfWorlds {
     fs::remove_all(folder_);
   }
 
-  /// Every way to name one of its experiments.
+  /// Returns all notations of the path of one of its experiments.
   std::vector<fs::path> ways_to_name(const std::string& file) const {
     fs::create_symlink(file, folder_ / "worlds/experiments" / ("link_to_" + file));
     return {file,
@@ -94,7 +94,7 @@ class CopyOfWorlds {
   fs::path folder_;
 };
 
-TEST_P(KeptExperiment, IsTheSameHoweverItsFileIsNamed) {
+TEST_P(KeptExperiment, DoesNotDependOnTheNotationOfItsPath) {
   std::vector<Experiment> experiments;
   {
     const CopyOfWorlds copy(GetParam());
@@ -119,7 +119,7 @@ TEST_P(KeptExperiment, IsTheSameHoweverItsFileIsNamed) {
 INSTANTIATE_TEST_SUITE_P(Shipped, KeptExperiment, ::testing::ValuesIn(shipped_experiments()),
                          [](const auto& each) { return each.param; });
 
-/// An experiment with a file of every kind that can be named.
+/// An experiment with a file of every kind.
 class KeptFilesOfAllKinds : public Description {
  protected:
   KeptFilesOfAllKinds() {
@@ -189,7 +189,7 @@ class KeptFilesOfAllKinds : public Description {
   }
 };
 
-TEST_F(KeptFilesOfAllKinds, HoldEachFileOnce) {
+TEST_F(KeptFilesOfAllKinds, HaveEachFileOnce) {
   const Experiment experiment = read();
   EXPECT_EQ(names_of(experiment.inputs->files),
             (std::vector<std::string>{"arena.yaml", "elsewhere/rock/model.config", "elsewhere/rock/rock.mtl",
@@ -199,7 +199,7 @@ TEST_F(KeptFilesOfAllKinds, HoldEachFileOnce) {
   EXPECT_EQ(experiment.inputs->files[2].bytes, "newmtl grey\nKd 0.5 0.5 0.5\n");
 }
 
-TEST_F(KeptFilesOfAllKinds, AreAllThatReadingAgainTakes) {
+TEST_F(KeptFilesOfAllKinds, SufficeToReadTheExperimentAgain) {
   const Experiment first = read();
   const auto hashes = hashes_at_0_and_100(first);
   fs::remove_all(folder_);
@@ -209,7 +209,7 @@ TEST_F(KeptFilesOfAllKinds, AreAllThatReadingAgainTakes) {
   EXPECT_EQ(hashes_at_0_and_100(again), hashes);
 }
 
-TEST_F(KeptFilesOfAllKinds, CountAgainstWhatTheDiskHasNow) {
+TEST_F(KeptFilesOfAllKinds, HavePriorityOverFilesOnTheDisk) {
   const Experiment first = read();
   const auto hashes = hashes_at_0_and_100(first);
   write("arena.yaml", "world: {name: other}\n");
@@ -218,7 +218,7 @@ TEST_F(KeptFilesOfAllKinds, CountAgainstWhatTheDiskHasNow) {
   EXPECT_EQ(hashes_at_0_and_100(again), hashes);
 }
 
-TEST_F(KeptFilesOfAllKinds, ARelativeNameMeansTheFolderThatItMeantFirst) {
+TEST_F(KeptFilesOfAllKinds, ResolveRelativeNamesInTheOriginalFolder) {
   const fs::path before = fs::current_path();
   fs::current_path(folder_);
   const Experiment first = read_experiment("run.yaml", 3, {}, {"installed"});
@@ -230,7 +230,7 @@ TEST_F(KeptFilesOfAllKinds, ARelativeNameMeansTheFolderThatItMeantFirst) {
   EXPECT_EQ(hashes_at_0_and_100(again), hashes);
 }
 
-TEST_F(KeptFilesOfAllKinds, AWorldAndAModelMayBeNamedInAnyWayToo) {
+TEST_F(KeptFilesOfAllKinds, AcceptAnyNotationOfPathsOfWorldsAndModels) {
   fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "link");
   const fs::path before = fs::current_path();
   fs::current_path(folder_ / "installed");
@@ -247,8 +247,8 @@ TEST_F(KeptFilesOfAllKinds, AWorldAndAModelMayBeNamedInAnyWayToo) {
   }
 }
 
-// As recordings have them that were made before the paths of what they keep were normal.
-TEST_F(KeptFilesOfAllKinds, AreFoundUnderPathsThatAreNotNormal) {
+// As in recordings from before the paths of kept files were normalised.
+TEST_F(KeptFilesOfAllKinds, AreFoundByUnnormalisedPaths) {
   const Experiment first = read();
   KeptFiles other = *first.inputs;
   other.experiment = "./elsewhere/../run.yaml";
@@ -262,14 +262,14 @@ TEST_F(KeptFilesOfAllKinds, AreFoundUnderPathsThatAreNotNormal) {
   EXPECT_EQ(hashes_at_0_and_100(again), hashes_at_0_and_100(first));
 }
 
-TEST_F(KeptFilesOfAllKinds, WhatIsNotKeptDoesNotExistThoughItIsOnTheDisk) {
+TEST_F(KeptFilesOfAllKinds, IgnoreOtherFilesOnTheDisk) {
   const Experiment first = read();
   KeptFiles without = *first.inputs;
   std::erase_if(without.files, [](const KeptFile& file) { return file.path.ends_with("ridge.png"); });
   const auto problems = description::problems_of(
       [&] { read_experiment(std::make_shared<const KeptFiles>(without), first.seed, first.duration); });
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_NE(problems[0].message.find("none of the files that the experiment was read from"), std::string::npos)
+  EXPECT_NE(problems[0].message.find("not among those from which the experiment was read"), std::string::npos)
       << problems[0].text();
 }
 

@@ -5,7 +5,7 @@
 
 #include "tests/support/worlds/written_worlds.hpp"
 
-// A collision of what moves is read, or an error says why it is not and what to do.
+// Tests that every collision of a moving model is read, or that an error gives the reason and a remedy.
 namespace cohort::description {
 namespace {
 
@@ -35,7 +35,7 @@ class LostCollisions : public Description {
   }
 };
 
-TEST_F(LostCollisions, SlashesBeforeAPackageMeanNothing) {
+TEST_F(LostCollisions, IgnoreSlashesBeforeAPackage) {
   write("arm/package.xml", "<package><name>arm</name></package>");
   write_tip("arm/parts/tip.obj");
   for (const char* const uri : {"package://arm/parts/tip.obj", "package:///arm/parts/tip.obj",
@@ -43,7 +43,7 @@ TEST_F(LostCollisions, SlashesBeforeAPackageMeanNothing) {
     expect_one_collision(write_urdf(uri, "arm/urdf/r.urdf"));
 }
 
-TEST_F(LostCollisions, APackageIsAFolderOfItsNameAboveTheFile) {
+TEST_F(LostCollisions, FindPackagesAboveTheFile) {
   write_tip("arm/meshes/tip.obj");
   expect_one_collision(write_urdf("package://arm/meshes/tip.obj", "arm/urdf/r.urdf"));
   expect_one_collision(write_urdf("package://arm/meshes/tip.obj", "arm/models/one/r.urdf"));
@@ -51,19 +51,19 @@ TEST_F(LostCollisions, APackageIsAFolderOfItsNameAboveTheFile) {
   expect_one_collision(write_urdf("package://hand/tip.obj", "arm/urdf/r.urdf"));
 }
 
-TEST_F(LostCollisions, TheFirstFolderOfThePackagesNameThatHasTheFileCounts) {
+TEST_F(LostCollisions, UseTheFirstFolderThatHasTheFile) {
   write("arm/arm/model.config", "<model/>");
   write_tip("arm/meshes/tip.obj");
   expect_one_collision(write_urdf("package://arm/meshes/tip.obj", "arm/arm/urdf/r.urdf"));
 }
 
-TEST_F(LostCollisions, AMeshThatIsNotThereIsAnErrorWithWhatToDo) {
+TEST_F(LostCollisions, SuggestARemedyForMissingMeshes) {
   expect_error(write_urdf("package://pkg/meshes/tip.stl"), 4,
                {"there is no 'pkg/meshes/tip.stl'", (folder_ / "urdf").string(), "--allow-files DIR"});
   expect_error(write_urdf("meshes/tip.stl"), 4, {"there is no such file", (folder_ / "urdf/meshes/tip.stl").string()});
 }
 
-TEST_F(LostCollisions, AMeshInNoTrustedFolderIsAnErrorThatNamesTheFolder) {
+TEST_F(LostCollisions, RejectMeshesOutsideOfTrustedFolders) {
   write_tip("arm/parts/tip.obj");
   const std::string parts = (folder_ / "arm/parts").string();
   const auto file = write_urdf("package://arm/parts/tip.obj", "arm/urdf/r.urdf");
@@ -73,7 +73,7 @@ TEST_F(LostCollisions, AMeshInNoTrustedFolderIsAnErrorThatNamesTheFolder) {
   unsetenv("COHORT_ALLOW_FILES");
 }
 
-TEST_F(LostCollisions, PackagesAreFoundInAllowedFolders) {
+TEST_F(LostCollisions, FindPackagesInAllowedFolders) {
   write_tip("elsewhere/arm/parts/tip.obj");
   const auto file = write_urdf("package://arm/parts/tip.obj");
   for (const char* const allowed : {"elsewhere", "elsewhere/arm"}) {
@@ -83,18 +83,18 @@ TEST_F(LostCollisions, PackagesAreFoundInAllowedFolders) {
   unsetenv("COHORT_ALLOW_FILES");
 }
 
-TEST_F(LostCollisions, AShapeThatIsNotSupportedIsAnError) {
+TEST_F(LostCollisions, RejectUnsupportedShapes) {
   const auto file = write("w.sdf", "<sdf version=\"1.9\"><world name=\"w\">\n<model name=\"m\">" + links("a") +
                                        joint("j", "a", "l") + collision("<plane/>") + "</model></world></sdf>");
-  expect_error(file, 2, {"a plane needs <static>true</static>"});
+  expect_error(file, 2, {"a plane requires <static>true</static>"});
 }
 
-TEST_F(LostCollisions, AFlatMeshIsAMillimetreThick) {
+TEST_F(LostCollisions, MakeFlatMeshesAMillimetreThick) {
   write("meshes/plate.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
   expect_one_collision(write_urdf("package://meshes/plate.obj"));
 }
 
-TEST_F(LostCollisions, ThoseOfAStaticModelAreLeftOutWithAWarning) {
+TEST_F(LostCollisions, AreWarningsInStaticModels) {
   const World world = parsing::read_world(
       write("w.sdf", "<sdf version=\"1.9\"><world name=\"w\">\n<model name=\"m\"><static>1</static>" +
                          collision("<mesh><uri>meshes/none.stl</uri></mesh>") + "</model></world></sdf>"),
@@ -102,7 +102,7 @@ TEST_F(LostCollisions, ThoseOfAStaticModelAreLeftOutWithAWarning) {
   EXPECT_EQ(world.warnings.size(), 1u);
 }
 
-TEST_F(LostCollisions, OfTwoShapesInOneTheFirstCounts) {
+TEST_F(LostCollisions, UseTheFirstOfTwoShapes) {
   const auto file = write(
       "r.urdf",
       "<robot name=\"r\"><link name=\"a\"><inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" "

@@ -4,7 +4,7 @@
 
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Files of the field that SDF or URDF in the strict sense would refuse: what becomes of them.
+// Tests of files that violate SDF or URDF, and of their repair.
 namespace cohort::description {
 namespace {
 
@@ -13,7 +13,7 @@ class MendedFiles : public Description {
   static World read_file(const std::string& name) {
     return parsing::read_world_or_model(source / "tests/data/corpus/valid" / name, 1);
   }
-  /// Each of `parts` is in a warning.
+  /// Expects each of `parts` in a warning.
   static void expect_warnings(const World& world, const std::vector<std::string>& parts) {
     for (const std::string& part : parts)
       EXPECT_NE(texts_of(world.warnings).find(part), std::string::npos) << part << "\nnot in\n"
@@ -21,97 +21,97 @@ class MendedFiles : public Description {
   }
 };
 
-TEST_F(MendedFiles, ALinkCalledWorldIsTheWorld) {
+TEST_F(MendedFiles, TreatALinkCalledWorldAsTheWorld) {
   const World world = read_file("link_called_world.sdf");
   ASSERT_EQ(world.models[0].links.size(), 1u);
-  EXPECT_STREQ(world.models[0].why_fixed(), "is tied to the world by a joint");
+  EXPECT_STREQ(world.models[0].why_fixed(), "is attached to the world by a joint");
   EXPECT_EQ(world.models[0].joints[0].parent, Joint::world);
   expect_warnings(world, {"link_called_world.sdf:2: model[m]/link[world]: a link called 'world'"});
 }
 
-TEST_F(MendedFiles, TheWorldHoldsARootWithoutMassAndWhatHangsOnAJointHasAGram) {
+TEST_F(MendedFiles, FixARootWithoutMassAndGiveOtherLinksAGram) {
   const World world = read_file("links_without_mass.sdf");
   const Model& model = world.models[0];
   ASSERT_EQ(model.links.size(), 3u);
-  EXPECT_STREQ(model.why_fixed(), "is tied to the world by a joint");
+  EXPECT_STREQ(model.why_fixed(), "is attached to the world by a joint");
   EXPECT_EQ(model.links[2].inertial.mass, 1e-3);
-  expect_warnings(world, {":2: model[m]/link[base]: a root without mass", ":4: model[m]: links without mass: 'tip'"});
+  expect_warnings(world, {":2: model[m]/link[base]: a root link without mass", ":4: model[m]: links without mass: 'tip'"});
 }
 
-TEST_F(MendedFiles, SensorsThatNobodyKnowsHereAreIgnored) {
+TEST_F(MendedFiles, IgnoreUnknownSensors) {
   expect_warnings(read_file("sensor_of_an_unknown_type.sdf"),
-                  {"sensor[air]: there is no sensor of type 'air_speed' here; it is ignored"});
+                  {"sensor[air]: the sensor type 'air_speed' is not supported; the sensor is ignored"});
 }
 
-TEST_F(MendedFiles, CollisionsOfOneNameAreNumbered) {
+TEST_F(MendedFiles, NumberCollisionsOfTheSameName) {
   const auto& collisions = read_file("collisions_of_one_name.sdf").models[0].links[0].collisions;
   ASSERT_EQ(collisions.size(), 3u);
   EXPECT_EQ(collisions[1].name, "c_1");
   EXPECT_EQ(collisions[2].name, "c_2");
 }
 
-TEST_F(MendedFiles, ACollisionWithoutASizeIsLeftOut) {
+TEST_F(MendedFiles, IgnoreCollisionsOfZeroSize) {
   const World world = read_file("collision_without_a_size.sdf");
   EXPECT_EQ(world.models[0].links[0].collisions.size(), 1u);
   expect_warnings(world, {"collision[e]/geometry/sphere/radius: expected a size > 0 m"});
 }
 
-TEST_F(MendedFiles, AModelWithoutLinksIsThereAndIsNothing) {
+TEST_F(MendedFiles, AcceptAModelWithoutLinks) {
   const World world = read_file("nothing_in_a_model.sdf");
   ASSERT_EQ(world.models.size(), 1u);
   EXPECT_TRUE(world.models[0].links[0].collisions.empty());
 }
 
-TEST_F(MendedFiles, OfALinkWithoutInertiaThatOfItsCollisionsStandsInForIt) {
+TEST_F(MendedFiles, ReplaceMissingInertiaByThatOfCollisions) {
   const World world = read_file("no_inertia.urdf");
   const Eigen::Matrix3d& inertia = world.models[0].links[0].inertial.inertia;
   EXPECT_LT((inertia.diagonal() - Eigen::Vector3d(25.0, 10.0, 25.0)).norm(), 1e-9) << inertia;
-  expect_warnings(world, {"that of the collisions stands in for it"});
+  expect_warnings(world, {"the inertia of the collisions is used instead"});
 }
 
-TEST_F(MendedFiles, AxesWithoutDirectionAreThoseOfTheFrame) {
+TEST_F(MendedFiles, UseDefaultAxesForMissingDirections) {
   const World world = read_file("axis_without_a_direction.sdf");
   EXPECT_EQ(world.models[0].joints[0].axis.direction, Eigen::Vector3d(0, 0, 1));
   EXPECT_EQ(world.models[0].joints[0].second_axis.direction, Eigen::Vector3d(0, 1, 0));
 }
 
-TEST_F(MendedFiles, FrictionBelowZeroHoldsWhateverPulls) {
+TEST_F(MendedFiles, TreatNegativeFrictionAsUnlimited) {
   EXPECT_EQ(read_file("friction_below_zero.sdf").models[0].links[0].collisions[0].surface.friction, 1000.0);
 }
 
-TEST_F(MendedFiles, PluginsWithFlawsAreIgnored) {
+TEST_F(MendedFiles, IgnoreInvalidPlugins) {
   const World world = read_file("plugins_with_flaws.sdf");
   EXPECT_FALSE(world.models[0].is_robot());
   expect_warnings(world, {"link_name: missing: the link that it acts on; the plugin is ignored",
                           "left_joint: the model has no joint 'nowhere'"});
 }
 
-TEST_F(MendedFiles, ALightAloneIsAWorld) {
+TEST_F(MendedFiles, TreatASingleLightAsAWorld) {
   const World world = read_file("light_alone.sdf");
   ASSERT_EQ(world.instances.size(), 1u);
   EXPECT_EQ(world.instances[0].name, "sun");
 }
 
-TEST_F(MendedFiles, JointsOfBulletAreBallsAndFree) {
+TEST_F(MendedFiles, ReadJointTypesOfBullet) {
   const World world = read_file("joints_of_bullet.urdf");
   ASSERT_EQ(world.instances.size(), 2u);
   EXPECT_EQ(world.models[0].joints[0].type, JointType::ball);
-  expect_warnings(world, {"robot/joint[k]: a planar joint is not supported"});
+  expect_warnings(world, {"robot/joint[k]: planar joints are not supported"});
 }
 
-TEST_F(MendedFiles, APlaneOfBulletIsGround) {
+TEST_F(MendedFiles, ReadPlanesOfBullet) {
   const World world = read_file("plane_of_bullet.urdf");
   EXPECT_TRUE(world.models[0].is_static);
   EXPECT_TRUE(std::holds_alternative<Plane>(world.models[0].links[0].collisions.at(0).shape));
 }
 
-TEST_F(MendedFiles, OfAnOptionalVariableItsDefaultCounts) {
+TEST_F(MendedFiles, UseDefaultsOfOptionalVariables) {
   const World world = read_file("words_of_xacro_in_a_urdf.urdf");
   expect_warnings(world, {"robot/joint[j]/origin: $(optenv …)"});
   EXPECT_LT((world.models[0].links[0].inertial.X_LI.position - Eigen::Vector3d(0.5, 1.0, 1.5)).norm(), 1e-9);
 }
 
-TEST_F(MendedFiles, NumbersAndNamesOfAUrdfAreReadAsOthersReadThem) {
+TEST_F(MendedFiles, ReadNumbersAndNamesOfAUrdfLikeOtherReaders) {
   const World world = read_file("numbers_with_commas.urdf");
   const Model& model = world.models[0];
   EXPECT_EQ(model.joints[0].name, "b_joint");
@@ -120,7 +120,7 @@ TEST_F(MendedFiles, NumbersAndNamesOfAUrdfAreReadAsOthersReadThem) {
   EXPECT_EQ(model.links[1].X_ML.position, Eigen::Vector3d(1, 0, 2));
 }
 
-TEST_F(MendedFiles, AFileOfOursWithTextAfterItsRootIsRefused) {
+TEST_F(MendedFiles, RejectTextAfterTheRootInFilesForCohort) {
   const auto file = write("w.sdf",
                           "<sdf version=\"1.9\" xmlns:cohort=\"https://cohort-sim.org/sdf/1\"><world "
                           "name=\"w\"/></sdf>\nend\n");
@@ -129,7 +129,7 @@ TEST_F(MendedFiles, AFileOfOursWithTextAfterItsRootIsRefused) {
   EXPECT_NE(problems[0].message.find("text outside of the root"), std::string::npos);
 }
 
-TEST_F(MendedFiles, TheSecondIncludeOfANameHasANumber) {
+TEST_F(MendedFiles, NumberIncludesOfTheSameName) {
   write_model("crate", links("l"));
   const std::string include = "<include><uri>model://crate</uri></include>\n";
   const World world = parsing::read_world(
@@ -139,7 +139,7 @@ TEST_F(MendedFiles, TheSecondIncludeOfANameHasANumber) {
   expect_warnings(world, {"w.sdf:3: world/include: another model has the name 'crate'"});
 }
 
-TEST_F(MendedFiles, OfAnIncludeThatIsNotThereNothingElseIsSaid) {
+TEST_F(MendedFiles, ReportOnlyThatAnIncludeIsMissing) {
   const auto problems = problems_of([&] {
     parsing::read_world_or_model(
         write("m.sdf", "<sdf version=\"1.6\"><model name=\"m\"><include>\n<uri>model://nowhere</uri></include>" +
@@ -156,7 +156,7 @@ std::string crate(const std::string& name, double x, const std::string& more = "
          "</model>\n";
 }
 
-TEST_F(MendedFiles, ModelsThatAreAlikeAreReadOnceAndKeepTheirNames) {
+TEST_F(MendedFiles, ReadEqualModelsOnce) {
   for (const std::string version : {"1.6", "1.9"}) {
     std::string text = "<sdf version=\"" + version + "\"><world name=\"w\">\n";
     for (int i = 0; i < 40; ++i) text += crate("m" + std::to_string(i), i, i % 3 == 2 ? links("b") : "");
@@ -170,14 +170,14 @@ TEST_F(MendedFiles, ModelsThatAreAlikeAreReadOnceAndKeepTheirNames) {
   }
 }
 
-TEST_F(MendedFiles, NamesThatAreWrongAreToldWithWhatIsToBeDone) {
+TEST_F(MendedFiles, ReportInvalidNamesWithARemedy) {
   expect_only_flaw({"", 2, "world/model[m]/joint[j]", "there is no link or frame 'z' in the model"},
                    write_world("<model name=\"m\">" + links("ab") + joint("j", "a", "z") + "</model>"));
-  expect_only_flaw({"", 2, "world/model[m]/link[a]", "another one has the name 'a'"},
+  expect_only_flaw({"", 2, "world/model[m]/link[a]", "the name 'a' is already used"},
                    write_world("<model name=\"m\">" + links("aa") + "</model>"));
 }
 
-TEST_F(MendedFiles, AMistakeInAModelOfAWorldHasItsPlace) {
+TEST_F(MendedFiles, ReportProblemsOfNestedModelsWithPosition) {
   const Flaw flaw{
       "<model name=\"m\"><link name=\"l\"/></model>\n<model name=\"n\">\n<link name=\"l\"><inertial><mass>x"
       "</mass></inertial></link></model>",

@@ -21,21 +21,21 @@
 #include "server/parsing/files/mesh_file.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Meshes from outside: whatever is in them, this process goes on.
+// Tests that this process survives any mesh file.
 namespace cohort::description {
 namespace {
 
 using parsing::ChildStream;
 using parsing::LimitedChild;
 
-// AddressSanitizer and ThreadSanitizer allocate within what they have reserved, where no limit of memory binds.
+// AddressSanitizer and ThreadSanitizer allocate within memory that they have reserved, so memory limits have no effect.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool limits_memory = false;
 #else
 constexpr bool limits_memory = true;
 #endif
 
-// ---- Files that crash Assimp, or make it fill the memory ----
+// ---- Files that crash Assimp, or make it exhaust the memory ----
 
 struct Collada {
   std::string library_nodes{};
@@ -74,7 +74,7 @@ std::string with_deep_nodes() {
 }
 std::string with_negative_count() { return Collada{.count = "-1"}.text(); }
 
-/// Each of `levels` nodes has the one before it four times.
+/// Each of `levels` nodes contains the previous one four times.
 std::string with_shared_nodes(std::size_t levels) {
   std::string nodes = "<node id=\"n0\"><instance_geometry url=\"#g\"/></node>";
   for (std::size_t i = 1; i <= levels; ++i)
@@ -105,7 +105,7 @@ TEST_P(MeshThatBreaksItsImporter, IsAnErrorWithFileLineAndElement) {
       write_world(static_model_sdf(collision(mesh("bomb.dae")))));
 }
 
-TEST_P(MeshThatBreaksItsImporter, IsAnErrorAlsoWhereItIsOnlySeenOrTheFileIsNotOurs) {
+TEST_P(MeshThatBreaksItsImporter, IsAnErrorInVisualsAndForeignFiles) {
   const std::string shape = "<geometry>" + mesh("bomb.dae") + "</geometry>";
   const std::string visual = "<link name=\"l\"><visual name=\"v\">" + shape + "</visual></link>";
   for (const std::string& link : {visual, collision(mesh("bomb.dae"))}) {
@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, MeshThatBreaksItsImporter, testing::ValuesIn(bo
                          [](const auto& bomb) { return std::string(bomb.param.name); });
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-TEST_F(MeshImport, AFileThatFillsTheMemoryTakesNoneOfOurs) {
+TEST_F(MeshImport, LimitsTheMemoryOfTheImporter) {
   rusage before{}, after{};
   getrusage(RUSAGE_SELF, &before);
   write("bomb.dae", with_shared_nodes(11));
@@ -137,7 +137,7 @@ TEST_F(MeshImport, AFileThatFillsTheMemoryTakesNoneOfOurs) {
 }
 #endif
 
-TEST_F(MeshImport, NodesThatAreSharedWithinReasonAreAllThere) {
+TEST_F(MeshImport, ReadsSharedNodes) {
   write("shared.dae", with_shared_nodes(5));
   const World world = read(static_model_sdf(collision(mesh("shared.dae"))));
   EXPECT_EQ(std::get<Mesh>(world.models[0].links[0].collisions[0].shape).triangles->triangles.size(), 1024u);
@@ -160,7 +160,7 @@ bool has_same_bits(const std::vector<Item>& a, const std::vector<Item>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0);
 }
 
-TEST_F(MeshImport, GivesTheBitsOfAnImportInThisProcess) {
+TEST_F(MeshImport, EqualsAnImportInThisProcess) {
   write("a.dae", with_shared_nodes(5));
   write("a.obj", "mtllib a.mtl\nv 0.1 0 -0\nv 1 0.3 0\nv 0 1 0\nv 0 0 1\nusemtl m\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
   write("a.mtl", "newmtl m\nKd 0.6 0 1\n");
@@ -180,7 +180,7 @@ TEST_F(MeshImport, GivesTheBitsOfAnImportInThisProcess) {
   }
 }
 
-TEST_F(MeshImport, ThreadsThatAllocateMeanwhileDoNotDisturbIt) {
+TEST_F(MeshImport, IsNotDisturbedByThreadsThatAllocate) {
   write("one.dae", Collada{}.text());
   std::atomic<bool> over = false;
   std::vector<std::thread> threads;
@@ -200,7 +200,7 @@ TEST_F(MeshImport, ThreadsThatAllocateMeanwhileDoNotDisturbIt) {
   for (std::thread& thread : threads) thread.join();
 }
 
-TEST_F(MeshImport, WhateverIsInAFileThisProcessGoesOn) {
+TEST_F(MeshImport, SurvivesAnyFile) {
   const std::vector<std::pair<std::string, std::string>> files = {
       {"/a.dae", with_shared_nodes(3)},
       {"/a.dae", with_cycle()},
@@ -234,7 +234,7 @@ TEST_F(MeshImport, WhateverIsInAFileThisProcessGoesOn) {
 
 // ---- Processes with limits ----
 
-/// Why a child that does this ends.
+/// Returns why a child with this work ends.
 std::string end_of(const parsing::ChildLimits& limits, const LimitedChild::Work& work) {
   LimitedChild child(limits, work);
   try {
@@ -245,7 +245,7 @@ std::string end_of(const parsing::ChildLimits& limits, const LimitedChild::Work&
   return "sent something";
 }
 
-TEST(LimitedProcess, EndsWhenItHasUsedItsTime) {
+TEST(LimitedProcess, EndsAtTheLimitOfProcessorTime) {
   const auto spin = [](ChildStream&) {
     const std::atomic<bool> is_over = false;
     while (!is_over) continue;
@@ -253,7 +253,7 @@ TEST(LimitedProcess, EndsWhenItHasUsedItsTime) {
   EXPECT_EQ(end_of({.processor_time = std::chrono::seconds(1)}, spin), "took longer than 1 s of processor time");
 }
 
-TEST(LimitedProcess, EndsWhenItWaitsForWhatNeverComes) {
+TEST(LimitedProcess, EndsAtTheLimitOfWallTime) {
   const auto wait = [](ChildStream& stream) { stream.receive<char>(); };
   EXPECT_EQ(end_of({.wall_time = std::chrono::seconds(1)}, wait), "took longer than 1 s");
 }

@@ -14,7 +14,8 @@
 #include "server/parsing/sdf/schema/build_elements.hpp"
 #include "server/parsing/sdf/schema/libsdformat_scope.hpp"
 
-/// A file is read once, into a tree. What is made of the tree is what libsdformat would make of the text.
+/// Tests that a file is read once, into a tree, and that the elements of the tree equal those that libsdformat makes of
+/// the text.
 namespace cohort::description {
 namespace {
 
@@ -75,7 +76,7 @@ void expect_same_errors(const sdf::Errors& expected, const sdf::Errors& found) {
   EXPECT_GE(found.size() + 1, expected.size());  // libsdformat's last one says that there are some
 }
 
-// What libsdformat reads of the text, and what is made of its tree.
+// Compares the elements that libsdformat reads from the text with those that are made from its tree.
 void expect_that_both_read_the_same(const std::string& text) {
   parsing::LibsdformatScope libsdformat;
   sdf::Errors errors;
@@ -96,7 +97,7 @@ void expect_that_both_read_the_same(const std::string& text) {
 
 class Document : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(Document, AsATreeIsToLibsdformatWhatItsTextIs) { expect_that_both_read_the_same(GetParam()); }
+TEST_P(Document, GivesTheSameElementsAsItsText) { expect_that_both_read_the_same(GetParam()); }
 
 std::string in_sdf(const std::string& content) { return "<sdf version='1.9'>" + content + "</sdf>"; }
 
@@ -153,8 +154,8 @@ INSTANTIATE_TEST_SUITE_P(
         "type='revolute'><parent link='a'/><child link='b'/><axis xyz='0 0 1'><limit lower='-1' upper='1'/></axis>"
         "</joint></model></sdf>"));
 
-// Those that libsdformat reads by itself: XML in UTF-8 as it should be, of a version that it knows, without includes
-// and scoped names.
+// Returns the texts that libsdformat can read alone: valid XML in UTF-8, of a known version, without includes and
+// scoped names.
 std::vector<std::string> texts_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -180,8 +181,8 @@ INSTANTIATE_TEST_SUITE_P(OfTheCorpus, Document,
                          ::testing::ValuesIn(texts_in(COHORT_SOURCE_DIR "/tests/data/corpus/valid")));
 INSTANTIATE_TEST_SUITE_P(OfOurs, Document, ::testing::ValuesIn(texts_in(COHORT_SOURCE_DIR "/worlds")));
 
-// Text goes to libsdformat in one place, for URDF, whose converter takes no tree.
-TEST(ReadOnce, OnlyTheConverterOfUrdfIsGivenAText) {
+// Only URDF text goes to libsdformat, since its converter does not accept a tree.
+TEST(ReadOnce, PassesTextOnlyToTheUrdfConverter) {
   const std::vector<std::string> readers = {"readString", "readFile", "convertString", "convertFile", "xml_text_of("};
   std::vector<std::string> found;
   for (const auto& entry : fs::recursive_directory_iterator(COHORT_SOURCE_DIR "/server")) {

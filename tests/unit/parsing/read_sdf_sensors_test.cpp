@@ -19,7 +19,7 @@ std::string link(const std::string& name, const std::string& content) {
          content + "</link>";
 }
 std::string model(const std::string& content) { return "<model name=\"m\">" + content + "</model>"; }
-/// Line 3 is the sensor.
+/// The sensor is on line 3.
 std::string on_a_link(const std::string& sensor_text) { return model(link("l", "\n" + sensor_text + "\n")); }
 
 const std::string scan =
@@ -38,7 +38,7 @@ class SdfSensors : public Description {
   }
 };
 
-TEST_F(SdfSensors, ALidarIsReadWithItsScanItsRangeAndItsNoise) {
+TEST_F(SdfSensors, ReadLidarsWithScanRangeAndNoise) {
   for (const char* const type : {"lidar", "gpu_lidar", "ray", "gpu_ray"}) {
     const std::string element = std::string(type).ends_with("ray") ? "ray" : "lidar";
     const auto lidar = std::get<Lidar>(device(on_a_link(sensor(
@@ -70,7 +70,7 @@ TEST_F(SdfSensors, ALidarIsReadWithItsScanItsRangeAndItsNoise) {
   }
 }
 
-TEST_F(SdfSensors, ALidarWithLittleInItHasSdfsDefaults) {
+TEST_F(SdfSensors, UseTheDefaultsOfSdf) {
   const auto lidar = std::get<Lidar>(device(on_a_link(sensor("lidar", "<lidar><range><max>3</max></range></lidar>"))));
   EXPECT_EQ(lidar.columns, 640u);
   EXPECT_EQ(lidar.rows, 1u);
@@ -81,7 +81,7 @@ TEST_F(SdfSensors, ALidarWithLittleInItHasSdfsDefaults) {
   EXPECT_TRUE(lidar.readout.noises.empty());
 }
 
-TEST_F(SdfSensors, AnAxisHasItsOwnNoise) {
+TEST_F(SdfSensors, HaveSeparateNoiseForEachAxis) {
   const auto magnetometer = std::get<Magnetometer>(device(on_a_link(sensor(
       "magnetometer",
       "<magnetometer><x><noise type=\"gaussian\"><mean>1e-7</mean><stddev>2e-7</stddev><bias_mean>3e-7</bias_mean>"
@@ -101,7 +101,7 @@ TEST_F(SdfSensors, AnAxisHasItsOwnNoise) {
 }
 
 // The process of SDF has the variance s^2 T / 2 in the long run: 0.02^2 * 50 / 2 = 0.1^2.
-TEST_F(SdfSensors, ABiasThatWandersHasTheDeviationThatItsDensityComesTo) {
+TEST_F(SdfSensors, ComputeTheDeviationOfADriftingBiasFromItsDensity) {
   const auto altimeter = std::get<Altimeter>(device(on_a_link(
       sensor("altimeter",
              "<altimeter><vertical_velocity><noise type=\"gaussian\"><dynamic_bias_stddev>0.02</dynamic_bias_stddev>"
@@ -113,7 +113,7 @@ TEST_F(SdfSensors, ABiasThatWandersHasTheDeviationThatItsDensityComesTo) {
   EXPECT_EQ(altimeter.readout.noises[0].drift_time, 50.0);
 }
 
-TEST_F(SdfSensors, AnImuHasNoiseOnEachAxisAndAFrameOfReference) {
+TEST_F(SdfSensors, ReadImusWithNoiseOnEachAxisAndAReferenceFrame) {
   const auto read_imu = [&](const std::string& content) {
     return std::get<Imu>(device(on_a_link(sensor("imu", content))));
   };
@@ -138,7 +138,7 @@ TEST_F(SdfSensors, AnImuHasNoiseOnEachAxisAndAFrameOfReference) {
                   .is_relative_to_world);
 }
 
-TEST_F(SdfSensors, AnImuInAFrameThatIsNotSupportedIsRelativeToTheFirstWithAWarning) {
+TEST_F(SdfSensors, WarnOfUnsupportedReferenceFrames) {
   const World world = read(on_a_link(sensor("imu",
                                             "<imu><orientation_reference_frame>\n<localization>NED</localization>"
                                             "</orientation_reference_frame></imu>")));
@@ -155,7 +155,7 @@ std::string held_by(const std::string& sensor_text) {
                sensor_text + "</joint>");
 }
 
-TEST_F(SdfSensors, AForceTorqueSensorIsOfItsJoint) {
+TEST_F(SdfSensors, AssignForceTorqueSensorsToTheirJoints) {
   const auto simple = std::get<ForceTorqueSensor>(device(held_by(sensor("force_torque", ""))));
   EXPECT_EQ(simple.joint, 0u);
   EXPECT_EQ(simple.axes, ForceTorqueSensor::Frame::child);
@@ -174,7 +174,7 @@ TEST_F(SdfSensors, AForceTorqueSensorIsOfItsJoint) {
                    write_world(in_another_frame));
 }
 
-TEST_F(SdfSensors, AContactSensorHasACollisionOfItsLink) {
+TEST_F(SdfSensors, AssignContactSensorsToCollisionsOfTheirLinks) {
   const auto contact = std::get<ContactSensor>(
       device(model(link("a", "") +
                    link("b",
@@ -186,7 +186,7 @@ TEST_F(SdfSensors, AContactSensorHasACollisionOfItsLink) {
   EXPECT_EQ(contact.collision, 1u);
 }
 
-TEST_F(SdfSensors, ALogicalCameraHasItsFrustum) {
+TEST_F(SdfSensors, ReadTheFrustumOfLogicalCameras) {
   const auto camera = std::get<LogicalCamera>(
       device(on_a_link(sensor("logical_camera",
                               "<logical_camera><near>0.2</near><far>7</far><aspect_ratio>1.5</aspect_ratio>"
@@ -197,19 +197,19 @@ TEST_F(SdfSensors, ALogicalCameraHasItsFrustum) {
   EXPECT_EQ(camera.horizontal_fov, 1.2);
 }
 
-TEST_F(SdfSensors, TheMagneticFieldIsThatOfTheWorldOrSdfsDefault) {
+TEST_F(SdfSensors, UseTheMagneticFieldOfTheWorldOrTheDefaultOfSdf) {
   EXPECT_EQ(read("").magnetic_field, Eigen::Vector3d(5.5645e-6, 22.8758e-6, -42.3884e-6));
   EXPECT_EQ(read("<magnetic_field>1e-5 0 -4e-5</magnetic_field>").magnetic_field, Eigen::Vector3d(1e-5, 0, -4e-5));
 }
 
-TEST_F(SdfSensors, APoseMayBeInAnotherFrame) {
+TEST_F(SdfSensors, AcceptPosesInOtherFrames) {
   const auto altimeter = std::get<Altimeter>(
       device(model("<frame name=\"f\" attached_to=\"l\"><pose>0 0 0.5 0 0 0</pose></frame>" +
                    link("l", sensor("altimeter", "<pose relative_to=\"f\">0.1 0 0.25 0 0 0</pose>")))));
   EXPECT_TRUE(altimeter.X_LS.position.isApprox(Eigen::Vector3d(0.1, 0, 0.75), 1e-12));
 }
 
-TEST_F(SdfSensors, OfAModelInsideOfAModelHaveItsNameBeforeTheirs) {
+TEST_F(SdfSensors, GetThePrefixOfNestedModels) {
   const World world = read("<model name=\"outer\">" + link("a", sensor("altimeter", "")) + "<model name=\"inner\">" +
                            link("b", sensor("altimeter", "")) + "</model>" + joint("j", "a", "inner::b") + "</model>");
   ASSERT_EQ(world.models[0].devices.size(), 2u);
@@ -217,8 +217,8 @@ TEST_F(SdfSensors, OfAModelInsideOfAModelHaveItsNameBeforeTheirs) {
   EXPECT_EQ(name_of(world.models[0].devices[1]), "inner::s");
 }
 
-// Links come after those that they hang on, and their sensors with them.
-TEST_F(SdfSensors, StandInTheOrderOfTheLinks) {
+// Links come after their parents, and so do their sensors.
+TEST_F(SdfSensors, KeepTheOrderOfTheLinks) {
   const World world = read(model(link("leaf", sensor("altimeter", "", "second")) +
                                  link("root", sensor("magnetometer", "", "first")) + joint("j", "root", "leaf")));
   ASSERT_EQ(world.models[0].devices.size(), 2u);
@@ -226,7 +226,7 @@ TEST_F(SdfSensors, StandInTheOrderOfTheLinks) {
   EXPECT_EQ(std::get<Altimeter>(world.models[0].devices[1]).link, 1u);
 }
 
-TEST_F(SdfSensors, OfOtherTypesAreIgnoredWithAWarningThatNamesThem) {
+TEST_F(SdfSensors, WarnOfUnsupportedTypes) {
   const World world = read(on_a_link(sensor("camera", "<camera><image/></camera>")));
   EXPECT_TRUE(world.robots.empty());
   const std::string warnings = texts_of(world.warnings);
@@ -234,7 +234,7 @@ TEST_F(SdfSensors, OfOtherTypesAreIgnoredWithAWarningThatNamesThem) {
       << warnings;
 }
 
-TEST_F(SdfSensors, OfAStaticModelAreIgnoredWithAWarning) {
+TEST_F(SdfSensors, WarnOfSensorsInStaticModels) {
   const World world = read(static_model_sdf("<link name=\"l\">" + sensor("altimeter", "") + "</link>"));
   EXPECT_TRUE(world.robots.empty());
   EXPECT_NE(texts_of(world.warnings).find("is static: its devices are ignored"), std::string::npos)
@@ -261,7 +261,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "<lidar><scan><horizontal><samples>7</samples><min_angle>1\n</min_angle><max_angle>0.5"
                     "</max_angle></horizontal></scan>" +
                         range + "</lidar>"),
-             3, path + "/lidar/scan/horizontal/min_angle", "the least angle exceeds the greatest"},
+             3, path + "/lidar/scan/horizontal/min_angle", "the minimum angle exceeds the maximum"},
         Flaw{
             sensor("lidar", "<lidar><scan><horizontal><samples>7.5</samples></horizontal></scan>" + range + "</lidar>"),
             3, path + "/lidar/scan/horizontal/samples", "whole number"},
@@ -295,7 +295,7 @@ INSTANTIATE_TEST_SUITE_P(
              path + "/logical_camera/horizontal_fov", "expected an angle > 0 and < pi"},
         Flaw{sensor("altimeter", "", "a/b"), 3, "world/model[m]/link[l]/sensor[a/b]", "without '/'"}));
 
-TEST_F(SdfSensors, ANameThatAnotherObservingDeviceHasIsAnError) {
+TEST_F(SdfSensors, RejectDuplicateNames) {
   const std::string content = model(link("a", sensor("altimeter", "")) + "\n" +
                                     link("b", "\n" + sensor("magnetometer", "")) + joint("j", "a", "b"));
   expect_only_flaw({content, 4, "world/model[m]/link[b]/sensor[s]", "another device of the model has the name 's'"},
@@ -314,7 +314,7 @@ std::uint64_t hash_after(const World& world, int ticks) {
   return simulation.state_hash();
 }
 
-/// Every sensor, with odd numbers.
+/// Every sensor, with unusual numbers.
 std::string all_sensors() {
   const std::string noise =
       "<noise type=\"gaussian_quantized\"><mean>0.013</mean><stddev>0.017</stddev><bias_mean>0.0019</bias_mean>"
@@ -350,10 +350,15 @@ std::string all_sensors() {
          sensor("air_pressure",
                 pose + "<air_pressure><reference_altitude>417.3</reference_altitude><pressure>" + noise +
                     "</pressure></air_pressure>",
-                "pressure");
+                "pressure") +
+         sensor("navsat",
+                pose + "<navsat><position_sensing><horizontal>" + noise +
+                    "</horizontal></position_sensing><velocity_sensing><vertical>" + noise +
+                    "</vertical></velocity_sensing></navsat>",
+                "navsat");
 }
 
-TEST_F(SdfSensors, ComeBackFromAnExportBitForBit) {
+TEST_F(SdfSensors, SurviveAnExportUnchanged) {
   const std::string extension =
       "<cohort:accelerometer name=\"shake\"><cohort:link>b</cohort:link><cohort:bias>0.1</cohort:bias>"
       "</cohort:accelerometer><cohort:inclinometer name=\"lean\"><cohort:link>a</cohort:link><cohort:pose>0.1 0.2 0.3 "
@@ -371,7 +376,7 @@ TEST_F(SdfSensors, ComeBackFromAnExportBitForBit) {
                   "wrench") +
            "</joint>" + extension + "</model>");
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
-  ASSERT_EQ(world.models[1].devices.size(), 11u);
+  ASSERT_EQ(world.models[1].devices.size(), 12u);
   const auto text_of = [&](const World& each) { return parsing::xml_text(parsing::sdf_of(each, folder_)); };
   const World again = parsing::read_world(write("exported.sdf", text_of(world)), 1);
   EXPECT_TRUE(again.warnings.empty()) << texts_of(again.warnings);
@@ -382,7 +387,7 @@ TEST_F(SdfSensors, ComeBackFromAnExportBitForBit) {
   EXPECT_EQ(hash_after(again, 100), hash_after(world, 100));
 }
 
-TEST_F(SdfSensors, MakeAModelARobotThatIsObservedAndNotCommanded) {
+TEST_F(SdfSensors, MakeAModelARobotWithoutCommands) {
   Experiment experiment;
   experiment.world = read(on_a_link(sensor("altimeter", "")));
   const Simulation simulation(experiment, 1);

@@ -17,12 +17,12 @@ using description::KeptFile;
 using description::Problem;
 using description::problems_of;
 
-// With this a file is held to the letter.
+// With this declaration, a file is checked strictly.
 constexpr const char* ours = " xmlns:cohort='https://cohort-sim.org/sdf/1'";
 constexpr const char* tetrahedron =
     "mtllib {}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl grey\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
-/// A world in a folder of its own, beside a file that is none of its business.
+/// A world in a separate folder, beside a file that it must not read.
 class TrustedFolders : public Description {
  protected:
   TrustedFolders() {
@@ -48,13 +48,13 @@ class TrustedFolders : public Description {
   }
   void expect_outside(const std::string& folder) const {
     const std::string found = message();
-    EXPECT_NE(found.find("none of the folders that this may read; --allow-files " + (folder_ / folder).string() + " "),
+    EXPECT_NE(found.find("outside of all allowed folders; use --allow-files " + (folder_ / folder).string() + " "),
               std::string::npos)
         << found;
   }
 };
 
-TEST_F(TrustedFolders, AreNotLeftByAPath) {
+TEST_F(TrustedFolders, CannotBeLeftByAPath) {
   write_arena("../secret/rock.obj");
   expect_outside("secret");
   write_arena((folder_ / "secret/rock.obj").string());
@@ -66,7 +66,7 @@ TEST_F(TrustedFolders, AreNotLeftByAPath) {
   unsetenv("COHORT_ALLOW_FILES");
 }
 
-TEST_F(TrustedFolders, AreNotLeftByAFileOfOthersWhichGoesOnWithoutIt) {
+TEST_F(TrustedFolders, CannotBeLeftByAForeignFile) {
   write_arena("../secret/rock.obj", "");
   const Experiment experiment = read();
   ASSERT_EQ(experiment.world.warnings.size(), 1u);
@@ -76,13 +76,13 @@ TEST_F(TrustedFolders, AreNotLeftByAFileOfOthersWhichGoesOnWithoutIt) {
                                    [](const KeptFile& file) { return file.path.find("secret") != std::string::npos; }));
 }
 
-TEST_F(TrustedFolders, AreNotLeftByASymbolicLink) {
+TEST_F(TrustedFolders, CannotBeLeftByASymbolicLink) {
   fs::create_directory_symlink(folder_ / "secret", folder_ / "world/meshes");
   write_arena("meshes/rock.obj");
   expect_outside("world/meshes");
 }
 
-TEST_F(TrustedFolders, AreNotLeftByTheMaterialsOfAMesh) {
+TEST_F(TrustedFolders, CannotBeLeftByTheMaterialsOfAMesh) {
   write_rock("world/rock.obj", "../secret/id_rsa");
   write_arena("rock.obj");
   const Experiment experiment = read();
@@ -91,19 +91,19 @@ TEST_F(TrustedFolders, AreNotLeftByTheMaterialsOfAMesh) {
   }));
 }
 
-TEST_F(TrustedFolders, AreNotLeftByAnExperiment) {
+TEST_F(TrustedFolders, CannotBeLeftByAnExperiment) {
   write("secret/arena.sdf", "<sdf version='1.9'><world name='w'></world></sdf>");
   write("world/run.yaml", "world: ../secret/arena.sdf\nduration: 1\nteams: []\n");
   expect_outside("secret");
 }
 
-TEST_F(TrustedFolders, HaveThoseOfUsualNamesBesideAndAbove) {
+TEST_F(TrustedFolders, IncludeUsualNamesBesideAndAbove) {
   write_rock("meshes/rock.obj", "none.mtl");
   write_arena("../meshes/rock.obj");
   EXPECT_EQ(message(), "");
 }
 
-TEST_F(TrustedFolders, HaveThePackageThatTheFileIsIn) {
+TEST_F(TrustedFolders, IncludeThePackageOfTheFile) {
   write_rock("parts/rock.obj", "none.mtl");
   write_arena("../parts/rock.obj");
   expect_outside("parts");
@@ -111,7 +111,7 @@ TEST_F(TrustedFolders, HaveThePackageThatTheFileIsIn) {
   EXPECT_EQ(message(), "");
 }
 
-TEST_F(TrustedFolders, HaveNoPackageThatHoldsTheHomeFolder) {
+TEST_F(TrustedFolders, ExcludePackagesThatContainTheHomeFolder) {
   write_rock("parts/rock.obj", "none.mtl");
   write_arena("../parts/rock.obj");
   write("package.xml", "<package><name>rocks</name></package>");

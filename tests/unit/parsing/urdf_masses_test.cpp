@@ -6,7 +6,7 @@
 
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Links of a URDF without mass: their joints stay, and they weigh what their shapes do.
+// Tests of links without mass in a URDF: their joints are kept, and they get the mass of their shapes.
 namespace cohort::description {
 namespace {
 
@@ -15,7 +15,7 @@ class UrdfMasses : public Description {
   World read_urdf(const std::string& content) const {
     return parsing::read_world_or_model(write("r.urdf", "<robot name=\"r\">\n" + content + "\n</robot>\n"), 1);
   }
-  void write_cube() const {  // of 0.2 m
+  void write_cube() const {  // with an edge of 0.2 m
     write("meshes/cube.obj",
           "v -0.1 -0.1 -0.1\nv 0.1 -0.1 -0.1\nv -0.1 0.1 -0.1\nv 0.1 0.1 -0.1\nv -0.1 -0.1 0.1\nv 0.1 -0.1 0.1\nv -0.1 "
           "0.1 0.1\nv 0.1 0.1 0.1\n"
@@ -45,7 +45,7 @@ const Link& link_of(const Model& model, const std::string& name) {
   return *found;
 }
 
-TEST_F(UrdfMasses, AnArmWithoutInertialKeepsItsSixJointsAndOneWarningNamesItsLinks) {
+TEST_F(UrdfMasses, KeepTheJointsOfAnArmWithoutInertials) {
   write_cube();
   const std::string cube = "<mesh filename=\"meshes/cube.obj\"/>";
   std::string arm = part("base_link", shown(cube) + solid(cube));
@@ -62,7 +62,7 @@ TEST_F(UrdfMasses, AnArmWithoutInertialKeepsItsSixJointsAndOneWarningNamesItsLin
   const Model& model = world.models[0];
   EXPECT_EQ(std::ranges::count(model.joints, JointType::revolute, &Joint::type), 6);
   EXPECT_EQ(model.links.size(), 7u);
-  EXPECT_STREQ(model.why_fixed(), "is tied to the world by a joint");
+  EXPECT_STREQ(model.why_fixed(), "is attached to the world by a joint");
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     EXPECT_NEAR(model.links[i].inertial.mass, 8.0, 1e-5) << model.links[i].name;
     EXPECT_NEAR(model.links[i].inertial.inertia(0, 0), 8.0 * 0.08 / 12.0, 1e-5);
@@ -76,7 +76,7 @@ TEST_F(UrdfMasses, AnArmWithoutInertialKeepsItsSixJointsAndOneWarningNamesItsLin
   EXPECT_EQ(warning.line, 3);
 }
 
-TEST_F(UrdfMasses, AreThoseOfCollisionsElseOfVisualsElseAGram) {
+TEST_F(UrdfMasses, ComeFromCollisionsOrVisualsOrAreOneGram) {
   const World world = read_urdf(
       part("base", of_mass("1")) + part("a", shown("<box size=\"9 9 9\"/>") + solid("<box size=\"1 2 3\"/>")) +
       hung("i", "revolute", "base", "a") + part("b", shown("<sphere radius=\"0.5\"/>") + of_mass("0")) +
@@ -88,14 +88,14 @@ TEST_F(UrdfMasses, AreThoseOfCollisionsElseOfVisualsElseAGram) {
   EXPECT_EQ(link_of(model, "c").inertial.mass, 1e-3);
 }
 
-TEST_F(UrdfMasses, OfAVisualMeshItsHullCounts) {
+TEST_F(UrdfMasses, UseTheConvexHullOfVisualMeshes) {
   write_cube();
   const World world = read_urdf(part("base", of_mass("1")) + part("a", shown("<mesh filename=\"meshes/cube.obj\"/>")) +
                                 hung("i", "revolute", "base", "a"));
   EXPECT_NEAR(link_of(world.models[0], "a").inertial.mass, 8.0, 1e-5);
 }
 
-TEST_F(UrdfMasses, OfLinksThatAFixedJointConnectsOneHasMassForAll) {
+TEST_F(UrdfMasses, NeedOneLinkWithMassAmongFixedJoints) {
   const World world = read_urdf(part("base", of_mass("1")) + part("a", solid("<box size=\"1 1 1\"/>")) +
                                 hung("i", "revolute", "base", "a") + part("tip", of_mass("2")) +
                                 hung("k", "fixed", "a", "tip", "xyz=\"0 0 1\""));
@@ -103,7 +103,7 @@ TEST_F(UrdfMasses, OfLinksThatAFixedJointConnectsOneHasMassForAll) {
   EXPECT_EQ(texts_of(world.warnings).find("without mass"), std::string::npos) << texts_of(world.warnings);
 }
 
-TEST_F(UrdfMasses, WhatHangsOnAFlangeWithoutMassKeepsItsJointAndItsPlace) {
+TEST_F(UrdfMasses, KeepJointsBelowAFlangeWithoutMass) {
   const World world =
       read_urdf(part("base", of_mass("1")) + part("flange", solid("<box size=\"1 1 1\"/>")) +
                 hung("f", "fixed", "base", "flange", "xyz=\"1 0 0\" rpy=\"0 0 1.5707963267948966\"") + part("plate") +
@@ -122,7 +122,7 @@ TEST_F(UrdfMasses, WhatHangsOnAFlangeWithoutMassKeepsItsJointAndItsPlace) {
   EXPECT_EQ(link_of(model, "base").collisions.size(), 1u);
 }
 
-TEST_F(UrdfMasses, AJointThatGazeboPreservesIsKeptToo) {
+TEST_F(UrdfMasses, KeepJointsThatGazeboPreserves) {
   const World world =
       read_urdf(part("base", of_mass("1")) + part("a", solid("<box size=\"1 1 1\"/>")) +
                 hung("f", "fixed", "base", "a") + part("b", of_mass("1")) + hung("j", "continuous", "a", "b") +
@@ -131,7 +131,7 @@ TEST_F(UrdfMasses, AJointThatGazeboPreservesIsKeptToo) {
   EXPECT_NEAR(link_of(world.models[0], "a").inertial.mass, 1000.0, 1e-9);
 }
 
-TEST_F(UrdfMasses, OfLessThanAMilligramAreKept) {
+TEST_F(UrdfMasses, AreKeptBelowAMilligram) {
   const World world =
       read_urdf(part("base", of_mass("1")) + part("a", of_mass("1e-7")) + hung("j", "continuous", "base", "a"));
   ASSERT_EQ(world.models[0].joints.size(), 1u);

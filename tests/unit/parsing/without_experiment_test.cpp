@@ -5,7 +5,7 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
-// A world or a model by itself is an experiment without controllers.
+// Tests that a world or a model alone is an experiment without controllers.
 namespace cohort::description {
 namespace {
 
@@ -24,7 +24,7 @@ std::string ball_at(double height) {
          "</sphere></geometry></collision></link>";
 }
 
-TEST_F(WithoutExperiment, AModelStandsOnAPlane) {
+TEST_F(WithoutExperiment, AModelIsPlacedOnAPlane) {
   for (const double height : {-3.0, 0.0, 7.0}) {
     const Experiment experiment = read_model(ball_at(height));
     ASSERT_EQ(experiment.world.instances.size(), 2u);
@@ -33,21 +33,21 @@ TEST_F(WithoutExperiment, AModelStandsOnAPlane) {
   }
 }
 
-TEST_F(WithoutExperiment, AModelThatIsGroundStaysWhereItIs) {
+TEST_F(WithoutExperiment, AModelOfGroundIsNotMoved) {
   const Experiment experiment = read_model(
       "<static>1</static><link name=\"l\"><collision name=\"c\"><geometry><plane/></geometry></collision></link>");
   ASSERT_EQ(experiment.world.instances.size(), 1u);
   EXPECT_EQ(experiment.world.instances[0].X_WM.position.z(), 0.0);
 }
 
-TEST_F(WithoutExperiment, OfAModelWithoutCollisionsIsToldThatItFalls) {
+TEST_F(WithoutExperiment, AModelWithoutCollisionsGetsAWarning) {
   const Experiment experiment = read_model("<link name=\"l\"><inertial><mass>1</mass></inertial></link>");
   EXPECT_EQ(experiment.world.instances.size(), 1u);
-  EXPECT_NE(texts_of(experiment.world.warnings).find("model[m]: has no collisions: it falls"), std::string::npos)
+  EXPECT_NE(texts_of(experiment.world.warnings).find("model[m]: has no collisions, so it falls"), std::string::npos)
       << texts_of(experiment.world.warnings);
 }
 
-TEST_F(WithoutExperiment, RobotsOfAWorldAreInOneTeamThatNeedsNoController) {
+TEST_F(WithoutExperiment, RobotsAreInOneTeamWithoutController) {
   const Experiment experiment = parsing::read_experiment(write_world("<include><uri>model://sbot</uri></include>"), 7);
   EXPECT_EQ(experiment.seed, 7u);
   EXPECT_EQ(experiment.duration, std::chrono::seconds(10));
@@ -57,14 +57,14 @@ TEST_F(WithoutExperiment, RobotsOfAWorldAreInOneTeamThatNeedsNoController) {
   EXPECT_EQ(experiment.teams[0].controller, "");
 }
 
-TEST_F(WithoutExperiment, IsReadAgainFromWhatWasKept) {
+TEST_F(WithoutExperiment, KeptFilesAreReadAgain) {
   const Experiment first = read_model(ball_at(1.0));
   std::filesystem::remove(folder_ / "m.sdf");
   const Experiment again = parsing::read_experiment(first.inputs, first.seed, first.duration);
   EXPECT_EQ(again.world.instances[0].X_WM.position, first.world.instances[0].X_WM.position);
 }
 
-TEST_F(WithoutExperiment, AFileIsKnownByItsContentToo) {
+TEST_F(WithoutExperiment, AFileIsRecognisedByItsContent) {
   const auto file = write(
       "m.model", "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\"><model name=\"m\">" + ball_at(1.0) + "</model></sdf>");
   EXPECT_EQ(parsing::read_experiment(file).world.instances.size(), 2u);

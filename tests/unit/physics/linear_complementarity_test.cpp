@@ -18,13 +18,13 @@ struct Problem {
   std::vector<double> matrix, b, lower, upper;
 };
 
-// Rows of contacts, of friction, of motors without limits, and some that may not move at all.
+// Returns a problem with rows of contacts, of friction, of motors without limits, and some that cannot move at all.
 Problem random_problem(std::uint64_t number, std::size_t size) {
   const RandomStream random(7, "linear_complementarity", "problems");
   std::uint32_t drawn = 0;
   const auto draw = [&] { return 2.0 * random.uniform(number, drawn++) - 1.0; };
   Problem problem;
-  const std::size_t rank = std::max<std::size_t>(1, 2 * size / 3);  // as where several rows hold the same
+  const std::size_t rank = std::max<std::size_t>(1, 2 * size / 3);  // as with redundant rows
   std::vector<double> factors(size * rank);
   for (double& each : factors) each = draw();
   problem.matrix.assign(size * size, 0.0);
@@ -47,7 +47,7 @@ std::vector<double> solution_of(LinearComplementarity& solver, const Problem& pr
   return x;
 }
 
-TEST(LinearComplementarity, EveryRowIsWhereItMayBe) {
+TEST(LinearComplementarity, EveryRowSatisfiesItsCondition) {
   LinearComplementarity solver;
   std::size_t at_limits = 0;
   for (std::uint64_t number = 0; number < 300; ++number) {
@@ -75,7 +75,7 @@ TEST(LinearComplementarity, EveryRowIsWhereItMayBe) {
   EXPECT_GT(at_limits, 1000u);
 }
 
-TEST(LinearComplementarity, SaysThatAMatrixIsNotDefinite) {
+TEST(LinearComplementarity, ReportsThatAMatrixIsNotDefinite) {
   LinearComplementarity solver;
   Problem problem = random_problem(3, 8);
   for (double& each : problem.matrix) each = -each;
@@ -84,8 +84,8 @@ TEST(LinearComplementarity, SaysThatAMatrixIsNotDefinite) {
   EXPECT_FALSE(solved);
 }
 
-// A library's solver kept whether it failed in one variable of the process.
-TEST(LinearComplementarity, OneThatFailsDisturbsNoOther) {
+// A library's solver kept its failure flag in one variable of the process.
+TEST(LinearComplementarity, AFailureDoesNotAffectOtherSolvers) {
   std::vector<Problem> problems;
   std::vector<std::vector<double>> alone;
   LinearComplementarity solver;

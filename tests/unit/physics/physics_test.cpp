@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-constexpr DeviceId drive{0};  // of the tracked robot
+constexpr DeviceId drive{0};  // the tracked robot's drive
 
 struct Drive {
   double left;
@@ -42,13 +42,13 @@ concept has_joint = requires(const World& world, Body body, Part part) {
   world.joint_state(body, part);
 };
 
-TEST(World, TakesNoJointForALinkNorALinkForAJoint) {
+TEST(World, DistinguishesLinksFromJoints) {
   static_assert(has_link<BodyId, LinkId> && has_joint<BodyId, JointId>);
   static_assert(!has_link<BodyId, JointId> && !has_joint<BodyId, LinkId>);
   static_assert(!has_link<RobotId, LinkId> && !has_link<LinkId, BodyId> && !has_link<std::uint32_t, std::size_t>);
 }
 
-TEST(World, RefusesAnOutputThatADeviceDoesNotHave) {
+TEST(World, RejectsAnUnknownOutputOfADevice) {
   using enum description::Fidelity;
   for (const description::Fidelity fidelity : {treel, articulated, planar}) {
     SmallWorld small;
@@ -60,7 +60,7 @@ TEST(World, RefusesAnOutputThatADeviceDoesNotHave) {
   }
 }
 
-TEST(TreelDrive, StandsStillWhenToldTo) {
+TEST(TreelDrive, StandsStillWhenCommanded) {
   description::World description = world_with_floor();
   const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0, 0.3))};
   WorkerPool workers(1);
@@ -99,7 +99,7 @@ TEST(TreelDrive, TurnsOnTheSpotAtTheRateOfItsGauge) {
   EXPECT_LT(world->link_pose(body, LinkId{0}).position.head<2>().norm(), 0.002);
 }
 
-TEST(TreelDrive, IsStoppedByAWallAndKeepsUpright) {
+TEST(TreelDrive, IsStoppedByAWallAndStaysUpright) {
   description::World description = world_with_floor();
   const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0))};
   place(description, static_shape("wall", description::Box{{0.1, 2.0, 0.3}}, {0.3, 0.0}), "wall", at(0.25, 0, 0.15));
@@ -113,7 +113,7 @@ TEST(TreelDrive, IsStoppedByAWallAndKeepsUpright) {
   EXPECT_FALSE(world->contacts().empty());
 }
 
-TEST(TreelDrive, PushesWithNoMoreThanItsMotorsGive) {
+TEST(TreelDrive, PushesWithAtMostTheForceOfItsMotors) {
   description::World description = world_with_floor();
   const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0))};
   place(description, static_shape("wall", description::Box{{0.1, 2.0, 0.3}}, {0.0, 0.0}), "wall", at(0.25, 0, 0.15));
@@ -121,7 +121,7 @@ TEST(TreelDrive, PushesWithNoMoreThanItsMotorsGive) {
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   command(*world, body, {0.2, 0.2});
   run(*world, 120);  // against the wall, and not yet turned along it
-  // Torque over wheel radius: 0.02 N m / 0.022 m a side.
+  // The torque over the wheel radius: 0.02 N m / 0.022 m for each side.
   EXPECT_NEAR(world->device_state(body, drive, 0).effort, 0.02 / 0.022, 0.01);
   double momentum = 0.0;
   for (int i = 0; i < 50; ++i) {
@@ -132,7 +132,7 @@ TEST(TreelDrive, PushesWithNoMoreThanItsMotorsGive) {
   EXPECT_NEAR(momentum / 0.5, 2.0 * 0.02 / 0.022, 0.04) << "mean force on the wall over 0.5 s";
 }
 
-TEST(TreelDrive, SlipsOnGroundThatGripsLessThanItsMotors) {
+TEST(TreelDrive, SlipsIfFrictionIsLessThanItsMotorForce) {
   description::World description = world_with_floor(0.05);
   const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0))};
   WorkerPool workers(1);
@@ -142,7 +142,7 @@ TEST(TreelDrive, SlipsOnGroundThatGripsLessThanItsMotors) {
   world->step();
   const Twist before = world->link_twist(body, LinkId{0});
   run(*world, 10);
-  // a = mu g while the tracks slip, and the encoders see the tracks, not the ground.
+  // a = mu g while the tracks slip; encoders measure the tracks, not the ground.
   EXPECT_NEAR((world->link_twist(body, LinkId{0}).linear_W.x() - before.linear_W.x()) / 0.1, 0.05 * 9.81, 0.03);
   EXPECT_EQ(world->device_state(body, drive, 0).velocity, 0.2);
 }
@@ -190,7 +190,7 @@ TEST(JointMotor, TurnsTheTurretAtTheCommandedRate) {
   EXPECT_NEAR(std::remainder(yaw - world->joint_state(body, JointId{0}).position, 2 * M_PI), 0.0, 1e-9);
 }
 
-TEST(World, LetsABodyFallAsGravitySays) {
+TEST(World, AcceleratesAFallingBodyByGravity) {
   description::World description = world_with_floor();
   description::Model ball;
   ball.name = "ball";
@@ -244,7 +244,7 @@ TEST(World, HoldsAJointAtItsLimit) {
   EXPECT_NEAR(world->joint_state(body, JointId{0}).position, 0.5, 0.02);
 }
 
-TEST(World, TurnsAnInertiaWithProductsIntoItsPrincipalAxes) {
+TEST(World, RotatesAnInertiaIntoItsPrincipalAxes) {
   description::World description;
   description.gravity = Eigen::Vector3d::Zero();
   description::Model body;
@@ -263,7 +263,7 @@ TEST(World, TurnsAnInertiaWithProductsIntoItsPrincipalAxes) {
   EXPECT_LT(world->link_pose(index, LinkId{0}).orientation.angularDistance(X_WM.orientation), 1e-7);
 }
 
-TEST(Islands, HoldsWhatIsLinkedInTheOrderOfTheLeastMember) {
+TEST(Islands, ContainLinkedMembersInTheOrderOfTheLowest) {
   Islands islands;
   islands.reset(8);
   islands.link(5, 1);

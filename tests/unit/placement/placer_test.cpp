@@ -14,7 +14,7 @@
 #include "tests/support/worlds/arena_of_obstacles.hpp"
 #include "tests/support/worlds/experiment_text.hpp"
 
-// Links the stage alone, without libsdformat and what reads files.
+// Tests placement alone, without libsdformat and file readers.
 namespace cohort::placement {
 namespace {
 
@@ -36,7 +36,7 @@ Experiment experiment_in(World world, std::uint64_t seed) {
   return experiment;
 }
 
-/// No file can be opened while this lives.
+/// Prevents opening files during its lifetime.
 class NoMoreFiles {
  public:
   NoMoreFiles() {
@@ -127,7 +127,7 @@ TEST(Placing, TellsASeedThatGivesOtherInstances) {
   world.populations[0].may_be_fewer = true;
   std::vector<Pose> poses(25);
   EXPECT_FALSE(Placer(world).place(2, poses));
-  // Nothing says how its robots are to be found again.
+  // This experiment cannot select its robots again.
   EXPECT_THROW(with_seed(experiment_in(world, 1), 2), InputError);
 }
 

@@ -19,12 +19,12 @@ namespace fs = std::filesystem;
 using parsing::read_experiment;
 using placement::with_seed;
 
-// Reads again what an experiment was read from.
+// Reads the kept files of an experiment again.
 Experiment read_with(const Experiment& experiment, std::uint64_t seed) {
   return read_experiment(experiment.inputs, seed, experiment.duration);
 }
 
-// What an experiment is, or what is wrong with it.
+// Returns the text of an experiment, or its problems.
 template <class Make>
 std::string result_of(const Make& make) {
   std::string text;
@@ -70,7 +70,7 @@ class WithSeed : public Description {
     return "<cohort:uniform><cohort:min>-" + half + " -" + half + "</cohort:min><cohort:max>" + half + " " + half +
            "</cohort:max></cohort:uniform>";
   }
-  // Posts that are as many as there is room for, and robots in fixed places that they may be in the way of.
+  // Returns a world with as many posts as fit, and robots at fixed positions that posts can block.
   std::string world_of_fewer() const {
     write_model("post",
                 "<static>true</static>" + collision("<cylinder><radius>0.05</radius><length>0.3</length></cylinder>"));
@@ -153,7 +153,7 @@ TEST_F(WithSeed, AWorldWithoutAnExperimentHasOneTeamOfAllItsRobots) {
     ASSERT_EQ(test::text_of(with_seed(first, seed)), test::text_of(read_with(first, seed)));
 }
 
-// With every seed that has any.
+// Checks every seed that has problems.
 void expect_same_problems(const Experiment& first) {
   std::set<std::string> seen;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {

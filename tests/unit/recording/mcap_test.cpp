@@ -18,7 +18,7 @@ std::vector<std::string> all_said(int count) {
   return texts;
 }
 
-TEST(Crc32, IsThatOfTheStandardAndGoesOnFromWhatWasBefore) {
+TEST(Crc32, MatchesTheStandardAndCanBeContinued) {
   EXPECT_EQ(crc32(bytes_of("123456789")), 0xCBF43926U);  // the check value of every catalogue of CRCs
   const std::string text = "The quick brown fox jumps over the lazy dog";
   EXPECT_EQ(crc32(bytes_of(text)), 0x414FA339U);
@@ -26,7 +26,7 @@ TEST(Crc32, IsThatOfTheStandardAndGoesOnFromWhatWasBefore) {
     EXPECT_EQ(crc32(bytes_of(text.substr(i)), crc32(bytes_of(text.substr(0, i)))), 0x414FA339U);
 }
 
-TEST(Mcap, WhatIsWrittenIsRead) {
+TEST(Mcap, ReadsWhatItHasWritten) {
   const TemporaryFile file(small_recording(10));
   const McapReader reader(file.path());
   EXPECT_TRUE(reader.is_complete()) << reader.damage();
@@ -58,7 +58,7 @@ TEST(Mcap, WhatIsWrittenIsRead) {
 
 TEST(Mcap, TheSameCallsGiveTheSameBytes) { EXPECT_EQ(small_recording(50), small_recording(50)); }
 
-TEST(Mcap, LookingThroughTheFileFindsWhatItsSummarySays) {
+TEST(Mcap, ScanningAFileFindsTheContentsOfItsSummary) {
   for (const bool compress : {true, false}) {
     const TemporaryFile file(small_recording(10, 4, {.compress = compress}));
     const McapReader by_summary(file.path());
@@ -75,7 +75,7 @@ TEST(Mcap, LookingThroughTheFileFindsWhatItsSummarySays) {
   }
 }
 
-TEST(Mcap, MessagesAreChosenByChannelAndTime) {
+TEST(Mcap, MessagesAreSelectedByChannelAndTime) {
   const TemporaryFile file(small_recording(20));
   const McapReader reader(file.path());
   EXPECT_EQ(messages_of(reader, {.channels = {2}, .from = Timestamp(4001), .to = Timestamp(9000)}),
@@ -86,7 +86,7 @@ TEST(Mcap, MessagesAreChosenByChannelAndTime) {
 }
 
 // Chunks that overlap in time, and times that go back within one.
-TEST(Mcap, MessagesComeInTheOrderOfTheirTimesOrOfTheFile) {
+TEST(Mcap, MessagesAreReadInOrderOfTimeOrOfTheFile) {
   Bytes bytes;
   McapWriter writer([&](ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
   const ChannelId channel = writer.add_channel("/t", 0, "cdr");
@@ -107,7 +107,7 @@ TEST(Mcap, MessagesComeInTheOrderOfTheirTimesOrOfTheFile) {
   EXPECT_EQ(messages_of(reader, {.order = Order::file}), by_file);
 }
 
-TEST(Mcap, AFileWithoutMessagesIsWhole) {
+TEST(Mcap, AFileWithoutMessagesIsComplete) {
   for (const bool use_summary : {true, false}) {
     const TemporaryFile file(small_recording(0));
     const McapReader reader(file.path(), {.use_summary = use_summary});
@@ -148,14 +148,14 @@ TEST(Mcap, RecordingsOfEarlierVersionsAreRead) {
   EXPECT_EQ(messages("without_chunks.mcap").size(), 4U);
 }
 
-TEST(Mcap, AChunkIsEndedAtItsSize) {
+TEST(Mcap, AChunkEndsAtItsMaximumSize) {
   const TemporaryFile file(small_recording(100, 1000, {.chunk_size = 1000}));
   const McapReader reader(file.path());
   EXPECT_GT(reader.statistics().chunk_count, 5U);
   EXPECT_EQ(messages_of(reader), all_said(100));
 }
 
-TEST(Mcap, AWriterWhoseSinkFailsIsAsBefore) {
+TEST(Mcap, AWriterIsUnchangedAfterItsSinkFails) {
   Bytes bytes;
   bool is_full = false;
   McapWriter writer([&](ByteView more) {
@@ -180,7 +180,7 @@ TEST(Mcap, AWriterWhoseSinkFailsIsAsBefore) {
   EXPECT_TRUE(McapReader(file.path(), {.use_summary = false}).is_complete());
 }
 
-TEST(Mcap, AWriterRefusesWhatItDoesNotKnow) {
+TEST(Mcap, AWriterRejectsUnknownSchemasAndChannels) {
   McapWriter writer([](ByteView) {});
   EXPECT_THROW(writer.add_channel("/t", 3, "cdr"), std::invalid_argument);
   EXPECT_THROW(writer.write_message(1, 0, {}, {}, {}), std::invalid_argument);

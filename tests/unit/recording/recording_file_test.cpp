@@ -68,7 +68,7 @@ TEST(RecordingFile, DropsDisplayMessagesOnlyAndCountsThem) {
   EXPECT_EQ(McapReader(file.path()).statistics().messages_of_channels, kept);
 }
 
-TEST(RecordingFile, SaysWhyItCannotBegin) {
+TEST(RecordingFile, ReportsWhyItCannotStart) {
   const auto problem = [](const std::filesystem::path& path) -> std::string {
     try {
       const RecordingFile recording(path);
@@ -78,16 +78,16 @@ TEST(RecordingFile, SaysWhyItCannotBegin) {
     return "none";
   };
   EXPECT_EQ(problem("/no_such_folder/run.mcap"),
-            "the recording /no_such_folder/run.mcap cannot be written: No such file or directory; its folder has to be "
-            "there");
+            "the recording /no_such_folder/run.mcap cannot be written: No such file or directory; its folder must "
+            "exist");
   EXPECT_NE(problem("/tmp").find("cannot be written: Is a directory"), std::string::npos) << problem("/tmp");
-  EXPECT_NE(problem("/dev/null").find("it is no file"), std::string::npos) << problem("/dev/null");
+  EXPECT_NE(problem("/dev/null").find("it is not a regular file"), std::string::npos) << problem("/dev/null");
   const TemporaryFile file;
   const RecordingFile recording(file.path());
   EXPECT_NE(problem(file.path()).find("another process is recording to it"), std::string::npos);
 }
 
-// What `record` writes, as far as the disk takes it, is there afterwards; and why it ended is said.
+// The file has everything that `write` could put on the disk, and the recording reports why it ended.
 void expect_stopped_early(const std::filesystem::path& path, const std::string& reason) {
   RecordingFile recording(path, {.mcap = {.chunk_size = 10'000, .compress = false}});
   const ChannelId channel = recording.add_channel("/t", 0, "cdr");
@@ -103,7 +103,7 @@ void expect_stopped_early(const std::filesystem::path& path, const std::string& 
   for (std::size_t i = 0; i < messages.size(); ++i) ASSERT_EQ(messages[i], said(static_cast<int>(i)));
 }
 
-TEST(RecordingFile, AtTheLimitOfFileSizesKeepsWhatItHasAndSaysSo) {
+TEST(RecordingFile, KeepsItsMessagesAtTheFileSizeLimitAndReportsIt) {
   const TemporaryFile file;
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
@@ -114,13 +114,13 @@ TEST(RecordingFile, AtTheLimitOfFileSizesKeepsWhatItHasAndSaysSo) {
 }
 
 // A recording of which nothing came to the disk takes no other's place.
-TEST(RecordingFile, LeavesWhatItReplacesUntilSomethingOfItIsOnTheDisk) {
+TEST(RecordingFile, KeepsTheReplacedFileUntilDataIsOnTheDisk) {
   const TemporaryFile file(test::small_recording(3));
   {
     DiskFile unsynced(file.path());
     unsynced.write(bytes_of("the beginning of another"));
     EXPECT_EQ(messages_of(McapReader(file.path())).size(), 3U);
-    EXPECT_THROW(DiskFile(file.path()), FileError) << "somebody records to it";
+    EXPECT_THROW(DiskFile(file.path()), FileError) << "another recorder writes to it";
   }
   EXPECT_EQ(messages_of(McapReader(file.path())).size(), 3U);
   RecordingFile recording(file.path());
@@ -131,8 +131,8 @@ TEST(RecordingFile, LeavesWhatItReplacesUntilSomethingOfItIsOnTheDisk) {
   EXPECT_EQ(messages_of(McapReader(file.path())).size(), 5U);
 }
 
-// In a process of its own, whose mount nobody else sees.
-TEST(RecordingFile, OnAFullDiskKeepsWhatItHasAndSaysSo) {
+// In a process of its own, whose mount other processes do not see.
+TEST(RecordingFile, KeepsItsMessagesOnAFullDiskAndReportsIt) {
   constexpr int no_mount = 77;
   char folder[] = "/tmp/cohort_full_XXXXXX";
   ASSERT_NE(mkdtemp(folder), nullptr);
@@ -141,7 +141,7 @@ TEST(RecordingFile, OnAFullDiskKeepsWhatItHasAndSaysSo) {
     const bool has_disk = unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
                           mount("none", folder, "tmpfs", 0, "size=300k") == 0;
     if (!has_disk) _exit(no_mount);
-    expect_stopped_early(std::filesystem::path(folder) / "run.mcap", "free some space there");
+    expect_stopped_early(std::filesystem::path(folder) / "run.mcap", "free some space");
     _exit(::testing::Test::HasFailure() ? 1 : 0);
   }
   int status = 0;
@@ -173,7 +173,7 @@ std::size_t messages_on_disk(const std::filesystem::path& path) {
 
 // The child writes ten messages and then nothing: they are on the disk soon all the same, and stay there when it is
 // killed.
-TEST(RecordingFile, AKilledProcessLeavesWhatIsOlderThanTheFlushInterval) {
+TEST(RecordingFile, KeepsMessagesOlderThanTheFlushIntervalAfterAKill) {
   const TemporaryFile file;
   std::filesystem::remove(file.path());
   const pid_t child = start([&] {
@@ -187,12 +187,12 @@ TEST(RecordingFile, AKilledProcessLeavesWhatIsOlderThanTheFlushInterval) {
   waitpid(child, nullptr, 0);
   const McapReader reader(file.path());
   EXPECT_FALSE(reader.is_complete());
-  EXPECT_NE(reader.damage().find("it was never closed"), std::string::npos) << reader.damage();
+  EXPECT_NE(reader.damage().find("it was not closed"), std::string::npos) << reader.damage();
   EXPECT_EQ(messages_of(reader).size(), 10U);
 }
 
 // Killed at any moment, the file is readable up to the last chunk, without a gap.
-TEST(RecordingFile, AProcessKilledWhileItWritesLeavesNoGap) {
+TEST(RecordingFile, LeavesNoGapWhenKilledWhileWriting) {
   const TemporaryFile file;
   for (int round = 0; round < 10; ++round) {
     std::filesystem::remove(file.path());

@@ -38,7 +38,7 @@ std::uint64_t offset_of(const Bytes& bytes, Opcode opcode, int number = 0) {
   return found;
 }
 
-// What `recover` makes of the bytes is a whole file, by its summary and without.
+// Checks that `recover` makes a complete file of the bytes, with and without its summary.
 struct Recovered {
   Recovery recovery;
   std::vector<std::string> messages;
@@ -60,7 +60,7 @@ Recovered recovered(const Bytes& bytes) {
   return result;
 }
 
-TEST(Recover, AFileThatEndsInTheMidstOfAChunkIsReadUpToTheOneBefore) {
+TEST(Recover, AFileThatEndsWithinAChunkIsReadUpToThatChunk) {
   Bytes bytes = small_recording(20);
   bytes.resize(offset_of_chunk(bytes, 3) + 50);
   const TemporaryFile file(bytes);
@@ -77,7 +77,7 @@ TEST(Recover, AFileThatEndsInTheMidstOfAChunkIsReadUpToTheOneBefore) {
   EXPECT_EQ(whole.recovery.kept.chunk_count, 3U);
 }
 
-TEST(Recover, ADamagedChunkIsLeftOutWithItsMessagesCounted) {
+TEST(Recover, ADamagedChunkIsSkippedAndItsMessagesAreCounted) {
   Bytes bytes = small_recording(20);
   bytes[offset_of_chunk(bytes, 2) + 80] ^= std::byte{1};
   {
@@ -104,15 +104,15 @@ TEST(Recover, ADamagedChunkIsLeftOutWithItsMessagesCounted) {
 }
 
 // The first chunk holds the schemas and channels; they stand before it too.
-TEST(Recover, TheLossOfTheFirstChunkIsNotTheLossOfTheOthers) {
+TEST(Recover, LosingTheFirstChunkLosesNoOthers) {
   Bytes bytes = small_recording(20);
   bytes[offset_of_chunk(bytes, 0) + 80] ^= std::byte{1};
   bytes.resize(bytes.size() - 100);  // no summary to learn them from
   EXPECT_EQ(recovered(bytes).messages, said_from(4, 20));
 }
 
-TEST(Recover, ALengthThatIsWrongCostsThatRecordOnly) {
-  for (const std::size_t byte : {1U, 3U, 6U}) {  // of the length of a chunk's record
+TEST(Recover, AWrongLengthLosesOnlyThatRecord) {
+  for (const std::size_t byte : {1U, 3U, 6U}) {  // a byte of the length of a chunk's record
     Bytes bytes = small_recording(20);
     bytes[offset_of_chunk(bytes, 1) + byte] ^= std::byte{0x10};
     std::vector<std::string> expected = said_from(0, 4);
@@ -127,7 +127,7 @@ TEST(Recover, ALengthThatIsWrongCostsThatRecordOnly) {
   EXPECT_EQ(recovered(bytes).messages, said_from(0, 20));
 }
 
-TEST(Recover, ADamagedAttachmentIsLeftOut) {
+TEST(Recover, ADamagedAttachmentIsSkipped) {
   Bytes bytes = small_recording(20);
   bytes[offset_of(bytes, Opcode::attachment) + 70] ^= std::byte{1};
   const Recovered whole = recovered(bytes);
@@ -137,7 +137,7 @@ TEST(Recover, ADamagedAttachmentIsLeftOut) {
       << whole.recovery.text();
 }
 
-TEST(Recover, ChunksThatChangedPlacesAreAllRead) {
+TEST(Recover, ReorderedChunksAreAllRead) {
   const Bytes bytes = small_recording(20);
   const std::uint64_t first = offset_of_chunk(bytes, 1);
   const std::uint64_t second = offset_of_chunk(bytes, 2);
@@ -164,7 +164,7 @@ TEST(Recover, ChunksThatChangedPlacesAreAllRead) {
   }
 }
 
-TEST(Recover, InPlaceAWholeFileIsLeftAsItIsAndADamagedOneMended) {
+TEST(Recover, RepairsADamagedFileInPlaceAndKeepsACompleteOne) {
   const Bytes bytes = small_recording(20);
   const TemporaryFile file(bytes);
   EXPECT_TRUE(recover(file.path(), file.path()).was_whole());
@@ -182,7 +182,7 @@ TEST(Recover, InPlaceAWholeFileIsLeftAsItIsAndADamagedOneMended) {
   EXPECT_EQ(read_bytes(file.path()), Bytes(nothing.begin(), nothing.end()));
 }
 
-TEST(Recover, RefusesWhatIsNoRecordingOrIsBeingRecorded) {
+TEST(Recover, RejectsOtherFilesAndActiveRecordings) {
   const TemporaryFile target;
   const TemporaryFile text(bytes_of("something else"));
   EXPECT_THROW(recover(text.path(), target.path()), McapError);
@@ -222,7 +222,7 @@ void expect_readable_or_error(const Bytes& bytes, const std::string& what) {
   }
 }
 
-TEST(DamagedFile, CutOffAtAnyByteIsReadAsFarAsItGoes) {
+TEST(DamagedFile, IsReadUpToTheCutAtAnyByte) {
   const Bytes bytes = small_recording(9, 3);
   std::size_t before = 0;
   for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -240,7 +240,7 @@ TEST(DamagedFile, CutOffAtAnyByteIsReadAsFarAsItGoes) {
   EXPECT_EQ(before, 9U);
 }
 
-TEST(DamagedFile, CutOffAtEvery1000thByteOfALongOneIsReadAsFarAsItGoes) {
+TEST(DamagedFile, IsReadUpToTheCutAtEvery1000thByteOfALongFile) {
   const Bytes bytes = small_recording(20'000, 1000);
   ASSERT_GT(bytes.size(), 100'000U);
   std::size_t before = 0;
@@ -264,7 +264,7 @@ TEST(DamagedFile, CutOffAtEvery1000thByteOfALongOneIsReadAsFarAsItGoes) {
   EXPECT_EQ(before, 20'000U);
 }
 
-TEST(DamagedFile, WithAnyBitFlippedIsReadAsFarAsItGoesOrRefused) {
+TEST(DamagedFile, IsReadAsFarAsPossibleOrRejectedAfterAnyBitFlip) {
   Bytes bytes = small_recording(6, 3);
   for (std::size_t byte = 0; byte < bytes.size(); ++byte) {
     for (int bit = 0; bit < 8; ++bit) {
@@ -277,7 +277,7 @@ TEST(DamagedFile, WithAnyBitFlippedIsReadAsFarAsItGoesOrRefused) {
 }
 
 // Where a chunk or an index says that it is enormous, no memory is taken for it.
-TEST(DamagedFile, ThatSaysItIsEnormousIsRefusedBeforeMemoryIsTaken) {
+TEST(DamagedFile, IsRejectedBeforeAllocationIfItClaimsAnEnormousSize) {
   for (const std::uint64_t size : {std::uint64_t{1} << 29U, std::uint64_t{1} << 40U, ~std::uint64_t{0}}) {
     for (const char* compression : {"zstd", ""}) {
       const ChunkHead head{{}, {}, size, 0, compression, 100};
@@ -291,12 +291,12 @@ TEST(DamagedFile, ThatSaysItIsEnormousIsRefusedBeforeMemoryIsTaken) {
     uncompressed(lz4, Bytes(100), {}, Place{&name, 0, {}});
     ADD_FAILURE() << "lz4 is not read";
   } catch (const McapError& error) {
-    EXPECT_NE(error.problem().find("lz4, which Cohort does not read"), std::string::npos);
+    EXPECT_NE(error.problem().find("lz4, which Cohort does not support"), std::string::npos);
   }
 }
 
-// Thirty megabytes would be as many gigabytes. What stands in the file is read all the same.
-TEST(DamagedFile, WhoseIndexNamesOneAttachmentManyTimesHasItOnce) {
+// The rest of the file is read.
+TEST(DamagedFile, HasAnAttachmentOnceThatIsIndexedManyTimes) {
   Bytes bytes = small_recording(20);
   const std::uint64_t index = offset_of(bytes, Opcode::attachment_index);
   const std::uint64_t attachment = offset_of(bytes, Opcode::attachment);
@@ -328,7 +328,7 @@ TEST(DamagedFile, WhoseIndexNamesOneAttachmentManyTimesHasItOnce) {
 }
 
 // All its chunks at one time, and together longer than the limit.
-TEST(DamagedFile, WhoseChunksAllOverlapIsReadInItsOwnOrderOnly) {
+TEST(DamagedFile, IsReadInFileOrderOnlyIfAllChunksOverlap) {
   Bytes bytes;
   McapWriter writer([&](ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
   const ChannelId channel = writer.add_channel("/t", 0, "cdr");

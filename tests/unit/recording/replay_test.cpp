@@ -5,9 +5,8 @@
 namespace cohort::recording {
 namespace {
 
-// Of a version whose kept paths had ".." in them where the experiment was named by a relative path. Numbers may differ
-// from version to version, so only that the world is built and runs is held.
-TEST(Replay, ReadsRecordingsWhoseKeptPathsAreNotNormal) {
+// A recording of a version that kept paths with ".." if the experiment was named by a relative path.
+TEST(Replay, ReadsRecordingsWithUnnormalizedPaths) {
   for (const char* const name : {"named_from_its_folder.mcap", "named_through_another_folder.mcap"}) {
     SCOPED_TRACE(name);
     const Recording recording(std::filesystem::path(COHORT_SOURCE_DIR "/tests/data/recordings") / name);

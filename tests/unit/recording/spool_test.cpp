@@ -19,7 +19,7 @@ std::string fetched(Spool& spool, std::uint64_t offset, std::size_t most = 1000)
   return part ? text_of(part->bytes) : "nothing";
 }
 
-TEST(Spool, GivesPartsUntilTheNextOnesAreAskedFor) {
+TEST(Spool, KeepsPartsUntilTheNextOnesAreRequested) {
   Spool spool(100);
   EXPECT_EQ(fetched(spool, 0), "");
   spool.write(bytes_of("abc"));
@@ -38,7 +38,7 @@ TEST(Spool, GivesPartsUntilTheNextOnesAreAskedFor) {
   EXPECT_TRUE(spool.is_done());
 }
 
-TEST(Spool, LetsItsWriterWaitForRoom) {
+TEST(Spool, BlocksItsWriterUntilThereIsRoom) {
   Spool spool(10);
   std::atomic<int> written = 0;
   std::thread writer([&] {
@@ -59,7 +59,7 @@ TEST(Spool, LetsItsWriterWaitForRoom) {
   EXPECT_EQ(all.size(), 1600U);
 }
 
-TEST(Spool, LetsItsWriterGoWhenNobodyFetches) {
+TEST(Spool, ReleasesItsWriterWhenAbandoned) {
   Spool spool(10);
   spool.write(bytes_of("a long sentence"));
   std::thread writer([&] { EXPECT_THROW(spool.write(bytes_of("more")), FileError); });
@@ -68,8 +68,8 @@ TEST(Spool, LetsItsWriterGoWhenNobodyFetches) {
   EXPECT_TRUE(spool.is_done());
 }
 
-// What nobody fetches is bounded, and what was fetched is a whole file.
-TEST(Spool, OfARecordingEndsItWhenTooMuchWaits) {
+// Unfetched data is bounded, and the fetched data is a complete file.
+TEST(Spool, EndsARecordingWhenTooMuchIsQueued) {
   const auto spool = std::make_shared<Spool>(1000);
   RecordingFile recording(spool, {.mcap = {.chunk_size = 500, .compress = false}, .most_essential_queued = 10'000});
   const ChannelId channel = recording.add_channel("/commands", 0, "cdr");
@@ -79,7 +79,7 @@ TEST(Spool, OfARecordingEndsItWhenTooMuchWaits) {
     ASSERT_LT(accepted, 10'000);
   }
   ASSERT_TRUE(recording.error());
-  EXPECT_NE(recording.error()->find("wait to be written"), std::string::npos) << *recording.error();
+  EXPECT_NE(recording.error()->find("waiting to be written"), std::string::npos) << *recording.error();
   Bytes file;
   while (!spool->is_done()) {
     const auto part = spool->fetch(file.size(), 100);

@@ -135,6 +135,19 @@ TEST(RunMonitor, IsDueAtAnySpeedHoweverSmall) {
   EXPECT_LE(*monitor.due_time(), RunMonitor::Clock::now());
 }
 
+TEST(RunMonitor, CountsTicksThatBeginLaterThanAStepTakesAtTheAskedSpeed) {
+  const auto experiment = experiment_of({{}});
+  Simulation simulation(experiment, 1);
+  RunMonitor monitor(experiment, simulation, {.speed = 2.0}, {});
+  monitor.start();
+  const auto step_at_this_speed = experiment.world.step / 2;
+  monitor.add_lateness(step_at_this_speed - std::chrono::microseconds(1));
+  monitor.add_lateness(step_at_this_speed + std::chrono::microseconds(1));
+  const RunResult result = monitor.finish(RunResult::End::finished);
+  EXPECT_EQ(result.late_ticks, 1u);
+  EXPECT_EQ(result.lateness.count(), 2u);
+}
+
 TEST(Roster, ADescriptionsNumberIsMadeFromItsContents) {
   const auto experiment = experiment_of({{}});
   wire::RobotDescription kind = describe_kinds(Simulation(experiment, 1)).front();

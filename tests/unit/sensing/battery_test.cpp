@@ -21,7 +21,7 @@ description::Model fed_robot(double capacity, double idle_power, double efficien
   return model;
 }
 
-TEST(Battery, GivesItsIdlePowerToARobotAtRest) {
+TEST(Battery, SuppliesItsIdlePowerAtRest) {
   SensingWorld world;
   world.add(fed_robot(10.0, 2.0), "robot", at(0, 0, 0));
   EXPECT_EQ(world.read(0, "battery/0/charge"), 1.0);
@@ -30,8 +30,8 @@ TEST(Battery, GivesItsIdlePowerToARobotAtRest) {
   EXPECT_NEAR(world.read(0, "battery/0/power"), 2.0, 1e-5);
 }
 
-// What it takes to get going is at least the kinetic energy, m v^2 / 2, over the efficiency.
-TEST(Battery, GivesWhatTheTracksDoToTheirLoad) {
+// The energy for accelerating is at least the kinetic energy, m v^2 / 2, over the efficiency.
+TEST(Battery, SuppliesThePowerOfTracksOnTheirLoad) {
   SensingWorld world;
   world.add(fed_robot(10.0, 0.0, 0.5), "robot", at(0, 0, 0));
   world.command(0, "treel/left/velocity", {0.2});
@@ -43,7 +43,7 @@ TEST(Battery, GivesWhatTheTracksDoToTheirLoad) {
   EXPECT_LT(given, 2.2 * kinetic / 0.5) << "friction while it gets going takes as much at the most";
 }
 
-TEST(Battery, GivesWhatRotorsDoToTheAir) {
+TEST(Battery, SuppliesThePowerOfRotorsOnTheAir) {
   SensingWorld world;
   description::Model model = fed_robot(1000.0, 0.0, 0.5);
   description::Rotor rotor;
@@ -61,7 +61,7 @@ TEST(Battery, GivesWhatRotorsDoToTheAir) {
 }
 
 // m v^2: as much as its kinetic energy is turned into heat while it slips.
-TEST(Battery, GivesWhatABeltDoesToItsLoad) {
+TEST(Battery, SuppliesThePowerOfABeltOnItsLoad) {
   constexpr double mass = 2.0, speed = 0.9, efficiency = 0.5;
   const Eigen::Vector3d size(4.0, 1.0, 0.1);
   SensingWorld world;
@@ -81,7 +81,7 @@ TEST(Battery, GivesWhatABeltDoesToItsLoad) {
 }
 
 // At a constant velocity up a slope: m g v sin.
-TEST(Battery, GivesWhatTracksOfBeltsDoToTheVehicle) {
+TEST(Battery, SuppliesThePowerOfBeltTracksOnTheVehicle) {
   constexpr double mass = 10.0, speed = 0.2, efficiency = 0.5, slope = 0.3;
   const Eigen::Vector3d size(0.6, 0.5, 0.1);
   SensingWorld world;

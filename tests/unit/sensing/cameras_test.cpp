@@ -5,7 +5,7 @@
 
 #include "tests/support/worlds/sensing_world.hpp"
 
-/// What cameras see, against closed forms.
+/// Images of cameras, compared with closed forms.
 namespace cohort {
 namespace {
 
@@ -27,7 +27,7 @@ std::string spot(std::size_t index, const std::string& quantity) {
   return "camera/" + std::to_string(index) + "/" + quantity;
 }
 
-TEST(OmnidirectionalCamera, TellsBearingElevationDistanceAndColorNearestFirst) {
+TEST(OmnidirectionalCamera, ReportsBearingElevationDistanceAndColorNearestFirst) {
   SensingWorld world;
   world.add(seeing_robot(), "robot", at(0.3, -0.2, 0, 0.5));
   world.add_emitter("far", Marker{{0.25, 0.5, 1.0}}, at(0.3 - 0.8, -0.2 + 0.6, eye + 0.75));
@@ -47,7 +47,7 @@ TEST(OmnidirectionalCamera, TellsBearingElevationDistanceAndColorNearestFirst) {
   EXPECT_EQ(world.read(0, spot(2, "distance")), 0.0) << "nothing more";
 }
 
-TEST(OmnidirectionalCamera, SeesNothingBehindThingsNorBeyondItsRangeNorOutsideItsElevations) {
+TEST(OmnidirectionalCamera, SeesNothingOccludedOrOutOfRangeOrOutsideItsElevations) {
   SensingWorld world;
   world.add(seeing_robot(), "robot", at(0, 0, 0));
   world.add(seeing_robot(), "in the way", at(0, 0.5, 0));
@@ -63,8 +63,8 @@ TEST(OmnidirectionalCamera, SeesNothingBehindThingsNorBeyondItsRangeNorOutsideIt
   EXPECT_NEAR(world.read(0, spot(1, "elevation")), 0.99, 1e-12);
 }
 
-// Of a ring of LEDs on a cylinder, those are seen whose side faces the camera: within acos(radius / distance).
-TEST(OmnidirectionalCamera, SeesTheLedsOnTheNearSideOfAnotherRobotAndNotItsOwn) {
+// In a ring of LEDs on a cylinder, those are visible whose side faces the camera: within acos(radius / distance).
+TEST(OmnidirectionalCamera, SeesLedsOnTheNearSideOfAnotherRobotButNotItsOwn) {
   SensingWorld world;
   world.add(seeing_robot(), "robot", at(0, 0, 0));
   world.add(seeing_robot(), "shining", at(0.5, 0, 0));
@@ -83,7 +83,7 @@ TEST(OmnidirectionalCamera, SeesTheLedsOnTheNearSideOfAnotherRobotAndNotItsOwn) 
   }
 }
 
-TEST(OmnidirectionalCamera, ReportsTheNearestWhereMoreAreSeenThanFit) {
+TEST(OmnidirectionalCamera, ReportsTheNearestIfMoreAreVisibleThanFit) {
   SensingWorld world;
   world.add(seeing_robot(3), "robot", at(0, 0, 0));
   for (int i = 0; i < 6; ++i) {
@@ -96,7 +96,7 @@ TEST(OmnidirectionalCamera, ReportsTheNearestWhereMoreAreSeenThanFit) {
     EXPECT_NEAR(world.read(0, spot(i, "distance")), 0.7 + 0.1 * static_cast<double>(i), 1e-12);
 }
 
-TEST(OmnidirectionalCamera, HasNoiseOnPlacesAndNoneOnCountsAndColors) {
+TEST(OmnidirectionalCamera, HasNoiseOnPositionsButNotOnCountsAndColors) {
   SensingWorld world;
   description::Model robot = seeing_robot();
   description::Readout& readout = *description::readout_of(robot.devices[5]);
@@ -139,7 +139,7 @@ description::Model filming_robot(std::size_t width, std::size_t height) {
   return model;
 }
 
-TEST(Panorama, ShowsSkyGroundAndThingsWhereTheyAre) {
+TEST(Panorama, ShowsSkyGroundAndObjects) {
   constexpr std::size_t width = 72, height = 20;
   SensingWorld world;
   world.add(filming_robot(width, height), "robot", at(0, 0, 0));

@@ -17,7 +17,7 @@ description::Model robot_with_light_sensors(double led_intensity = 0.0) {
   return model;
 }
 
-TEST(LampView, AnswersForManyRingsAsForFew) {
+TEST(LampView, GivesTheSameResultsForManyRingsAndForFew) {
   const RandomStream random(5, "lamp_view_test", "places");
   SensingWorld world;
   const auto place = [&](std::uint64_t n, double z) {
@@ -60,7 +60,7 @@ TEST(LampView, AnswersForManyRingsAsForFew) {
 
 // The sensors of few robots are served by rays and those of many lamp by lamp: in one world, by the rate that they ask
 // at.
-TEST(LampView, GivesARobotTheSameReadingsWhoeverElseAsks) {
+TEST(LampView, GivesARobotTheSameReadingsIndependentlyOfOthers) {
   const auto reading = [](std::chrono::nanoseconds period_of_others) {
     SensingWorld world;
     description::Model others = robot_with_light_sensors();

@@ -16,7 +16,7 @@ description::Model talking_robot(double range = 2.0, std::size_t capacity = 4) {
   return model;
 }
 
-TEST(RangeAndBearing, TellsWhatWasSaidAndFromWhere) {
+TEST(RangeAndBearing, ReportsMessagesAndTheirDirections) {
   SensingWorld world;
   world.add(talking_robot(), "hearing", at(0, 0, 0, 0.5));
   world.add(talking_robot(), "talking", at(-0.6, 0.8, 0));
@@ -36,7 +36,7 @@ TEST(RangeAndBearing, TellsWhatWasSaidAndFromWhere) {
   EXPECT_EQ(world.read(0, "rab/0/message"), 0.0);
 }
 
-TEST(RangeAndBearing, EndsAtItsRangeAndAtWallsAndAtOtherRobots) {
+TEST(RangeAndBearing, IsBlockedByRangeWallsAndOtherRobots) {
   SensingWorld world;
   world.add(talking_robot(), "hearing", at(0, 0, 0));
   world.add(talking_robot(1.5), "too far", at(0, 1.6, 0));
@@ -51,7 +51,7 @@ TEST(RangeAndBearing, EndsAtItsRangeAndAtWallsAndAtOtherRobots) {
   EXPECT_EQ(world.read(0, "rab/0/message"), 3.0);
 }
 
-TEST(RangeAndBearing, ReportsTheNearestWhereMoreAreHeardThanFit) {
+TEST(RangeAndBearing, ReportsTheNearestIfMoreAreReceivedThanFit) {
   SensingWorld world;
   world.add(talking_robot(2.0, 3), "hearing", at(0, 0, 0));
   for (int i = 0; i < 6; ++i) {
@@ -67,7 +67,7 @@ TEST(RangeAndBearing, ReportsTheNearestWhereMoreAreHeardThanFit) {
     EXPECT_EQ(world.read(0, "rab/" + std::to_string(i) + "/message"), 5.0 - static_cast<double>(i));
 }
 
-TEST(RangeAndBearing, GathersWhatIsHeardBetweenTheTicksAtWhichTheRobotIsAsked) {
+TEST(RangeAndBearing, AccumulatesMessagesBetweenDueTicks) {
   SensingWorld world;
   world.policy.period = 3;
   world.add(talking_robot(2.0, 8), "hearing", at(0, 0, 0));
@@ -82,7 +82,7 @@ TEST(RangeAndBearing, GathersWhatIsHeardBetweenTheTicksAtWhichTheRobotIsAsked) {
     EXPECT_EQ(world.read(0, "rab/" + std::to_string(i) + "/message"), 5.0 - static_cast<double>(i));
 }
 
-TEST(RangeAndBearing, GoesOnFromASnapshotBetweenTwoDeliveries) {
+TEST(RangeAndBearing, ContinuesFromASnapshotBetweenTwoDeliveries) {
   SensingWorld world;
   world.policy.period = 4;
   world.add(talking_robot(2.0, 8), "hearing", at(0, 0, 0));
@@ -102,7 +102,7 @@ TEST(RangeAndBearing, GoesOnFromASnapshotBetweenTwoDeliveries) {
   EXPECT_EQ(run(6, 12), whole);
 }
 
-TEST(ClimateSensor, ReadsTheAirAndTheSourcesAround) {
+TEST(ClimateSensor, ReadsTheAirAndNearbySources) {
   SensingWorld world;
   world.world().climate = {290.0, 0.4};
   description::Model robot = tracked_robot();

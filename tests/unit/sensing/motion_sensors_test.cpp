@@ -41,14 +41,14 @@ TEST(ImuSensor, InFreeFallMeasuresNothing) {
   expect_near(sensed.vector("linear_acceleration"), {0, 0, 0}, 1e-9);
 }
 
-TEST(ImuSensor, SharesGravityOutToItsAxesAsItLeans) {
+TEST(ImuSensor, DistributesGravityToItsAxesByItsInclination) {
   Sensed sensed(imu(turned(0, 0, 0, {1, 0, 0}, 0.3)), turned(0, 0, 1, {0, 0, 1}, 1.7));
   expect_near(sensed.vector("linear_acceleration"), {0, g * std::sin(0.3), g * std::cos(0.3)}, 1e-12);
 }
 
-// The mean over a step of h of a point that goes round: the velocities before and after are w r long and w h apart, so
-// that in the axes at the end it is w r / h (-sin(w h), 1 - cos(w h)), which is -w^2 r for small w h.
-TEST(ImuSensor, MeasuresTheCentripetalAccelerationOfItsPlace) {
+// The mean over a step of h of a point that moves on a circle. The velocities before and after have the length w r and
+// are w h apart. In the axes at the end the mean is w r / h (-sin(w h), 1 - cos(w h)), which is -w^2 r for small w h.
+TEST(ImuSensor, MeasuresTheCentripetalAccelerationAtItsPosition) {
   constexpr double w = 3.0, r = 0.4;
   Sensed sensed(imu({{r, 0, 0}}));
   sensed.small.description.gravity.setZero();
@@ -74,7 +74,7 @@ void expect_yaw(Sensed& sensed, double yaw) {
   EXPECT_NEAR(sensed.value("orientation", 3), std::cos(0.5 * yaw), 1e-9);
 }
 
-TEST(ImuSensor, GivesItsOrientationRelativeToThatAtFirst) {
+TEST(ImuSensor, GivesItsOrientationRelativeToTheInitialOne) {
   Sensed sensed(imu(), at(0, 0, 50, 0.7));
   expect_yaw(sensed, 0.0);
   sensed.small.world().set_root_twist(sensed.body, {{0, 0, 0.5}, {0, 0, 0}});
@@ -82,7 +82,7 @@ TEST(ImuSensor, GivesItsOrientationRelativeToThatAtFirst) {
   expect_yaw(sensed, 0.5);
 }
 
-TEST(ImuSensor, GivesItsOrientationInTheFrameThatIsAskedFor) {
+TEST(ImuSensor, GivesItsOrientationInTheRequestedFrame) {
   description::Imu in_world = imu();
   in_world.is_relative_to_world = true;
   Sensed sensed(in_world, at(0, 0, 1, 0.7));
@@ -111,7 +111,7 @@ TEST(AccelerometerSensor, MeasuresGravityAlongItsAxesAndNothingInFreeFall) {
   expect_near(sensed.vector("acceleration"), {0, 0, 0}, 1e-9);
 }
 
-// A bob of 2 kg, 0.3 m along x from the fixed joint that holds it; the joint is turned about z in the bob, and the bob
+// A bob of 2 kg, 0.3 m along x from the fixed joint that holds it. The joint is rotated about z in the bob, and the bob
 // about z in the world.
 Model hanging(ForceTorqueSensor sensor) {
   Model model;
@@ -135,7 +135,7 @@ Model hanging(ForceTorqueSensor sensor) {
   return model;
 }
 
-TEST(ForceTorqueSensor, MeasuresTheWeightThatHangsOnAJointInTheAxesThatAreAskedFor) {
+TEST(ForceTorqueSensor, MeasuresAHangingWeightInTheRequestedAxes) {
   using Frame = ForceTorqueSensor::Frame;
   constexpr double weight = 2.0 * g, moment = 0.3 * weight;
   // In the world the bob is 0.3 m along y: its weight turns it about -x. These are the axes of the parent.
@@ -153,7 +153,7 @@ TEST(ForceTorqueSensor, MeasuresTheWeightThatHangsOnAJointInTheAxesThatAreAskedF
   check({"", 0, at(0, 0, 0, 0.5 * pi), Frame::sensor, true}, {0, -moment, 0}, 1.0);  // and one more
 }
 
-TEST(ForceTorqueSensor, OfABodyAtWhoseJointNothingPullsIsZeroBeforeTheFirstStep) {
+TEST(ForceTorqueSensor, IsZeroWithoutLoadBeforeTheFirstStep) {
   Sensed sensed(hanging({}), at(0, 0, 1));
   EXPECT_EQ(sensed.vector("force"), Eigen::Vector3d::Zero().eval());
 }

@@ -50,7 +50,7 @@ TEST(FiveRays, ReadTheMeanOfFive) {
                 (before_wall(distance, 0.0) + 4.0 * before_wall(distance, angle)) / 5.0, 1e-12);
 }
 
-TEST(FiveRays, ReadTheMeanOverTheConeOfWhatIsSmooth) {
+TEST(FiveRays, ReadTheMeanOverTheConeForSmoothFunctions) {
   // Over solid angle, by a fine sum.
   const double distance = 0.1;
   double sum = 0.0;
@@ -62,7 +62,7 @@ TEST(FiveRays, ReadTheMeanOverTheConeOfWhatIsSmooth) {
   EXPECT_NEAR(reading_before_wall(ProximityTechnique::five_rays, distance), sum / parts, 1e-4);
 }
 
-TEST(FiveRays, FindWhatOneRayPassesBy) {
+TEST(FiveRays, DetectObjectsThatOneRayMisses) {
   const auto reads = [](ProximityTechnique technique) {
     SensingWorld world;
     world.add(robot_with(technique), "robot", at(0, 0, 0));
@@ -92,7 +92,7 @@ TEST(RandomRay, FillsTheConeEvenly) {
   EXPECT_NEAR(sum / ticks, (from + to) / 2.0, 4.0 * (to - from) / std::sqrt(12.0 * ticks) + 1e-3);
 }
 
-TEST(RandomRay, IsDrawnForEachSensorAndTickFromSeedAndName) {
+TEST(RandomRay, DependsOnSensorTickSeedAndName) {
   const auto run = [](std::uint64_t seed, unsigned threads) {
     SensingWorld world(threads);
     world.experiment.seed = seed;
@@ -171,7 +171,7 @@ description::Samples simple_samples() {
   return samples;
 }
 
-TEST(Samples, AreLookedUpByDistanceAndBearingAndTheGreatestCounts) {
+TEST(Samples, AreLookedUpByDistanceAndBearingAndTheGreatestIsUsed) {
   SensingWorld world;
   world.add(robot_with(ProximityTechnique::samples, simple_samples()), "robot", at(0, 0, 0, 0.3));
   world.add(static_shape("post", description::Cylinder{0.05, 1.0}), "post",
@@ -188,7 +188,7 @@ TEST(Samples, AreLookedUpByDistanceAndBearingAndTheGreatestCounts) {
   EXPECT_TRUE(found);
 }
 
-TEST(Samples, TakeTheNearestPointOfAWallAndTheGreatestOfSeveralThings) {
+TEST(Samples, UseTheNearestPointOfAWallAndTheGreatestOfSeveralObjects) {
   SensingWorld world;
   world.add(robot_with(ProximityTechnique::samples, simple_samples()), "robot", at(0, 0, 0));
   world.add(static_shape("wall", description::Box{{4.0, 0.1, 1.0}}), "wall", at(1.5, 0.3, 0));   // 0.25 m to the left
@@ -201,7 +201,7 @@ TEST(Samples, TakeTheNearestPointOfAWallAndTheGreatestOfSeveralThings) {
   EXPECT_NEAR(reading(world, 9), 2.5, 1e-9);
 }
 
-TEST(Samples, OfARingThatAreTakenInTheSimulatorStandForIt) {
+TEST(Samples, TakenInTheSimulatorReproduceTheRing) {
   const description::Model real = robot_with(ProximityTechnique::five_rays);
   sensing::SampleGrid grid;
   grid.radius = 0.05;
@@ -229,7 +229,7 @@ TEST(Samples, OfARingThatAreTakenInTheSimulatorStandForIt) {
     }
 }
 
-TEST(Samples, StandInForSquareAndCosineOfLightAndSound) {
+TEST(Samples, ReplaceSquareAndCosineOfLightAndSound) {
   description::Samples samples;  // two readings that fall linearly from 1 and 2 at 0 m to 0 at 2 m, all round
   samples.distances = {0.0, 2.0};
   samples.angles = {0.0};

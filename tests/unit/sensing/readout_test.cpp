@@ -6,7 +6,7 @@
 #include "server/core/infinity.hpp"
 #include "server/sensing/readings/signal_chain.hpp"
 
-/// What lies between measurement and report, apart from any world.
+/// The path from measurement to reading, without a world.
 namespace cohort::sensing {
 namespace {
 
@@ -26,7 +26,7 @@ double disturbed(SignalChain& readout, std::uint64_t tick, double value) {
   return values[0];
 }
 
-// What comes out at each tick for a measurement that is the tick's number.
+// Returns the reading at each tick for a measurement that is the tick's number.
 std::vector<double> reports(const description::Readout& described, std::uint64_t ticks) {
   SignalChain readout = readout_of(described);
   std::vector<double> out;
@@ -39,7 +39,7 @@ std::vector<double> reports(const description::Readout& described, std::uint64_t
   return out;
 }
 
-TEST(Readout, OfAnExactSensorIsWhatWasMeasured) {
+TEST(Readout, OfAnExactSensorIsTheMeasuredValue) {
   SignalChain readout = readout_of({});
   EXPECT_TRUE(readout.is_immediate());
   EXPECT_EQ(disturbed(readout, 3, 0.123456789), 0.123456789);
@@ -62,7 +62,7 @@ TEST(Readout, GaussianNoiseHasItsMeanAndItsDeviation) {
   EXPECT_NEAR(std::sqrt(squares / n - mean * mean), 2.0, 4.0 * 2.0 / std::sqrt(2.0 * n));
 }
 
-TEST(Readout, UniformNoiseFillsItsRangeAndNoMore) {
+TEST(Readout, UniformNoiseFillsItsRangeExactly) {
   description::Noise noise;
   noise.uniform = 0.25;
   SignalChain readout = readout_of(with_noise(noise));
@@ -107,7 +107,7 @@ TEST(Readout, ABiasIsDrawnOnceForEachValueOfEachRobot) {
 
 // A first-order Gauss-Markov process: the same deviation at all times after the first ones, correlated by
 // exp(-t / drift_time).
-TEST(Readout, ABiasThatWandersForgetsItselfInItsTime) {
+TEST(Readout, ABiasDriftDecorrelatesInItsTimeConstant) {
   description::Noise noise;
   noise.drift_deviation = 0.2;
   noise.drift_time = 0.1;  // ten ticks
@@ -133,7 +133,7 @@ TEST(Readout, ReadingsAreMultiplesOfThePrecisionWithinTheRange) {
   EXPECT_EQ(seen, (std::set<double>{0.0, 0.25, 0.5, 0.75, 1.0}));
 }
 
-TEST(Readout, NoiseIsOnTheQuantityThatItNames) {
+TEST(Readout, NoiseAppliesToItsQuantityOnly) {
   description::Noise noise;
   noise.bias = 1.0;
   noise.quantity = "velocity";
@@ -158,7 +158,7 @@ TEST(Readout, ALatencyDelaysEveryReading) {
   EXPECT_EQ(reports({{}, 0.0, 20ms, 30ms}, 10), (std::vector<double>{0, 0, 0, 0, 0, 2, 2, 4, 4, 6}));
 }
 
-TEST(Readout, WhatDropsOutLeavesTheReportBeforeIt) {
+TEST(Readout, ADropoutKeepsThePreviousReading) {
   const std::vector<double> out = reports({{}, 0.3, 0ms, 0ms}, samples);
   std::uint64_t dropped = 0;
   for (std::uint64_t tick = 1; tick < samples; ++tick) {
@@ -169,7 +169,7 @@ TEST(Readout, WhatDropsOutLeavesTheReportBeforeIt) {
   EXPECT_NEAR(static_cast<double>(dropped) / samples, 0.3, 4.0 * std::sqrt(0.3 * 0.7 / samples));
 }
 
-TEST(Readout, GoesOnFromASnapshotAsItWouldHave) {
+TEST(Readout, ContinuesIdenticallyFromASnapshot) {
   description::Noise noise;
   noise.drift_deviation = 0.2;
   noise.drift_time = 1.0;

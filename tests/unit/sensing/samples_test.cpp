@@ -49,7 +49,7 @@ TEST(SampleFile, IsReadWithItsUnitsAndComments) {
   EXPECT_EQ(samples.readings, (std::vector<double>{0.5, 1, 0.25, 2, 0, 3, -0.4, 4}));
 }
 
-TEST(SampleFile, IsWrittenSoThatItIsReadBackWithTheSameBits) {
+TEST(SampleFile, IsWrittenAndReadWithTheSameBits) {
   const RandomStream random(61, "samples_test", "readings");
   Samples samples;
   for (std::uint64_t i = 0; i < 7; ++i)
@@ -72,33 +72,32 @@ TEST(SampleFile, IsWrittenSoThatItIsReadBackWithTheSameBits) {
   EXPECT_EQ(again.file, file);
 }
 
-TEST(SampleFile, IsRefusedWithTheLineAndWhatWasExpected) {
+TEST(SampleFile, IsRejectedWithTheLineAndTheExpectedContent) {
   EXPECT_EQ(problem_of("# nothing\n"), " there is no header; expected 'distance [m],angle [rad],reading_0 [UNIT],...'");
   EXPECT_EQ(problem_of("distance [cm],angle [rad],reading_0 [1]\n"),
             "1: expected 'distance [m],angle [rad],reading_0 [UNIT],...' as the header");
   EXPECT_EQ(problem_of("distance [m],angle [rad],reading_1 [1]\n"),
-            "1: reading_1 [1]: expected 'reading_0 [UNIT]'; a number without unit is a [1]");
+            "1: reading_1 [1]: expected 'reading_0 [UNIT]'; write [1] for a dimensionless quantity");
   EXPECT_EQ(problem_of(header), "1: expected at least one line of samples after the header");
-  EXPECT_EQ(problem_of(header + "0.1,0,1\n"), "2: expected 4 values, as many as the header names; found 3");
+  EXPECT_EQ(problem_of(header + "0.1,0,1\n"), "2: expected 4 values, as in the header; found 3");
   EXPECT_EQ(problem_of(header + "0.1,0,1,nan\n"), "2: reading_1: expected a finite number, found 'nan'");
   EXPECT_EQ(problem_of(header + "0.1,0,1,2 V\n"), "2: reading_1: expected a finite number, found '2 V'");
   EXPECT_EQ(problem_of(header + "-0.1,0,1,2\n"), "2: distance: expected at least 0 m");
 }
 
-TEST(SampleFile, IsRefusedWhereItIsNoGrid) {
+TEST(SampleFile, IsRejectedIfItIsNotAGrid) {
   const std::string first = header + "0.1,0,1,2\n0.1,1,1,2\n";
-  EXPECT_EQ(problem_of(first + "0.05,0,1,2\n"), "4: distance: expected at least 0.1, as in the line before");
-  EXPECT_EQ(problem_of(first + "0.1,0.5,1,2\n"), "4: angle: expected more than 1, as angles ascend");
-  EXPECT_EQ(problem_of(first + "0.1,6.3,1,2\n"),
-            "4: angle: expected less than a full turn from the first, which is taken to follow the last");
+  EXPECT_EQ(problem_of(first + "0.05,0,1,2\n"), "4: distance: expected at least 0.1, the distance of the line before");
+  EXPECT_EQ(problem_of(first + "0.1,0.5,1,2\n"), "4: angle: expected more than 1, as angles must increase");
+  EXPECT_EQ(problem_of(first + "0.1,6.3,1,2\n"), "4: angle: expected an angle less than a full turn from the first");
   EXPECT_EQ(problem_of(first + "0.2,0,1,2\n0.2,1.5,1,2\n"),
-            "5: angle: expected 1: every distance has the angles of the first");
+            "5: angle: expected 1; every distance must have the angles of the first");
   EXPECT_EQ(problem_of(first + "0.2,0,1,2\n0.3,0,1,2\n"),
-            "5: angle: expected 1 at the distance before this one: every distance has the angles of the first");
+            "5: angle: expected 1 at the previous distance; every distance must have the angles of the first");
   EXPECT_EQ(problem_of(first + "0.2,0,1,2\n0.2,1,1,2\n0.2,2,1,2\n"),
-            "6: angle: expected the next distance: every distance has the angles of the first");
+            "6: angle: expected the next distance; every distance must have the angles of the first");
   EXPECT_EQ(problem_of(first + "0.2,0,1,2\n"),
-            "4: angle: the file ends before the angle 1: every distance has the angles of the first");
+            "4: angle: the file ends before the angle 1; every distance must have the angles of the first");
 }
 
 // A reading that is linear in distance and angle over each cell is met everywhere.
@@ -129,7 +128,7 @@ TEST(SampleTable, IsBilinearBetweenSamples) {
     }
 }
 
-TEST(SampleTable, GoesRoundFromTheLastAngleToTheFirst) {
+TEST(SampleTable, WrapsFromTheLastAngleToTheFirst) {
   const SampleTable table(shared(sloped()));
   const double last = table.reading(0.2, 1.5, 0), first = table.reading(0.2, -2.0, 0);
   const double middle = 0.5 * (1.5 + (2 * pi - 2.0));
@@ -137,14 +136,14 @@ TEST(SampleTable, GoesRoundFromTheLastAngleToTheFirst) {
   EXPECT_NEAR(table.reading(0.2, std::nextafter(-2.0, -3.0), 0), first, 1e-14);
 }
 
-TEST(SampleTable, KeepsTheFirstRowBeforeItAndIsZeroBeyondTheLast) {
+TEST(SampleTable, UsesTheFirstRowBelowItAndIsZeroBeyondTheLast) {
   const SampleTable table(shared(sloped()));
   EXPECT_EQ(table.reading(0.0, 0.7, 0), table.reading(0.1, 0.7, 0));
   EXPECT_NE(table.reading(0.4, 0.7, 0), 0.0);
   EXPECT_EQ(table.reading(std::nextafter(0.4, 1.0), 0.7, 0), 0.0);
 }
 
-TEST(SampleTable, OfASingleSampleIsTheSameAllRound) {
+TEST(SampleTable, OfASingleSampleIsTheSameInAllDirections) {
   const SampleTable table(shared(Samples{{0.1}, {1.0}, {"1"}, {7.0}}));
   for (const double angle : {-4.0, 0.0, 1.0, 2.0}) EXPECT_EQ(table.reading(0.05, angle, 0), 7.0);
 }
@@ -162,7 +161,7 @@ TEST(SampleTable, CombinesObjectsByTheGreatestOrTheSum) {
   EXPECT_NEAR(sum[1], 0.5 * 0.6, 1e-15);
 }
 
-TEST(SampleTable, RefusesWhatIsNoGrid) {
+TEST(SampleTable, RejectsAnIncompleteGrid) {
   Samples samples = sloped();
   samples.readings.pop_back();
   EXPECT_THROW(SampleTable{shared(samples)}, std::invalid_argument);

@@ -29,7 +29,7 @@ description::Lidar lidar(std::size_t columns, double bearing, std::size_t rows =
   return result;
 }
 
-TEST(LidarSensor, MeasuresAWallRowByRowFromTheLowestAndTheRight) {
+TEST(LidarSensor, MeasuresAWallInRowsFromTheLowestAndTheRight) {
   description::Lidar sensor = lidar(5, 0.5, 3, 0.2);
   sensor.X_LS.position.x() = 0.05;
   Sensed sensed(sensor);
@@ -58,7 +58,7 @@ TEST(LidarSensor, TurnsPositiveBearingsToTheLeftAndPositiveElevationsUp) {
   EXPECT_EQ(ranges[6 + 1], 8.0) << "the highest row meets nothing";
 }
 
-TEST(LidarSensor, OfOneRayLooksIntoTheMiddleOfItsAngles) {
+TEST(LidarSensor, WithOneRayPointsToTheMiddleOfItsAngles) {
   description::Lidar sensor = lidar(1, 0.0);
   sensor.min_bearing = 0.2;
   sensor.max_bearing = 0.6;
@@ -67,7 +67,7 @@ TEST(LidarSensor, OfOneRayLooksIntoTheMiddleOfItsAngles) {
   EXPECT_NEAR(sensed.read()[0], 2.0 / std::cos(0.4), 1e-9);
 }
 
-TEST(LidarSensor, ReadsTheGreatestRangeWhereNothingIsAndTheLeastWhereAnythingIsTooNear) {
+TEST(LidarSensor, ReadsTheMaximumRangeWithoutAHitAndTheMinimumIfTooNear) {
   description::Lidar sensor = lidar(3, pi / 2);
   sensor.X_LS.position.x() = 0.2;
   Sensed sensed(sensor);
@@ -77,9 +77,9 @@ TEST(LidarSensor, ReadsTheGreatestRangeWhereNothingIsAndTheLeastWhereAnythingIsT
   EXPECT_EQ(ranges[1], 0.15);
 }
 
-TEST(LidarSensor, SeesThroughItsOwnBody) { EXPECT_EQ(Sensed(lidar(1, 0.0)).read()[0], 8.0); }
+TEST(LidarSensor, IgnoresItsOwnBody) { EXPECT_EQ(Sensed(lidar(1, 0.0)).read()[0], 8.0); }
 
-TEST(LidarSensor, HasTheNoiseThatIsAskedForOnEveryRayAndNoneWhereNothingIs) {
+TEST(LidarSensor, HasTheGivenNoiseOnEveryRayExceptWithoutAHit) {
   constexpr std::size_t count = 20'000;
   description::Lidar sensor = lidar(count, 0.0);
   sensor.readout.noises.push_back(noise_on("ranges", 0.05));
@@ -109,7 +109,7 @@ TEST(LidarSensor, ReadsWholeMultiplesOfItsResolution) {
   EXPECT_EQ(ranges[1], 2.25) << "2.2 m";
 }
 
-TEST(NoiseOfAnElement, IsOnThatValueOfEachChannelAlone) {
+TEST(NoiseOfAnElement, AppliesToThatValueOfEachChannelOnly) {
   description::Magnetometer sensor{"m", 0, {}};
   sensor.readout.noises.push_back(noise_on("magnetic_field", 1.0, 1));
   Sensed sensed(sensor);
@@ -128,7 +128,7 @@ Model standing(std::size_t collision) {
   return model;
 }
 
-TEST(ContactSensor, FeelsTheWeightThatRestsOnItsCollision) {
+TEST(ContactSensor, MeasuresTheWeightOnItsCollision) {
   Sensed sensed(standing(0), at(0, 0, 0.1));
   EXPECT_EQ(sensed.value("touching"), 0.0) << "before the first step";
   sensed.small.run(1.0);
@@ -136,14 +136,14 @@ TEST(ContactSensor, FeelsTheWeightThatRestsOnItsCollision) {
   EXPECT_NEAR(sensed.value("force"), 2.0 * 9.81, 0.01);
 }
 
-TEST(ContactSensor, FeelsNothingOfOtherCollisionsOfItsLink) {
+TEST(ContactSensor, IgnoresOtherCollisionsOfItsLink) {
   Sensed sensed(standing(1), at(0, 0, 0.1));
   sensed.small.run(1.0);
   EXPECT_EQ(sensed.value("touching"), 0.0);
   EXPECT_EQ(sensed.value("force"), 0.0);
 }
 
-TEST(ContactSensor, FeelsWhatStandsOnIt) {
+TEST(ContactSensor, MeasuresAnObjectOnTopOfIt) {
   Sensed sensed(standing(1), at(0, 0, 0.1));
   sensed.small.add(loose("load", Box{{0.1, 0.1, 0.1}}, solid_box(0.5, {0.1, 0.1, 0.1})), at(0, 0, 0.4));
   sensed.small.run(1.0);
@@ -151,7 +151,7 @@ TEST(ContactSensor, FeelsWhatStandsOnIt) {
   EXPECT_NEAR(sensed.value("force"), 0.5 * 9.81, 0.01);
 }
 
-TEST(ContactSensor, OfAPlanarBodyFeelsTheWallThatItIsDrivenInto) {
+TEST(ContactSensor, OfAPlanarBodyMeasuresAWallThatItHits) {
   Model robot = tracked_robot();
   robot.devices.insert(robot.devices.begin(), description::ContactSensor{"touch", 1, 0});
   for (Device& device : robot.devices)
@@ -167,7 +167,7 @@ TEST(ContactSensor, OfAPlanarBodyFeelsTheWallThatItIsDrivenInto) {
   EXPECT_GT(sensed.value("force"), 0.1);
 }
 
-TEST(AltimeterSensor, MeasuresAFallFromWhereItWasAtFirst) {
+TEST(AltimeterSensor, MeasuresAFallFromItsInitialHeight) {
   Sensed sensed(description::Altimeter{"a", 0, {}}, at(0, 0, 50));
   EXPECT_EQ(sensed.value("vertical_position"), 0.0);
   sensed.small.run(1.0);
@@ -176,10 +176,17 @@ TEST(AltimeterSensor, MeasuresAFallFromWhereItWasAtFirst) {
   EXPECT_NEAR(sensed.value("vertical_position"), -9.81 * 1e-4 * 100 * 101 / 2, 1e-9);
 }
 
-TEST(AltimeterSensor, HasTheVelocityOfItsOwnPlaceOnABodyThatTurns) {
+TEST(AltimeterSensor, HasTheVelocityOfItsOwnPositionOnARotatingBody) {
   Sensed sensed(description::Altimeter{"a", 0, {{0.3, 0, 0}}}, at(0, 0, 50));
   sensed.small.world().set_root_twist(sensed.body, {{0, -2.0, 0}, {0, 0, 0.5}});
   EXPECT_NEAR(sensed.value("vertical_velocity"), 0.5 + 2.0 * 0.3, 1e-12);
+}
+
+TEST(NavSatSensor, MeasuresItsOwnPositionAndVelocityInWorldAxes) {
+  Sensed sensed(description::NavSat{"n", 0, {{0.3, 0, 0}}}, at(1, 2, 50, 0.5 * pi));
+  sensed.small.world().set_root_twist(sensed.body, {{0, 0, 2.0}, {0.25, 0, 0.5}});
+  EXPECT_TRUE(sensed.vector("position").isApprox(Eigen::Vector3d(1, 2.3, 50), 1e-12));
+  EXPECT_TRUE(sensed.vector("velocity").isApprox(Eigen::Vector3d(0.25 - 2.0 * 0.3, 0, 0.5), 1e-12));
 }
 
 TEST(MagnetometerSensor, MeasuresTheFieldOfTheWorldAlongItsOwnAxes) {
@@ -192,7 +199,7 @@ TEST(MagnetometerSensor, MeasuresTheFieldOfTheWorldAlongItsOwnAxes) {
       << sensed.vector("magnetic_field").transpose();
 }
 
-TEST(InclinometerSensor, MeasuresRollAndPitchWhateverTheHeading) {
+TEST(InclinometerSensor, MeasuresRollAndPitchForAnyHeading) {
   for (const double yaw : {0.0, 1.0, -2.5})
     for (const double pitch : {0.0, 0.4, -1.2})
       for (const double roll : {0.0, -0.7, 2.8}) {
@@ -206,7 +213,7 @@ TEST(InclinometerSensor, MeasuresRollAndPitchWhateverTheHeading) {
       }
 }
 
-TEST(InclinometerSensor, ReadsZeroWhereThereIsNoGravity) {
+TEST(InclinometerSensor, ReadsZeroWithoutGravity) {
   Sensed sensed(description::Inclinometer{"i", 0, {}}, turned(0, 0, 1, {1, 2, 3}, 0.7));
   sensed.small.description.gravity.setZero();
   EXPECT_EQ(sensed.value("roll"), 0.0);
@@ -237,7 +244,7 @@ description::LogicalCamera camera() {
   return result;
 }
 
-TEST(LogicalCameraSensor, SeesWhatHasItsOriginInTheFrustumNearestFirst) {
+TEST(LogicalCameraSensor, SeesObjectsWithOriginInTheFrustumNearestFirst) {
   Sensed sensed(camera(), at(1, 1, 1, 0.5 * pi));  // looks along y
   const auto add = [&](double ahead, double left, double up) {
     const auto body = static_cast<std::uint32_t>(sensed.small.description.instances.size());
@@ -262,7 +269,7 @@ TEST(LogicalCameraSensor, SeesWhatHasItsOriginInTheFrustumNearestFirst) {
   EXPECT_NEAR(sensed.value("orientation", 4 + 3), std::cos(0.5 * (0.7 - 0.5 * pi)), 1e-12);
 }
 
-TEST(LogicalCameraSensor, KeepsTheNearestOfMoreThanItHasRoomFor) {
+TEST(LogicalCameraSensor, KeepsTheNearestIfMoreAreVisibleThanFit) {
   Sensed sensed(camera());
   for (int i = 0; i < 30; ++i) sensed.add_wall({0.05, 0.05, 0.05}, at(9.0 - 0.2 * i, 0, 1));
   EXPECT_EQ(sensed.value("count"), 16.0);

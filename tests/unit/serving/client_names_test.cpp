@@ -27,7 +27,7 @@ TEST(ClientNames, AParticipantHasOneClientUntilItIsGone) {
   EXPECT_EQ(names.enter(7, writer_of(1, 10)), "");
 }
 
-TEST(ClientNames, AClientIsKnownByTheWriterOfItsLastJoinAlone) {
+TEST(ClientNames, AClientIsIdentifiedByTheWriterOfItsLastJoin) {
   ClientNames names;
   names.enter(7, writer_of(1, 10));
   names.enter(7, writer_of(1, 11));
@@ -41,7 +41,7 @@ TEST(ClientNames, AClientIsKnownByTheWriterOfItsLastJoinAlone) {
   EXPECT_FALSE(names.is_in_own_name(7, writer_of(1, 11)));
 }
 
-TEST(ClientNames, NobodyHasIdZero) { EXPECT_EQ(word_of(ClientNames().enter(0, writer_of(1, 10))), "malformed"); }
+TEST(ClientNames, RejectsIdZero) { EXPECT_EQ(word_of(ClientNames().enter(0, writer_of(1, 10))), "malformed"); }
 
 TEST(ClientNames, OneIdentityLeavesRoomForOthers) {
   ClientNames names;
@@ -60,7 +60,7 @@ TEST(ClientNames, OneIdentityLeavesRoomForOthers) {
   EXPECT_EQ(enter(greedy), "") << "one has left";
 }
 
-TEST(ClientNames, BoundsAll) {
+TEST(ClientNames, BoundsTheNumberOfClients) {
   ClientNames names;
   std::size_t entered = 0;
   for (std::uint64_t id = 1; id <= 2 * ClientNames::most_clients; ++id)

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 using namespace test;
 using Receipt = RequestLedger::Receipt;
 
-TEST(Playback, MakesTheStepsOfSeveralOneAfterTheOther) {
+TEST(Playback, CarriesOutStepsOfSeveralClientsInSequence) {
   Playback playback(PlaybackState::paused);
   EXPECT_TRUE(playback.holds());
   playback.step(7, 3, 0xa, 1);
@@ -35,7 +35,7 @@ TEST(Playback, MakesTheStepsOfSeveralOneAfterTheOther) {
   EXPECT_TRUE(playback.holds());
 }
 
-TEST(Playback, GivesUpStepsThatAreLeftWhenItIsPausedOrGoesOn) {
+TEST(Playback, CancelsRemainingStepsWhenPausedOrResumed) {
   Playback playback(PlaybackState::paused);
   playback.step(0, 100, 0xa, 1);
   const auto given_up = playback.set(PlaybackState::playing);
@@ -53,7 +53,7 @@ wire::Reply reply_to(std::uint64_t client, std::uint64_t number, const std::stri
   return reply;
 }
 
-TEST(RequestLedger, DoesNoRequestTwiceAndRemembersItsReply) {
+TEST(RequestLedger, CarriesOutNoRequestTwiceAndRemembersItsReply) {
   RequestLedger ledger;
   ASSERT_TRUE(ledger.is_in_own_name(1, 0xaa));
   EXPECT_EQ(ledger.receive(1, 1), Receipt::fresh);
@@ -66,7 +66,7 @@ TEST(RequestLedger, DoesNoRequestTwiceAndRemembersItsReply) {
   EXPECT_EQ(ledger.receive(1, 2), Receipt::fresh);
 }
 
-TEST(RequestLedger, ForgetsOnlyWhatCanNoLongerBeAskedAgain) {
+TEST(RequestLedger, ForgetsOnlyRepliesThatCannotBeRequestedAgain) {
   RequestLedger ledger;
   ASSERT_TRUE(ledger.is_in_own_name(1, 0xaa));
   for (std::uint64_t number = 1; number <= 40; ++number) {
@@ -78,7 +78,7 @@ TEST(RequestLedger, ForgetsOnlyWhatCanNoLongerBeAskedAgain) {
   EXPECT_EQ(ledger.receive(1, 25), Receipt::answered);
 }
 
-TEST(RequestLedger, BoundsWhatOneClientHasUnderWay) {
+TEST(RequestLedger, BoundsTheRequestsInProgressOfOneClient) {
   RequestLedger ledger;
   ASSERT_TRUE(ledger.is_in_own_name(1, 0xaa));
   for (std::uint64_t number = 1; number <= wire::requests_under_way; ++number)
@@ -88,7 +88,7 @@ TEST(RequestLedger, BoundsWhatOneClientHasUnderWay) {
   EXPECT_EQ(ledger.receive(1, 17), Receipt::fresh);
 }
 
-TEST(RequestLedger, KnowsWhoItSpeaksWith) {
+TEST(RequestLedger, AcceptsAClientIdFromOneParticipantOnly) {
   RequestLedger ledger;
   EXPECT_TRUE(ledger.is_in_own_name(1, 0xaa));
   EXPECT_FALSE(ledger.is_in_own_name(1, 0xbb)) << "another's name";
@@ -103,7 +103,7 @@ std::vector<std::uint8_t> numbered(std::size_t count, std::uint8_t first) {
   return bytes;
 }
 
-TEST(RequestLedger, PutsPartsTogetherWhateverIsRepeated) {
+TEST(RequestLedger, AssemblesPartsDespiteRepetitions) {
   RequestLedger ledger;
   EXPECT_FALSE(ledger.take_part(1, 250, 0, numbered(100, 0), 0ns));
   EXPECT_FALSE(ledger.take_all(1)) << "not yet";
@@ -118,7 +118,7 @@ TEST(RequestLedger, PutsPartsTogetherWhateverIsRepeated) {
   EXPECT_FALSE(ledger.take_all(1)) << "it is gone";
 }
 
-TEST(RequestLedger, RefusesPartsThatCannotBe) {
+TEST(RequestLedger, RejectsInvalidParts) {
   RequestLedger ledger;
   EXPECT_TRUE(ledger.take_part(1, wire::largest_data + 1, 0, {}, 0ns));
   EXPECT_TRUE(ledger.take_part(1, wire::largest_data, 0, numbered(wire::largest_part + 1, 0), 0ns));
@@ -129,7 +129,7 @@ TEST(RequestLedger, RefusesPartsThatCannotBe) {
   EXPECT_TRUE(ledger.take_part(1, 11, 5, numbered(5, 0), 0ns)) << "another size";
 }
 
-TEST(RequestLedger, GivesDataInPartsToWhoAskedForItAndSaysWhyItHasNoMore) {
+TEST(RequestLedger, ReturnsDataInPartsAndTheReasonWhenItWasDropped) {
   RequestLedger ledger;
   const std::vector<std::byte> data(wire::largest_part + 10, std::byte{7});
   const auto shared = [](std::vector<std::byte> bytes) {
@@ -158,7 +158,7 @@ TEST(RequestLedger, GivesDataInPartsToWhoAskedForItAndSaysWhyItHasNoMore) {
   EXPECT_EQ(ledger.why_dropped(3, KeptForClient::Kind::saved_snapshot), "") << "it is there again";
 }
 
-TEST(RequestLedger, SaysWhyWhatWasHandedOverIsGone) {
+TEST(RequestLedger, ReportsWhyAnUploadWasDropped) {
   RequestLedger ledger;
   EXPECT_FALSE(ledger.take_part(1, 250, 0, numbered(100, 0), 0ns));
   std::vector<KeptForClient> kept;
@@ -171,7 +171,7 @@ TEST(RequestLedger, SaysWhyWhatWasHandedOverIsGone) {
   EXPECT_FALSE(ledger.take_part(1, 250, 0, numbered(100, 0), 2ns)) << "it may begin again";
 }
 
-TEST(KeptForClient, TheOldestGoesUntilTheRestFits) {
+TEST(KeptForClient, TheOldestIsDroppedUntilTheRestFits) {
   using Kind = KeptForClient::Kind;
   const std::vector<KeptForClient> kept = {
       {Kind::recording, 1, 30ns, 50}, {Kind::upload, 2, 10ns, 40}, {Kind::saved_snapshot, 3, 20ns, 30}};
@@ -240,7 +240,7 @@ class Answers {
   }
 };
 
-TEST(SessionSnapshot, GoesOnWithTheSameBitsWhileAnswersAreUnderWay) {
+TEST(SessionSnapshot, RestoresPendingAnswersBitForBit) {
   const auto experiment = experiment_with_delays();
   Simulation straight(experiment, 1);
   Exchange exchange(straight);
@@ -267,7 +267,7 @@ TEST(SessionSnapshot, GoesOnWithTheSameBitsWhileAnswersAreUnderWay) {
   EXPECT_NE(forgetful.state_hash(), straight.state_hash());
 }
 
-TEST(SessionSnapshot, ARobotThatWasDetachedStaysSo) {
+TEST(SessionSnapshot, ADetachedRobotStaysDetached) {
   auto experiment = experiment_with_delays();
   experiment.teams[0].policy = {1, 0, 0, description::OnLate::detach, 1s};
   Simulation simulation(experiment, 1);
@@ -285,7 +285,7 @@ TEST(SessionSnapshot, ARobotThatWasDetachedStaysSo) {
   EXPECT_FALSE(restored.barrier().is_detached(1));
 }
 
-TEST(SessionSnapshot, SaysWhatIsWrongWithOneThatDoesNotFit) {
+TEST(SessionSnapshot, ReportsWhyItDoesNotMatch) {
   auto experiment = experiment_with_delays();
   Simulation simulation(experiment, 1);
   Exchange exchange(simulation);
@@ -303,11 +303,11 @@ TEST(SessionSnapshot, SaysWhatIsWrongWithOneThatDoesNotFit) {
   auto damaged = bytes;
   damaged[damaged.size() / 2] ^= std::byte{1};
   EXPECT_NE(complaint(damaged).find("damaged"), std::string::npos) << complaint(damaged);
-  EXPECT_NE(complaint(std::vector(bytes.begin(), bytes.end() - 1)).find("cut short"), std::string::npos);
+  EXPECT_NE(complaint(std::vector(bytes.begin(), bytes.end() - 1)).find("incomplete"), std::string::npos);
   EXPECT_NE(complaint({}).find("only 0 bytes"), std::string::npos);
   damaged = bytes;
-  damaged[20] = std::byte{'9'};  // of Cohort's version
-  EXPECT_NE(complaint(damaged).find("of Cohort, and this is version"), std::string::npos) << complaint(damaged);
+  damaged[20] = std::byte{'9'};  // in Cohort's version
+  EXPECT_NE(complaint(damaged).find("of Cohort, but this is version"), std::string::npos) << complaint(damaged);
   for (std::size_t size = 0; size < bytes.size(); size += 97)
     EXPECT_NE(complaint(std::vector(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size))), "") << size;
 
@@ -320,7 +320,7 @@ TEST(SessionSnapshot, SaysWhatIsWrongWithOneThatDoesNotFit) {
   EXPECT_THROW(restore(snapshot, others), SnapshotError);
 }
 
-TEST(SessionSnapshot, HasWhatControllersRememberAndNamesTheTeamsThatAreLeftOut) {
+TEST(SessionSnapshot, ContainsControllerStateAndNamesTeamsWithoutState) {
   const auto experiment = experiment_with_delays();
   Simulation simulation(experiment, 1);
   Exchange exchange(simulation);
@@ -341,7 +341,7 @@ TEST(SessionSnapshot, HasWhatControllersRememberAndNamesTheTeamsThatAreLeftOut) 
   EXPECT_TRUE(what_is_left_out(early, experiment).empty()) << "there is nothing to remember yet";
 }
 
-TEST(SessionSnapshot, SaysWhichBuildTookIt) {
+TEST(SessionSnapshot, IdentifiesTheBuildThatTookIt) {
   const auto experiment = experiment_with_delays();
   Simulation simulation(experiment, 1);
   const Exchange exchange(simulation);
@@ -354,7 +354,7 @@ TEST(SessionSnapshot, SaysWhichBuildTookIt) {
   EXPECT_NE(why_results_differ(of_other_build.build), "");
 }
 
-TEST(SessionSnapshot, RefusesStateThatCannotBe) {
+TEST(SessionSnapshot, RejectsInvalidState) {
   const auto experiment = experiment_with_delays();
   Simulation simulation(experiment, 1);
   Exchange exchange(simulation);

@@ -10,7 +10,7 @@ namespace {
 
 bool matches(const std::string& pattern, const std::string& name) { return EntityFilter(pattern).matches(name); }
 
-TEST(EntityFilter, MatchesAPartOfANameAsPosixExtendedExpressionsDo) {
+TEST(EntityFilter, MatchesPartsOfNamesAsPosixExtendedExpression) {
   EXPECT_TRUE(matches("", "swarm/sbot_1"));
   EXPECT_TRUE(matches("sbot", "swarm/sbot_1"));
   EXPECT_FALSE(matches("^sbot", "swarm/sbot_1"));
@@ -26,7 +26,7 @@ TEST(EntityFilter, MatchesAPartOfANameAsPosixExtendedExpressionsDo) {
   EXPECT_TRUE(matches("zoë", "zoë/1"));
 }
 
-TEST(EntityFilter, SaysWhatIsWrongWithOneThatIsNone) {
+TEST(EntityFilter, ReportsWhyAnExpressionIsInvalid) {
   for (const char* pattern : {"((a*)*", "[", "a{1,30000}", "(a)\\1", "*a", "a\\"}) {
     try {
       const EntityFilter filter(pattern);
@@ -41,7 +41,7 @@ TEST(EntityFilter, SaysWhatIsWrongWithOneThatIsNone) {
 }
 
 // Each level of these made the C library's compiler copy what is below: 67 characters took 3.5 GB.
-TEST(EntityFilter, TakesLittleMemoryWhateverItSays) {
+TEST(EntityFilter, TakesLittleMemoryForAnyExpression) {
   const auto peak_in_megabytes = [] {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

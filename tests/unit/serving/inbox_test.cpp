@@ -31,7 +31,7 @@ TEST(Inbox, KeepsTheOrderAndIsEmptyOnceTaken) {
   EXPECT_TRUE(inbox.take().requests.empty());
 }
 
-TEST(Inbox, MakesTextsOfClientsFitToBeShown) {
+TEST(Inbox, MakesTextsOfClientsPrintable) {
   Inbox inbox;
   wire::Join join;
   join.controller = std::string(99, 'x') + "\u00e9";
@@ -87,7 +87,7 @@ TEST(Inbox, BoundsJoinsAndReportsInBytes) {
   EXPECT_TRUE(inbox.add_report(report, sender_of(2)));
 }
 
-TEST(Inbox, TakesAsManyRequestsOfOneParticipantAsItMayHaveUnderWay) {
+TEST(Inbox, BoundsRequestsOfOneParticipant) {
   Inbox inbox;
   for (std::uint64_t number = 1; number <= wire::requests_under_way; ++number) EXPECT_TRUE(add_request(inbox, number));
   EXPECT_FALSE(add_request(inbox, wire::requests_under_way + 1));
@@ -125,7 +125,7 @@ TEST(Inbox, BoundsJoinsReportsAndForeignVersions) {
   EXPECT_EQ(inbox.take().rejected.at({2, "flood"}).count, 2u);
 }
 
-TEST(Inbox, CountsRejectionsAndWakesNobodyForThem) {
+TEST(Inbox, CountsRejectionsWithoutWakingTheRun) {
   Inbox inbox;
   inbox.reject(7, "stale", "the first");
   inbox.reject(7, "stale", "the second");
@@ -137,7 +137,7 @@ TEST(Inbox, CountsRejectionsAndWakesNobodyForThem) {
   EXPECT_EQ(rejected.at({7, "stale"}).text, "the first");
 }
 
-TEST(Inbox, LivelinessCanBeTakenAlone) {
+TEST(Inbox, LivelinessCanBeTakenSeparately) {
   Inbox inbox;
   inbox.add_liveliness(sender_of(1), false);
   inbox.add_ended_process(1);

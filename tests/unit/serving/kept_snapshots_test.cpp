@@ -14,7 +14,7 @@ void run(KeptSnapshots& kept, std::uint64_t from, std::uint64_t to) {
     if (kept.wants(tick)) kept.keep(of_tick(tick));
 }
 
-TEST(KeptSnapshots, AreTheLastOnesAtOrBeforeATime) {
+TEST(KeptSnapshots, ReturnTheLastAtOrBeforeATick) {
   KeptSnapshots kept(10, 1 << 20);
   EXPECT_EQ(kept.last_until(100), nullptr);
   run(kept, 5, 57);
@@ -29,7 +29,7 @@ TEST(KeptSnapshots, AreTheLastOnesAtOrBeforeATime) {
   EXPECT_FALSE(kept.wants(30));
 }
 
-TEST(KeptSnapshots, BecomeFewerWhenTheyAreTooLarge) {
+TEST(KeptSnapshots, BecomeFewerWhenTheyTakeTooMuchMemory) {
   KeptSnapshots kept(1, 20'000);
   run(kept, 0, 10'000);
   EXPECT_LE(kept.size(), 20U);
@@ -40,7 +40,7 @@ TEST(KeptSnapshots, BecomeFewerWhenTheyAreTooLarge) {
     EXPECT_LE(tick - kept.last_until(tick)->tick, 10'000U / 8) << "all of the run can be gone back to";
 }
 
-TEST(KeptSnapshots, AreNoneUnlessAskedFor) {
+TEST(KeptSnapshots, AreOffByDefault) {
   KeptSnapshots kept(0, 1 << 20);
   run(kept, 0, 100);
   EXPECT_EQ(kept.size(), 0U);

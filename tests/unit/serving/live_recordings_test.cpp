@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using namespace test;
 
-TEST(LiveRecordingsOfARun, SayWhatIsKeptOfThemAndWhyTheyAreGone) {
+TEST(LiveRecordingsOfARun, ReportTheirMemoryAndWhyTheyWereDropped) {
   description::Experiment experiment;
   experiment.name = "recorded";
   experiment.world = world_with_floor();
@@ -44,7 +44,7 @@ TEST(LiveRecordingsOfARun, SayWhatIsKeptOfThemAndWhyTheyAreGone) {
   EXPECT_NO_THROW(recordings.fetch(1, 0)) << "another one";
   recordings.drop(1, "too much");
   recordings.leave(1);
-  EXPECT_FALSE(recordings.fetch(1, 0)) << "its client has gone, and may be another";
+  EXPECT_FALSE(recordings.fetch(1, 0)) << "its client has disconnected, and may be another";
   recordings.end(RunResult::End::finished, "");
 }
 

@@ -55,14 +55,14 @@ TEST(RequestBudget, LeavesTheRunThreeQuartersOfItsTime) {
   }
 }
 
-TEST(RequestBudget, IsSharedEquallyWhateverOneAsksFor) {
+TEST(RequestBudget, IsSharedEquallyBetweenAccounts) {
   FloodedRun flooded({1ms, 50ms, 10ms});
   flooded.go_on_for(100s);
   for (std::size_t account = 0; account < 3; ++account)
     EXPECT_NEAR(std::chrono::duration<double>(flooded.taken(account)).count(), 25.0 / 3.0, 1.5) << account;
 }
 
-TEST(RequestBudget, LetsNobodyWaitForOthersOrForWhatWasSmallOrLongAgo) {
+TEST(RequestBudget, DelaysNoAccountForOthersOrForSmallOrOldDebts) {
   RequestBudget budget;
   budget.charge("flood", 5s, 10s);
   EXPECT_FALSE(budget.allows("flood", 10s));
@@ -77,7 +77,7 @@ TEST(RequestBudget, LetsNobodyWaitForOthersOrForWhatWasSmallOrLongAgo) {
   EXPECT_TRUE(budget.allows("flood", 26s));
 }
 
-TEST(RequestBudget, ARunThatBeganAnewMakesAStepBeforeItsAccountBeginsAnotherOne) {
+TEST(RequestBudget, ARestartedRunMakesAStepBeforeItsAccountRestartsAgain) {
   RequestBudget budget;
   budget.begin_restart("flood", 10s);
   EXPECT_FALSE(budget.allows_restart("flood", 10s + 1ms));

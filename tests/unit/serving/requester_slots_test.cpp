@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(RequesterSlots, OfOneIdentityAreLimitedSoOthersGetIn) {
+TEST(RequesterSlots, AreLimitedForEachIdentity) {
   RequesterSlots slots;
   std::size_t in = 0;
   for (std::uint64_t client = 1; client <= 70; ++client)
@@ -16,7 +16,7 @@ TEST(RequesterSlots, OfOneIdentityAreLimitedSoOthersGetIn) {
   EXPECT_TRUE(slots.use(1000, "operator", true, 10s).is_in);
 }
 
-TEST(RequesterSlots, AreKeptForEachRole) {
+TEST(RequesterSlots, AreReservedForEachRole) {
   RequesterSlots slots;
   std::size_t in = 0;
   for (std::uint64_t client = 0; client < 300; ++client)
@@ -24,10 +24,10 @@ TEST(RequesterSlots, AreKeptForEachRole) {
   EXPECT_EQ(in, RequesterSlots::most - RequesterSlots::kept_for_role);
   for (std::uint64_t client = 1000; client < 1000 + RequesterSlots::kept_for_role; ++client)
     EXPECT_TRUE(slots.use(client, "operator", true, 10s).is_in) << client;
-  EXPECT_FALSE(slots.use(2000, "operator", true, 10s).is_in) << "all are taken, and nobody is idle";
+  EXPECT_FALSE(slots.use(2000, "operator", true, 10s).is_in) << "all slots are taken, and no client is idle";
 }
 
-TEST(RequesterSlots, AreThoseOfTheOneThatIsIdleForLongestWhenAllAreTaken) {
+TEST(RequesterSlots, AreTakenFromTheLongestIdleClientWhenAllAreInUse) {
   RequesterSlots slots;
   for (std::uint64_t client = 0; client < RequesterSlots::most; ++client)
     ASSERT_TRUE(slots.use(client, "", true, 10s + std::chrono::milliseconds(client)).is_in);
@@ -43,7 +43,7 @@ TEST(RequesterSlots, AreThoseOfTheOneThatIsIdleForLongestWhenAllAreTaken) {
   EXPECT_FALSE(after.leaves);
 }
 
-TEST(RequesterSlots, OfAnIdentityThatHasAllItMayGoToItsOwnNewcomers) {
+TEST(RequesterSlots, AreReusedWithinAnIdentityAtItsLimit) {
   RequesterSlots slots;
   ASSERT_TRUE(slots.use(999, "operator", true, 1s).is_in);
   for (std::uint64_t client = 0; client < RequesterSlots::most_of_identity; ++client)

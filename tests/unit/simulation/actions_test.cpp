@@ -8,7 +8,7 @@
 #include "tests/support/worlds/model_text.hpp"
 #include "tests/support/worlds/small_world.hpp"
 
-/// What is done to a running simulation from outside.
+/// Actions on a running simulation from outside.
 namespace cohort {
 namespace {
 
@@ -119,8 +119,8 @@ INSTANTIATE_TEST_SUITE_P(Fidelities, Actions,
                            return tested.param == description::Fidelity::planar ? "planar" : "treel";
                          });
 
-// The hash is kept until something changes: whatever changes must be seen to change it.
-TEST_P(Actions, ChangeAStateHashThatSomebodyHasAskedFor) {
+// The hash is cached until a change, so each change must invalidate it.
+TEST_P(Actions, ChangeACachedStateHash) {
   const std::vector<std::function<void(Simulation&)>> changes = {
       [](Simulation& simulation) {
         std::vector<double> command(simulation.kinds()[0].command_size, 0.0);
@@ -167,7 +167,7 @@ TEST_P(Actions, ChangeAStateHashThatSomebodyHasAskedFor) {
   EXPECT_EQ(restored.state_hash(), before);
 }
 
-TEST_P(Actions, DoWhatAnEventOfTheSameBoundaryWouldAndAreSensedAtIt) {
+TEST_P(Actions, HaveTheEffectOfAnEventAndAreSensedAtTheSameBoundary) {
   const std::vector<std::pair<Action, description::Event>> both = {
       {SetPose{"things/box", at(0.2, 0, 0.1)}, {500ms, box_, description::PlaceAt{at(0.2, 0, 0.1)}, "e"}},
       {SetVelocity{"things/box", {1, 0, 0}, {0, 0, 1}},
@@ -235,7 +235,7 @@ TEST_P(Actions, ObjectsAreSpawnedFromTheTextOfAModelInAnyFormat) {
 }
 
 TEST_P(Actions, NothingIsAddedWhileWorldsShareTheirExperiment) {
-  constexpr const char* refusal = "nothing can be added to a world that shares its experiment with other worlds";
+  constexpr const char* refusal = "objects cannot be added to a world that shares its experiment with other worlds";
   Simulation grown(experiment_, 1);
   grown.act(SpawnObject{"more", "box", at(4, 4, 0.2)});
   Simulation first(experiment_, 1);
@@ -256,7 +256,7 @@ TEST_P(Actions, NothingIsAddedWhileWorldsShareTheirExperiment) {
   EXPECT_EQ(first.state_hash(), grown.state_hash());
 }
 
-TEST_P(Actions, ATextThatIsNoModelIsRefusedWithLineAndReason) {
+TEST_P(Actions, AnInvalidModelTextIsRejectedWithLineAndReason) {
   const auto reason = [&](const std::string& text) -> std::string {
     try {
       model_of_text(text);
@@ -279,7 +279,7 @@ TEST_P(Actions, ATextThatIsNoModelIsRefusedWithLineAndReason) {
             "the world has no model 'bax'; did you mean 'bo");
 }
 
-TEST_P(Actions, RobotsComeWithTheNextIdAndTheirTeamsPolicyAndAreSensedAtOnce) {
+TEST_P(Actions, SpawnedRobotsGetTheNextIdAndTheirTeamsPolicyAndSenseAtOnce) {
   Simulation simulation(experiment_, 1);
   run(simulation, 10);
   EXPECT_EQ(simulation.act(SpawnObject{"team/late", "tracked_robot", at(1, 0.3, 0)}),
@@ -304,7 +304,7 @@ TEST_P(Actions, RobotsComeWithTheNextIdAndTheirTeamsPolicyAndAreSensedAtOnce) {
   EXPECT_EQ(simulation.robot_name(3), "team/later");
 }
 
-TEST_P(Actions, RobotsThatComeAreTheSameOnAnyThreadsAndAfterRestore) {
+TEST_P(Actions, SpawnedRobotsAreTheSameForAnyThreadCountAndAfterRestore) {
   const auto with_newcomers = [&](unsigned threads) {
     auto simulation = std::make_unique<Simulation>(experiment_, threads);
     run(*simulation, 11);
@@ -330,7 +330,7 @@ TEST_P(Actions, RobotsThatComeAreTheSameOnAnyThreadsAndAfterRestore) {
   EXPECT_EQ(restored.state_hash(), alone->state_hash());
 }
 
-TEST_P(Actions, ARobotJoinsTheTeamThatIsSaid) {
+TEST_P(Actions, ARobotJoinsTheRequestedTeam) {
   description::Team others{"others", {}, "none", {}};
   others.policy.period = 3;
   experiment_.teams.push_back(others);
@@ -344,22 +344,23 @@ TEST_P(Actions, ARobotJoinsTheTeamThatIsSaid) {
   EXPECT_EQ(why_not(simulation, spawn("b", "tracked_robot", "other")),
             "there is no team 'other'; did you mean 'others'?");
   EXPECT_EQ(why_not(simulation, spawn("b", "tracked_robot", "")),
-            "'tracked_robot' is a robot: say which team it joins, of team, others");
-  EXPECT_EQ(why_not(simulation, spawn("b", "box", "others")), "the model 'box' is no robot, so it is in no team");
+            "'tracked_robot' is a robot: expected one of the teams team, others");
+  EXPECT_EQ(why_not(simulation, spawn("b", "box", "others")),
+            "the model 'box' is not a robot, so it cannot join a team");
   EXPECT_EQ(simulation.robot_count(), 3u);
   const auto again =
       std::get<SpawnObject>(action_from_bytes(to_bytes(spawn("a", "tracked_robot", "others")), model_of_text));
   EXPECT_EQ(again.team, "others");
 }
 
-TEST_P(Actions, WhatIsRemovedIsGoneForGood) {
+TEST_P(Actions, RemovedObjectsAreGoneForGood) {
   experiment_.events.push_back({100ms, box_, description::SetPresence{true}, "enable"});
   Simulation simulation(experiment_, 1);
   run(simulation, 5);
   EXPECT_EQ(simulation.act(RemoveObject{"things/box"}), "remove 'things/box'");
   EXPECT_FALSE(simulation.objects().is_present(box_));
   EXPECT_EQ(why_not(simulation, RemoveObject{"things/box"}), "'things/box' is not in the world");
-  EXPECT_NE(why_not(simulation, SpawnObject{"things/box", "box", at(0, 1, 1)}).find("names are not used twice"),
+  EXPECT_NE(why_not(simulation, SpawnObject{"things/box", "box", at(0, 1, 1)}).find("names are not reused"),
             std::string::npos);
   run(simulation, 10);
   EXPECT_EQ(simulation.happened(), std::vector<std::string>{"enable 'things/box' does nothing: it has been removed"});
@@ -383,7 +384,7 @@ TEST_P(Actions, AForceActsForItsDuration) {
   EXPECT_GT(simulation.world().link_twist(BodyId{box_}, LinkId{0}).linear_W.x(), speed);  // friction alone from here on
 }
 
-TEST_P(Actions, LightsAreSwitchedByTheirNameOrThatOfTheirObject) {
+TEST_P(Actions, LightsAreSetByTheirNameOrThatOfTheirObject) {
   Simulation simulation(experiment_, 1);
   const auto lit = [&] { return simulation.emitters().lit_lamps().size(); };
   EXPECT_EQ(lit(), 2u);
@@ -399,7 +400,7 @@ TEST_P(Actions, LightsAreSwitchedByTheirNameOrThatOfTheirObject) {
   EXPECT_NE(why_not(simulation, SetLight{"things/box", true}).find("'things/box' has no light"), std::string::npos);
 }
 
-TEST_P(Actions, ThatCannotBeDoneSayWhyAndChangeNothing) {
+TEST_P(Actions, ReportWhyTheyFailAndChangeNothing) {
   Simulation simulation(experiment_, 1);
   run(simulation, 22);
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
@@ -408,8 +409,8 @@ TEST_P(Actions, ThatCannotBeDoneSayWhyAndChangeNothing) {
   const std::vector<std::pair<Action, std::string>> refused = {
       {RemoveObject{"thing/box"}, "there is no object 'thing/box'; did you mean 'things/box'?"},
       {RemoveObject{"late"}, "'late' is not in the world"},
-      {RemoveObject{"a\nb"}, "the name of the object has a control character in it"},
-      {RemoveObject{"\xc3("}, "the name of the object is not UTF-8"},
+      {RemoveObject{"a\nb"}, "the name of the object contains a control character"},
+      {RemoveObject{"\xc3("}, "the name of the object is not valid UTF-8"},
       {RemoveObject{std::string(300, 'x')}, "the name of the object is longer than 255 bytes"},
       {SetPose{"things/box", at(infinity, 0, 0)}, "the pose is not finite"},
       {SetPose{"things/box", at(0, 2e6, 0)}, "expected a position within 1,000 km of the origin"},
@@ -419,10 +420,10 @@ TEST_P(Actions, ThatCannotBeDoneSayWhyAndChangeNothing) {
       {ApplyForce{"post", "", zero, zero, 1s}, "'post' is static"},
       {ApplyForce{"things/box", "lynk", zero, zero, 1s}, "'things/box' has no link 'lynk'; did you mean 'link'?"},
       {ApplyForce{"things/box", "", {0, infinity, 0}, zero, 1s}, "the force is not finite"},
-      {ApplyForce{"things/box", "", zero, zero, -1ns}, "expected a duration from 0 s to a year"},
+      {ApplyForce{"things/box", "", zero, zero, -1ns}, "expected a duration from 0 s to one year"},
       {SetLight{"post", true, -1.0}, "expected an intensity of at least 0"},
       {SetLight{"post", true, {}, Eigen::Vector3d(2, 0, 0)}, "expected red, green and blue from 0 to 1"},
-      {SpawnObject{"/x", "box", at(0, 0, 1)}, "'/x' is no name: expected parts with a slash between them"},
+      {SpawnObject{"/x", "box", at(0, 0, 1)}, "'/x' is not a valid name: expected parts separated by slashes"},
       {SpawnObject{"", "", at(0, 0, 1)}, "expected the name of one of the world's models, or a model"},
       {SpawnObject{"post", model_of_text(crate_sdf), at(0, 0, 1)}, "another object has the name 'post'"},
   };
@@ -435,7 +436,7 @@ TEST_P(Actions, ThatCannotBeDoneSayWhyAndChangeNothing) {
   }
 }
 
-TEST_P(Actions, OnWhatIsQuarantinedAreRefusedButItCanBeRemoved) {
+TEST_P(Actions, AreRejectedForQuarantinedObjectsExceptRemoval) {
   experiment_.world.physics.lowest = -0.5;
   Simulation simulation(experiment_, 1);
   simulation.act(SetPose{"things/box", at(50, 0, 0.1)});
@@ -447,7 +448,7 @@ TEST_P(Actions, OnWhatIsQuarantinedAreRefusedButItCanBeRemoved) {
   EXPECT_FALSE(simulation.objects().is_present(box_));
 }
 
-TEST_P(Actions, AreTheSameOnAnyThreadsAndAfterRestore) {
+TEST_P(Actions, AreTheSameForAnyThreadCountAndAfterRestore) {
   const auto act = [](Simulation& simulation) {
     const std::vector<Action> actions = {
         SpawnObject{"crate", model_of_text(crate_sdf), at(-0.4, 0, 0.1)},
@@ -488,7 +489,7 @@ TEST_P(Actions, AreTheSameOnAnyThreadsAndAfterRestore) {
   EXPECT_TRUE(again.save() == one.save());
 }
 
-TEST_P(Actions, WhatALastingForceAndARemovalWillDoIsPartOfTheHash) {
+TEST_P(Actions, PendingForcesAndRemovalsArePartOfTheHash) {
   Simulation pushed(experiment_, 1), pushed_longer(experiment_, 1);
   pushed.act(ApplyForce{"things/box", "", {1, 0, 0}, Eigen::Vector3d::Zero(), 100ms});
   pushed_longer.act(ApplyForce{"things/box", "", {1, 0, 0}, Eigen::Vector3d::Zero(), 110ms});
@@ -500,7 +501,7 @@ TEST_P(Actions, WhatALastingForceAndARemovalWillDoIsPartOfTheHash) {
   EXPECT_NE(disabled.state_hash(), removed.state_hash());
 }
 
-TEST(PlanarActions, WhereThereIsNoGroundNothingIsChanged) {
+TEST(PlanarActions, ChangeNothingWithoutGround) {
   description::Experiment experiment;
   experiment.world.physics.fidelity = description::Fidelity::planar;
   place(experiment.world, static_shape("floor", description::Box{{2, 2, 0.1}}), "floor", at(0, 0, -0.05));
@@ -526,7 +527,7 @@ TEST(PlanarActions, WhereThereIsNoGroundNothingIsChanged) {
 }
 
 // A text that comes next has the index of the model that was refused.
-TEST(PlanarActions, WhatIsRefusedIsForgottenWithItsModel) {
+TEST(PlanarActions, ForgetTheModelOfARejectedSpawn) {
   description::Experiment experiment;
   experiment.world.physics.fidelity = description::Fidelity::planar;
   place(experiment.world, static_shape("floor", description::Box{{2, 2, 0.1}}), "floor", at(0, 0, -0.05));
@@ -561,7 +562,7 @@ std::vector<Action> one_of_each() {
           ApplyForce{"w", "link", {1, 0, -1}, {0, 2, 0}, 250ms}};
 }
 
-TEST(ActionBytes, ComeBackAsTheSameAction) {
+TEST(ActionBytes, ParseToTheSameAction) {
   for (const Action& action : one_of_each()) {
     const std::vector<std::byte> bytes = to_bytes(action);
     const Action again = action_from_bytes(bytes, model_of_text);
@@ -581,7 +582,7 @@ TEST(ActionBytes, ComeBackAsTheSameAction) {
 }
 
 // Older recordings do not say whether a model is a name or a text.
-TEST(ActionBytes, OfOlderRecordingsAreNamesAndTexts) {
+TEST(ActionBytes, OfOlderRecordingsContainNamesOrTexts) {
   const auto again = [](const SpawnObject& spawn) {
     std::vector<std::byte> bytes = to_bytes(spawn);
     bytes[0] = std::byte{0};
@@ -593,14 +594,14 @@ TEST(ActionBytes, OfOlderRecordingsAreNamesAndTexts) {
             crate_sdf);
 }
 
-TEST(ActionBytes, TellNamesFromTextsWhateverTheyContain) {
+TEST(ActionBytes, DistinguishNamesFromTextsWithAnyContent) {
   for (const std::string name : {"<sdf/>", "a: b", "x\ny", "{}"})
     EXPECT_EQ(std::get<std::string>(
                   std::get<SpawnObject>(action_from_bytes(to_bytes(SpawnObject{"a", name, at(0, 0, 0)}), {})).model),
               name);
 }
 
-TEST(ActionBytes, WithATextThatIsNoModelAreRefused) {
+TEST(ActionBytes, AreRejectedWithAnInvalidModelText) {
   auto broken = std::make_shared<description::ParsedModel>();
   broken->text = "<sdf version='1.9'/>";
   const std::vector<std::byte> bytes = to_bytes(SpawnObject{"a", broken, at(0, 0, 0)});
@@ -608,7 +609,7 @@ TEST(ActionBytes, WithATextThatIsNoModelAreRefused) {
   EXPECT_THROW(action_from_bytes(bytes, {}), std::invalid_argument);
 }
 
-TEST(ActionBytes, AreRefusedIfTheyAreCutShortOrGoOnOrAreOfAnotherKind) {
+TEST(ActionBytes, AreRejectedIfTooShortTooLongOrOfAnotherKind) {
   for (const Action& action : one_of_each()) {
     std::vector<std::byte> bytes = to_bytes(action);
     for (std::size_t size = 0; size < bytes.size(); ++size)

@@ -39,7 +39,7 @@ class BreakableJoints : public ::testing::Test {
   void push(std::size_t object, const Vector3d& force_W, const Vector3d& torque_W = Vector3d::Zero()) {
     experiment_.events.push_back({0ns, object, description::ApplyForce{0, force_W, torque_W, 10s}, "apply_force"});
   }
-  // Whether it holds after half a second.
+  // Returns true if it holds after half a second.
   bool holds_under_load() const {
     Simulation simulation(experiment_, 1);
     for (int i = 0; i < 50; ++i) simulation.step();
@@ -50,7 +50,7 @@ class BreakableJoints : public ::testing::Test {
   std::uint32_t beam_ = 0, box_ = 0;
 };
 
-TEST_F(BreakableJoints, BearTheWeightOfWhatHangsThereOppositeAtBothEnds) {
+TEST_F(BreakableJoints, BearAHangingWeightWithOppositeForcesAtBothEnds) {
   join(box_, beam_, {0, 0, 0.1});
   Simulation simulation(experiment_, 1);
   for (int i = 0; i < 100; ++i) simulation.step();
@@ -62,7 +62,7 @@ TEST_F(BreakableJoints, BearTheWeightOfWhatHangsThereOppositeAtBothEnds) {
   EXPECT_LT(on_box.torque_W.norm(), 1e-6);
 }
 
-TEST_F(BreakableJoints, BearTheTorqueOfWhatHangsAside) {
+TEST_F(BreakableJoints, BearTheTorqueOfAnOffsetWeight) {
   experiment_.world.physics.solver = description::Solver::direct;
   join(beam_, box_, {0.3, 0, -0.05});  // the static one first, and the joint 0.3 m aside of the box
   Simulation simulation(experiment_, 1);
@@ -90,7 +90,7 @@ TEST_F(BreakableJoints, HoldJustBelowTheirTorqueAndBreakJustAboveIt) {
   EXPECT_FALSE(holds_under_load());
 }
 
-TEST_F(BreakableJoints, SayWhatBrokeThemAndBearNothingThen) {
+TEST_F(BreakableJoints, ReportWhatBrokeThemAndThenBearNothing) {
   join(box_, beam_).breaking_force = 30.0;
   experiment_.events.push_back(
       {100ms, box_, description::ApplyForce{0, {0, 0, -40.0}, Vector3d::Zero(), 10s}, "apply_force"});
@@ -110,7 +110,7 @@ TEST_F(BreakableJoints, SayWhatBrokeThemAndBearNothingThen) {
   EXPECT_NEAR(simulation.object_pose(box_).position.z(), 0.1, 0.01) << "it lies on the floor";
 }
 
-TEST_F(BreakableJoints, NameTheTorqueIfItWasTooMuch) {
+TEST_F(BreakableJoints, ReportTheTorqueIfItBrokeThem) {
   join(box_, beam_).breaking_torque = 2.0;
   push(box_, Vector3d::Zero(), {0, 0, 5.0});
   Simulation simulation(experiment_, 1);
@@ -118,7 +118,7 @@ TEST_F(BreakableJoints, NameTheTorqueIfItWasTooMuch) {
   EXPECT_EQ(simulation.happened(), std::vector<std::string>{"joint 'hook' broke at 5 N m"});
 }
 
-TEST_F(BreakableJoints, AreWhereTheSecondLinkIsUnlessTheySayOtherwise) {
+TEST_F(BreakableJoints, AreAtTheSecondLinkByDefault) {
   join(box_, beam_).X_LP.reset();
   push(box_, {3.0, 0, 0});
   Simulation simulation(experiment_, 1);
@@ -127,7 +127,7 @@ TEST_F(BreakableJoints, AreWhereTheSecondLinkIsUnlessTheySayOtherwise) {
   EXPECT_NEAR(simulation.breakable_joints().wrench_on_first(0).torque_W.y(), 0.3 * 3.0, 0.01);
 }
 
-TEST_F(BreakableJoints, HoldTwoThingsThatMoveTogether) {
+TEST_F(BreakableJoints, HoldTwoMovingObjectsTogether) {
   const std::uint32_t other = place(experiment_.world, box("other"), "other", at(0.5, 0, 0.7));
   experiment_.world.gravity.setZero();
   join(box_, other, {0.25, 0, 0});
@@ -141,7 +141,7 @@ TEST_F(BreakableJoints, HoldTwoThingsThatMoveTogether) {
 
 class ReleasedJoints : public BreakableJoints, public ::testing::WithParamInterface<std::pair<bool, bool>> {};
 
-TEST_P(ReleasedJoints, AreThoseOfWhatLeavesTheWorldOrIsMovedAndDoNotComeBackWithIt) {
+TEST_P(ReleasedJoints, StayReleasedAfterTheirObjectWasRemovedOrMoved) {
   const auto [is_static, is_moved] = GetParam();
   const std::uint32_t object = is_static ? beam_ : box_;
   join(box_, beam_);
@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(Ends, ReleasedJoints,
                          ::testing::Values(std::pair{false, false}, std::pair{true, false}, std::pair{false, true},
                                            std::pair{true, true}));
 
-TEST_F(BreakableJoints, HoldInThePlaneWhereTheWorldIsPlanar) {
+TEST_F(BreakableJoints, HoldInAPlanarWorld) {
   experiment_.world.physics.fidelity = description::Fidelity::planar;
   experiment_.world.instances[box_].X_WM = at(0, 0, 0.1);
   experiment_.world.instances[beam_].X_WM = at(0, 1, 1.0);
@@ -189,7 +189,7 @@ TEST_F(BreakableJoints, HoldInThePlaneWhereTheWorldIsPlanar) {
   EXPECT_GT(simulation.object_pose(box_).position.x(), 0.1);
 }
 
-TEST_F(BreakableJoints, GiveTheSameBitsOnAnyThreadsAndFromASnapshotOfAnyTick) {
+TEST_F(BreakableJoints, GiveTheSameBitsForAnyThreadCountAndFromAnySnapshot) {
   const std::uint32_t other = place(experiment_.world, box("other"), "other", at(0.5, 0, 0.7));
   join(box_, beam_, {0.02, 0, 0.1}).breaking_force = 60.0;
   join(other, box_, {-0.25, 0, 0}).breaking_torque = 20.0;
@@ -212,7 +212,7 @@ TEST_F(BreakableJoints, GiveTheSameBitsOnAnyThreadsAndFromASnapshotOfAnyTick) {
   EXPECT_TRUE(has_broken);
 }
 
-TEST_F(BreakableJoints, AreAnotherStateOnceTheyAreReleased) {
+TEST_F(BreakableJoints, ChangeTheStateHashWhenReleased) {
   join(box_, beam_);
   Simulation simulation(experiment_, 1);
   const std::uint64_t before = simulation.state_hash();

@@ -13,7 +13,7 @@ TEST(BuildIdentity, HasTheSameFingerprintEachTime) {
 }
 
 // As other functions or solvers would.
-TEST(BuildIdentity, HasAnotherFingerprintIfNumbersAreRoundedOtherwise) {
+TEST(BuildIdentity, ChangesItsFingerprintWithTheRoundingMode) {
   const std::string usual = arithmetic_fingerprint();
   std::fesetround(FE_DOWNWARD);
   const std::string other = arithmetic_fingerprint();
@@ -21,7 +21,7 @@ TEST(BuildIdentity, HasAnotherFingerprintIfNumbersAreRoundedOtherwise) {
   EXPECT_NE(other, usual);
 }
 
-TEST(BuildIdentity, TellsOfOtherResultsWhereTheArithmeticOrTheVersionIsAnother) {
+TEST(BuildIdentity, WarnsOfOtherResultsForAnotherArithmeticOrVersion) {
   BuildIdentity other = this_build();
   EXPECT_EQ(why_results_differ(other), "");
   other.commit = "0123456789ab";

@@ -6,8 +6,8 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/simulation/simulation.hpp"
 
-/// A snapshot may come from anywhere. One that has something that cannot be is refused; whatever else is in it, the run
-/// goes on: to other bits, or with a body in quarantine, but to its next ticks.
+/// A snapshot with an invalid value is rejected. With any other change the run continues for its next ticks, with other
+/// bits or with a quarantined body.
 namespace cohort {
 namespace {
 
@@ -66,7 +66,7 @@ class ChangedSnapshot : public testing::TestWithParam<Case> {
   std::mt19937 random_{20};
 };
 
-TEST_P(ChangedSnapshot, IsRefusedOrGoesOn) {
+TEST_P(ChangedSnapshot, IsRejectedOrRuns) {
   const std::vector<std::byte> whole = snapshot();
   int refused = 0, changed = 0;
   const char* const more = std::getenv("COHORT_TEST_CHANGES");
@@ -95,7 +95,7 @@ TEST_P(ChangedSnapshot, IsRefusedOrGoesOn) {
 }
 
 // A world without belts has the same numbers in both layouts: only the mark at the beginning differs.
-TEST_P(ChangedSnapshot, OfTheFirstLayoutGoesOnToTheSameBits) {
+TEST_P(ChangedSnapshot, OfTheFirstLayoutGivesTheSameBits) {
   std::vector<std::byte> bytes = snapshot();
   Simulation latest(experiment_, 1), first(experiment_, 1);
   latest.restore(bytes);

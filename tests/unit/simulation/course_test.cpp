@@ -22,9 +22,9 @@ description::Model loose_box(const std::string& name, double mass = 2.0, double 
 }
 
 // Two robots, a wall, a box on the floor and one in the air.
-class CourseOfARun : public ::testing::TestWithParam<description::Fidelity> {
+class ScheduledRun : public ::testing::TestWithParam<description::Fidelity> {
  protected:
-  CourseOfARun() {
+  ScheduledRun() {
     description::World& world = experiment_.world;
     world = world_with_floor();
     world.physics.fidelity = GetParam();
@@ -52,13 +52,13 @@ class CourseOfARun : public ::testing::TestWithParam<description::Fidelity> {
   std::uint32_t first_ = 0, second_ = 0, wall_ = 0, box_ = 0;
 };
 
-INSTANTIATE_TEST_SUITE_P(Fidelities, CourseOfARun,
+INSTANTIATE_TEST_SUITE_P(Fidelities, ScheduledRun,
                          ::testing::Values(description::Fidelity::treel, description::Fidelity::planar),
                          [](const auto& tested) {
                            return tested.param == description::Fidelity::planar ? "planar" : "treel";
                          });
 
-TEST_P(CourseOfARun, AWallThatIsRemovedLetsARobotPass) {
+TEST_P(ScheduledRun, ARobotPassesARemovedWall) {
   Simulation blocked(experiment_, 1);
   run(blocked, 600, 0.15);
   EXPECT_LT(blocked.robot_pose(0).position.x(), 0.45);
@@ -70,7 +70,7 @@ TEST_P(CourseOfARun, AWallThatIsRemovedLetsARobotPass) {
   EXPECT_FALSE(open.objects().is_present(wall_));
 }
 
-TEST_P(CourseOfARun, AWallThatComesBackStandsInTheWayAgain) {
+TEST_P(ScheduledRun, ARobotIsBlockedByAWallThatReturns) {
   at_time(0s, wall_, description::SetPresence{false});
   at_time(1s, wall_, description::SetPresence{true});
   Simulation simulation(experiment_, 1);
@@ -78,7 +78,7 @@ TEST_P(CourseOfARun, AWallThatComesBackStandsInTheWayAgain) {
   EXPECT_LT(simulation.robot_pose(0).position.x(), 0.45);
 }
 
-TEST_P(CourseOfARun, ARobotThatComesLaterIsNeitherAskedNorSeenBefore) {
+TEST_P(ScheduledRun, ALaterRobotIsNeitherControlledNorSensedBefore) {
   experiment_.world.instances[second_].is_present = false;
   experiment_.world.instances[second_].X_WM = at(0.2, 0, 0);  // right in front of the first one
   at_time(50ms, second_, description::SetPresence{true, true});
@@ -99,7 +99,7 @@ TEST_P(CourseOfARun, ARobotThatComesLaterIsNeitherAskedNorSeenBefore) {
   EXPECT_EQ(simulation.happened(), std::vector<std::string>{"event 'team/b'"});
 }
 
-TEST_P(CourseOfARun, AnObjectThatIsMovedIsAtRestThere) {
+TEST_P(ScheduledRun, AMovedObjectIsAtRest) {
   at_time(20ms, box_, description::SetVelocity{{1.0, 0, 0}, Eigen::Vector3d::Zero()});
   at_time(100ms, box_, description::PlaceAt{at(3, 2, 0.1, 0.5)});
   Simulation simulation(experiment_, 1);
@@ -112,7 +112,7 @@ TEST_P(CourseOfARun, AnObjectThatIsMovedIsAtRestThere) {
   EXPECT_LT((simulation.object_pose(box_).position - Eigen::Vector3d(3, 2, 0.1)).norm(), 1e-3);
 }
 
-TEST_P(CourseOfARun, AStaticObjectThatIsMovedStandsInTheWayThere) {
+TEST_P(ScheduledRun, AMovedStaticObjectBlocksItsNewPlace) {
   at_time(10ms, wall_, description::PlaceAt{at(1.0, 0, 0.2)});
   Simulation simulation(experiment_, 1);
   run(simulation, 900, 0.15);
@@ -120,7 +120,7 @@ TEST_P(CourseOfARun, AStaticObjectThatIsMovedStandsInTheWayThere) {
   EXPECT_LT(simulation.robot_pose(0).position.x(), 0.95);
 }
 
-TEST_P(CourseOfARun, AForceGivesAMassItsAcceleration) {
+TEST_P(ScheduledRun, AForceAcceleratesAMass) {
   experiment_.world.gravity = {0, 0, GetParam() == description::Fidelity::planar ? -1e-9 : 0.0};
   const double mass = 2.0, force = 3.0;
   at_time(100ms, box_, description::ApplyForce{0, {force, 0, 0}, Eigen::Vector3d::Zero(), 500ms});
@@ -131,7 +131,7 @@ TEST_P(CourseOfARun, AForceGivesAMassItsAcceleration) {
   EXPECT_NEAR(simulation.world().link_twist(BodyId{box_}, LinkId{0}).linear_W.x(), force / mass * 0.5, 1e-6);
 }
 
-TEST_P(CourseOfARun, ATorqueTurns) {
+TEST_P(ScheduledRun, ATorqueRotatesABody) {
   experiment_.world.gravity = {0, 0, GetParam() == description::Fidelity::planar ? -1e-9 : 0.0};
   const double inertia = 2.0 * 0.2 * 0.2 / 6.0, torque = 0.01;
   at_time(0s, box_, description::ApplyForce{0, Eigen::Vector3d::Zero(), {0, 0, torque}, 200ms});
@@ -140,7 +140,7 @@ TEST_P(CourseOfARun, ATorqueTurns) {
   EXPECT_NEAR(simulation.world().link_twist(BodyId{box_}, LinkId{0}).angular_W.z(), torque / inertia * 0.2, 1e-6);
 }
 
-TEST_P(CourseOfARun, StopsWhenAllHaveBeenInsideForSoLong) {
+TEST_P(ScheduledRun, StopsWhenAllHaveBeenInsideForTheGivenTime) {
   experiment_.stops.push_back({"inside", {first_, second_}, description::AllInside{{0.2, -1}, {1, 2}}, 100ms});
   Simulation simulation(experiment_, 1);
   std::uint64_t entered = 0;
@@ -154,7 +154,7 @@ TEST_P(CourseOfARun, StopsWhenAllHaveBeenInsideForSoLong) {
   EXPECT_EQ(simulation.tick(), entered + 10);
 }
 
-TEST_P(CourseOfARun, StopsWhenOneIsBeyondALineAndNamesIt) {
+TEST_P(ScheduledRun, StopsWhenAnObjectCrossesALineAndNamesIt) {
   experiment_.stops.push_back({"beyond", {first_, second_}, description::OneBeyond{{0, 1.2}, {0, 1}}, 0s});
   at_time(1s, second_, description::PlaceAt{at(0, 1.3, 0)});
   Simulation simulation(experiment_, 1);
@@ -164,7 +164,7 @@ TEST_P(CourseOfARun, StopsWhenOneIsBeyondALineAndNamesIt) {
   EXPECT_EQ(simulation.stop_reason(), "beyond: 'team/b'");
 }
 
-TEST_P(CourseOfARun, StopsWhenNothingMovesAnyMore) {
+TEST_P(ScheduledRun, StopsWhenNothingMoves) {
   experiment_.stops.push_back({"at_rest", {first_, second_, box_}, description::AllAtRest{0.001, 0.01}, 200ms});
   Simulation simulation(experiment_, 1);
   run(simulation, 50, 0.1);
@@ -173,7 +173,7 @@ TEST_P(CourseOfARun, StopsWhenNothingMovesAnyMore) {
   EXPECT_EQ(simulation.stop_reason(), "at_rest: 3 objects");
 }
 
-TEST(StopsOfARun, NamesWhatWasQuarantined) {
+TEST(StopConditions, NameTheQuarantinedBody) {
   description::Experiment experiment;
   experiment.world = world_with_floor();
   experiment.world.physics.lowest = -1.0;
@@ -186,7 +186,7 @@ TEST(StopsOfARun, NamesWhatWasQuarantined) {
   EXPECT_EQ(simulation.stop_reason(), "quarantined: 'box'");
 }
 
-TEST_P(CourseOfARun, KeepsTheLastPosesOfThoseItIsAskedFor) {
+TEST_P(ScheduledRun, KeepsTheLastPosesOfRequestedObjects) {
   experiment_.history = {{first_, box_}, 5, 20ms};
   Simulation simulation(experiment_, 1);
   run(simulation, 31, 0.1);
@@ -198,7 +198,7 @@ TEST_P(CourseOfARun, KeepsTheLastPosesOfThoseItIsAskedFor) {
   EXPECT_TRUE(simulation.objects().history(second_).empty());
 }
 
-TEST_P(CourseOfARun, HasItsObjectsInAHierarchyThatGrowsAndShrinks) {
+TEST_P(ScheduledRun, HasAHierarchyOfObjectsThatGrowsAndShrinks) {
   Simulation simulation(experiment_, 1);
   EXPECT_EQ(simulation.objects().find("things/box"), box_);
   const std::string& model = experiment_.world.models[experiment_.world.instances[box_].model].name;
@@ -217,7 +217,7 @@ TEST_P(CourseOfARun, HasItsObjectsInAHierarchyThatGrowsAndShrinks) {
 
 // ---- Guarantees ----
 
-class EventfulRun : public CourseOfARun {
+class EventfulRun : public ScheduledRun {
  protected:
   EventfulRun() {
     experiment_.world.instances[second_].is_present = false;
@@ -251,7 +251,7 @@ TEST_P(EventfulRun, GivesTheSameBitsWithAnyNumberOfThreads) {
   }
 }
 
-TEST_P(EventfulRun, GoesOnFromASnapshotOfAnyTickWithTheSameBits) {
+TEST_P(EventfulRun, GivesTheSameBitsFromASnapshotOfAnyTick) {
   Simulation straight(experiment_, 1);
   const std::string& model = experiment_.world.models[experiment_.world.instances[box_].model].name;
   for (std::uint64_t saved = 0; saved < 80; saved += 7) {

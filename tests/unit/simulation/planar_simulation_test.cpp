@@ -26,7 +26,7 @@ description::Experiment crowd(description::Fidelity fidelity) {
 
 constexpr std::size_t sensors = 15;
 
-TEST(PlanarSimulation, SeesWhatTheFullModelSeesFromTheSamePoses) {
+TEST(PlanarSimulation, SensesTheSameAsTheFullModelAtTheSamePoses) {
   const description::Experiment planar_experiment = crowd(description::Fidelity::planar);
   const description::Experiment full_experiment = crowd(description::Fidelity::treel);
   const Simulation planar(planar_experiment, 1);
@@ -41,7 +41,7 @@ TEST(PlanarSimulation, SeesWhatTheFullModelSeesFromTheSamePoses) {
   EXPECT_GT(seen, 20);
 }
 
-TEST(PlanarSimulation, SeesTheSameAfterBothHaveDrivenThere) {
+TEST(PlanarSimulation, SensesTheSameAfterBothHaveDriven) {
   const description::Experiment planar_experiment = crowd(description::Fidelity::planar);
   const description::Experiment full_experiment = crowd(description::Fidelity::treel);
   Simulation planar(planar_experiment, 1);

@@ -91,7 +91,7 @@ TEST(Simulation, HoldsACommandUntilTheNextOne) {
   EXPECT_NEAR(simulation.observation(0)[left_position], simulation.robot_pose(0).position.x(), 0.002);
 }
 
-TEST(Simulation, NamesTheChannelOfACommandThatCannotAct) {
+TEST(Simulation, NamesTheChannelOfAnInvalidCommand) {
   description::World world = world_with_floor();
   place(world, tracked_robot(), "robot", at(0, 0, 0));
   const description::Experiment experiment = experiment_of(world);
@@ -160,7 +160,7 @@ TEST(Simulation, HashCoversStateCommandsAndObservations) {
   EXPECT_NE(Simulation(other_seed, 1).state_hash(), Simulation(experiment, 1).state_hash()) << "the noise differs";
 }
 
-TEST(Simulation, CountsRobotTicksThatTouchObstaclesAndRobotsApart) {
+TEST(Simulation, CountsContactsWithObstaclesAndRobotsSeparately) {
   description::World world = world_with_floor();
   place(world, tracked_robot(), "pusher", at(0, 0, 0));
   place(world, tracked_robot(), "free", at(0, 1, 0));
@@ -175,7 +175,7 @@ TEST(Simulation, CountsRobotTicksThatTouchObstaclesAndRobotsApart) {
   EXPECT_EQ(simulation.touches().robots, 0u);
 }
 
-TEST(Simulation, NamesTheRobotThatFellOutOfTheWorldAndGoesOn) {
+TEST(Simulation, NamesTheRobotThatLeftTheWorldAndContinues) {
   description::World world;
   world.physics.lowest = -1.0;
   place(world, static_shape("table", description::Box{{1.0, 1.0, 0.1}}), "table", at(0, 0, -0.05));
@@ -197,7 +197,7 @@ TEST(Simulation, NamesTheRobotThatFellOutOfTheWorldAndGoesOn) {
   EXPECT_THROW(while (strict.tick() < 100) strict.step(), std::runtime_error);
 }
 
-TEST(Simulation, BuiltAgainItGivesTheSameBits) {
+TEST(Simulation, GivesTheSameBitsWhenRebuilt) {
   description::World world = world_with_floor();
   for (int i = 0; i < 5; ++i) place(world, tracked_robot(0.01), "robot_" + std::to_string(i), at(0.13 * i, 0, 0, i));
   const description::Experiment experiment = experiment_of(world);

@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Fidelities, Spawners,
                            return tested.param == description::Fidelity::planar ? "planar" : "treel";
                          });
 
-TEST_P(Spawners, BringRobotsWithTheNextIdTheNextFreeNumberAndTheirTeamsPolicy) {
+TEST_P(Spawners, SpawnRobotsWithTheNextIdAndNumberAndTheirTeamsPolicy) {
   spawn_at(20ms);
   spawn_at(30ms);
   Simulation simulation(experiment_, 1);
@@ -79,7 +79,7 @@ TEST_P(Spawners, BringRobotsWithTheNextIdTheNextFreeNumberAndTheirTeamsPolicy) {
   EXPECT_NEAR(second.y(), 1.0, 0.11);
 }
 
-TEST_P(Spawners, BringOneEachTimeARobotBeginsAnActionAndNoMoreThanTheyMay) {
+TEST_P(Spawners, SpawnOneForEachStartedActionUpToTheirLimit) {
   spawn_on_call();
   Simulation simulation(experiment_, 1);
   for (int i = 0; i < 3; ++i) {
@@ -90,12 +90,12 @@ TEST_P(Spawners, BringOneEachTimeARobotBeginsAnActionAndNoMoreThanTheyMay) {
   }
   step(simulation, 1.0);
   EXPECT_EQ(simulation.happened(),
-            std::vector<std::string>{"call of 'team/a': spawn 'team/late' does nothing: it has brought 3, and may "
-                                     "bring no more"});
+            std::vector<std::string>{"call of 'team/a': spawn 'team/late' does nothing: it has already "
+                                     "spawned 3 objects, which is its limit"});
   EXPECT_EQ(simulation.robot_count(), 4u);
 }
 
-TEST_P(Spawners, NeverUseANameOrAnIdAgain) {
+TEST_P(Spawners, NeverReuseANameOrAnId) {
   spawn_at(10ms);
   spawn_at(20ms);
   Simulation simulation(experiment_, 1);
@@ -107,7 +107,7 @@ TEST_P(Spawners, NeverUseANameOrAnIdAgain) {
   EXPECT_FALSE(simulation.is_present(1));
 }
 
-TEST_P(Spawners, GiveTheSameBitsOnAnyThreadsAndFromASnapshotOfAnyTick) {
+TEST_P(Spawners, GiveTheSameBitsForAnyThreadCountAndFromAnySnapshot) {
   spawn_at(30ms);
   spawn_on_call();
   Simulation straight(experiment_, 1);
@@ -127,7 +127,7 @@ TEST_P(Spawners, GiveTheSameBitsOnAnyThreadsAndFromASnapshotOfAnyTick) {
   EXPECT_EQ(straight.robot_count(), 4u);
 }
 
-TEST_P(Spawners, HashHowManyTheyHaveBrought) {
+TEST_P(Spawners, HashTheirNumberOfSpawnedObjects) {
   spawn_on_call();
   experiment_.spawners.push_back(experiment_.spawners[0]);
   description::Experiment other = experiment_;
@@ -139,7 +139,7 @@ TEST_P(Spawners, HashHowManyTheyHaveBrought) {
   EXPECT_NE(first.state_hash(), second.state_hash()) << "another one has come to its end sooner";
 }
 
-TEST_P(Spawners, AreRefusedBeforeTheFirstStep) {
+TEST_P(Spawners, AreRejectedBeforeTheFirstStep) {
   spawn_at(0ms);
   EXPECT_THROW(Simulation(experiment_, 1), std::invalid_argument);
 }

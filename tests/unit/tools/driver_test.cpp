@@ -52,10 +52,11 @@ TEST(HeldCommand, WhatCameLastCountsForHalfASecond) {
 TEST(HeldCommand, RefusesWhatIsNoCommandOfTheRobot) {
   HeldCommand command;
   command.begin(channels(2));
-  EXPECT_EQ(refusal_of(command, {0.1}), "its command has 2 values, not 1");
-  EXPECT_EQ(refusal_of(command, {0.1, 0.2, 0.3}), "its command has 2 values, not 3");
-  EXPECT_EQ(refusal_of(command, {0.1, std::nan("")}), "a command has finite numbers only");
-  EXPECT_EQ(refusal_of(command, {std::numeric_limits<double>::infinity(), 0.0}), "a command has finite numbers only");
+  EXPECT_EQ(refusal_of(command, {0.1}), "the robot's command has 2 values, not 1");
+  EXPECT_EQ(refusal_of(command, {0.1, 0.2, 0.3}), "the robot's command has 2 values, not 3");
+  EXPECT_EQ(refusal_of(command, {0.1, std::nan("")}), "expected finite numbers in a command");
+  EXPECT_EQ(refusal_of(command, {std::numeric_limits<double>::infinity(), 0.0}),
+            "expected finite numbers in a command");
   EXPECT_EQ(refusal_of(command, {}), "none");
 }
 
@@ -93,7 +94,7 @@ TEST(ObedientController, CommandsWhatIsHeldWithinTheRangesAndLeavesParametersToO
   EXPECT_EQ(begun, 2);
 }
 
-// What pages ask for, and a server that says what it is told to say.
+// Drivers that answer requests of pages, and a server whose replies the test chooses.
 class DriversTest : public testing::Test {
  protected:
   struct ReceivedRequest {
@@ -155,7 +156,7 @@ TEST_F(DriversTest, APageDrivesTheRobotThatItClaims) {
   take(1);
   EXPECT_EQ(told(1, {0.1, 0.05, 0.5, 0.25}), (Values{0.1, 0.05, 0.5, 0.25}));
   EXPECT_EQ(told(1, {}), neutral);
-  EXPECT_EQ(drive(1, {0.1}).text, "its command has 4 values, not 1");
+  EXPECT_EQ(drive(1, {0.1}).text, "the robot's command has 4 values, not 1");
   EXPECT_EQ(told(1, {9.0, 0.0, 0.0, 0.0}), (Values{0.2, 0.0, 0.0, 0.0}));
 }
 
@@ -178,9 +179,9 @@ TEST_F(DriversTest, WhatTheServerRefusesIsTheAnswer) {
 }
 
 TEST_F(DriversTest, WhoGetsNoAnswerIsToldSo) {
-  const Answer answer = drive(1);  // nobody accepts
+  const Answer answer = drive(1);  // no server accepts
   EXPECT_FALSE(answer.is_done);
-  EXPECT_NE(answer.text.find("team/cart was not given"), std::string::npos) << answer.text;
+  EXPECT_NE(answer.text.find("team/cart could not be claimed"), std::string::npos) << answer.text;
 }
 
 TEST_F(DriversTest, OneRobotHasOnePageUntilThatIsSilent) {
@@ -204,7 +205,7 @@ TEST_F(DriversTest, AResetIsSurvivedAndTheEndOfTheRunIsToldOnce) {
   server.report({.kind = wire::ReportKind::finished});
   EXPECT_TRUE(eventually([&] { return drive(1, {0.0, 0.0, 0.5, 0.5}).text == "the run is over"; }));
   EXPECT_EQ(drive(1, {0.0, 0.0, 0.5, 0.5}).text,
-            "this page does not drive 'team/cart': 'drive' without numbers takes it");
+            "this page does not drive 'team/cart': claim it by 'drive' without numbers");
 }
 
 TEST_F(DriversTest, WhoIsSupersededIsToldByWhom) {
@@ -216,7 +217,7 @@ TEST_F(DriversTest, WhoIsSupersededIsToldByWhom) {
     text = answer.text;
     return !answer.is_done;
   }));
-  EXPECT_EQ(text, "another process has taken these robots over. by 'other' on host h");
+  EXPECT_EQ(text, "another process took over these robots. by 'other' on host h");
   take(1);
 }
 

@@ -27,7 +27,7 @@ using cohort::test::static_shape;
 using cohort::test::tracked_robot;
 using cohort::test::world_with_floor;
 
-constexpr double robot_radius = 0.058;  // of tracked_robot()
+constexpr double robot_radius = 0.058;  // tracked_robot()
 
 struct PastRun {
   RunTrace trace;
@@ -80,7 +80,7 @@ std::size_t count(std::string_view text, std::string_view part) {
   return found;
 }
 
-// What stands within the group of this id.
+// Returns the content of the group of this id.
 std::string group(const std::string& plot, const std::string& id) {
   const std::size_t begin = plot.find("<g id=\"" + id + "\"");
   if (begin == std::string::npos) return {};
@@ -95,7 +95,7 @@ std::string group(const std::string& plot, const std::string& id) {
   }
 }
 
-// Of the attribute in each tag that has it, in order.
+// Returns the values of the attribute in each tag that has it, in order.
 std::vector<double> values(const std::string& text, const std::string& attribute) {
   std::vector<double> result;
   const std::string start = " " + attribute + "=\"";
@@ -156,6 +156,32 @@ TEST(RunTraces, HaveWhatHasComeIntoTheWorldInMidRun) {
   const RunTrace trace = recorder.finish();
   EXPECT_EQ(obstacles(trace), 4);
   EXPECT_FALSE(trace.contacts.empty());
+}
+
+TEST(Plot, ColoursRobotsByTeamIfThereAreSeveral) {
+  description::Experiment experiment;
+  experiment.world = arena();
+  experiment.teams = {{"reds", {0}, "none", {}}, {"blues & co", {1}, "none", {}}};
+  const auto plot_of = [&] {
+    Simulation simulation(experiment, 1);
+    TraceRecorder recorder(experiment.world, simulation);
+    recorder.boundary();
+    return draw_plot(recorder.finish(), {});
+  };
+  const auto colour_in = [](const std::string& plot, const std::string& start) {
+    const std::size_t at = plot.find(start, plot.find("id=\"paths\""));
+    return at == std::string::npos ? std::string() : plot.substr(at + start.size(), 7);
+  };
+  const std::string plot = plot_of();
+  EXPECT_EQ(fault_in_xml(plot), "");
+  const std::string legend = plot.substr(plot.find("id=\"legend\""));
+  const std::string first = colour_in(plot, "<path stroke=\"");
+  EXPECT_NE(legend.find("fill=\"" + first), std::string::npos) << "the legend has its team's colour";
+  EXPECT_NE(legend.find(">team reds</text>"), std::string::npos) << legend;
+  EXPECT_NE(legend.find(">team blues &amp; co</text>"), std::string::npos) << legend;
+
+  experiment.teams = {{"all", {0, 1}, "none", {}}};
+  EXPECT_EQ(plot_of().find("team all"), std::string::npos) << "one team needs no colour of its own";
 }
 
 TEST(Plot, IsWellFormedXml) { EXPECT_EQ(fault_in_xml(run(arena(), 30).plot()), ""); }

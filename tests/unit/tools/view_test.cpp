@@ -54,7 +54,7 @@ TEST(ViewSession, WhoReadsSlowlyGetsTheNewestOnly) {
   Visit visit;
   visit.topics.publish(Topic::frame, {}, some(10));
   visit.session.take_text(R"({"op": "subscribe", "subscriptions": [{"id": 5, "channelId": 1}]})");
-  EXPECT_EQ(visit.next_version(), 1U);  // what was there before
+  EXPECT_EQ(visit.next_version(), 1U);  // the earlier version
   for (int i = 0; i < 1000; ++i) visit.topics.publish(Topic::frame, {}, some(10));
   EXPECT_EQ(visit.next_version(), 1001U);
   EXPECT_EQ(visit.next_version(), 0U);
@@ -99,7 +99,7 @@ TEST(ViewSession, AnswersThatNobodyReadsAreBounded) {
 TEST(ViewSession, TellsWhatIsWrongWithAMessage) {
   Visit visit;
   visit.session.take_text(R"({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 77}]})");
-  EXPECT_EQ(visit.next_text()["message"], "there is no channel 77");
+  EXPECT_EQ(visit.next_text()["message"], "no channel 77");
   visit.session.take_text(R"({"op": "getParameters"})");
   EXPECT_EQ(visit.next_text()["message"], "the operation 'getParameters' is not offered");
   EXPECT_TRUE(visit.requests.empty());
@@ -144,10 +144,12 @@ TEST(ViewRequests, BecomeRequestsOrAreExplained) {
   EXPECT_THROW(operation_of({.operation = "move", .name = "bar", .numbers = {1.0}}), std::invalid_argument);
   EXPECT_THROW(operation_of({.operation = "move", .numbers = {1.0, 2.0}}), std::invalid_argument);
   EXPECT_THROW(operation_of({.operation = "step", .number = 0.0 / 0.0}), std::invalid_argument);
-  EXPECT_THROW(operation_of({.operation = "shutdown"}), std::invalid_argument);
+  EXPECT_EQ(operation_of({.operation = "shutdown"}),
+            wire::Operation(wire::SetSimulationState{wire::SimulationState::quitting}));
+  EXPECT_THROW(operation_of({.operation = "explode"}), std::invalid_argument);
 }
 
-// What a server answers that has run so far.
+// The answer of a server whose run has come this far.
 wire::Reply told(std::uint32_t run, std::uint64_t revision, const messages::RunHistory& history) {
   wire::Reply reply;
   reply.run = run;

@@ -9,9 +9,9 @@ namespace cohort::bench {
 namespace {
 
 constexpr std::size_t most_robots_in_bullet = 2000;
-constexpr double unbreakable = 1e3;  // what a connection bears in a step, far above what robots pull [N s]
+constexpr double unbreakable = 1e3;  // impulse limit of a connection per step, far above the pull of robots [N s]
 
-// Wheels and casters touch the ground only.
+// Wheels and casters collide with the ground only.
 constexpr int ground_group = 1;
 constexpr int wall_group = 2;
 constexpr int turret_group = 4;
@@ -61,7 +61,7 @@ class BulletEngine final : public Engine {
       for (int i = 0; i < points.getNumContacts(); ++i) {
         if (points.getContactPoint(i).getDistance() > 0.0) continue;
         const auto [robot, other] = std::minmax({index_of(*points.getBody0()), index_of(*points.getBody1())});
-        touches.push_back({robot, other});  // a wall is the greater
+        touches.push_back({robot, other});  // a wall has the larger index
       }
     }
     return touches;
@@ -81,7 +81,7 @@ class BulletEngine final : public Engine {
     btMultiBodyJointMotor* turret = nullptr;
   };
 
-  // The robot's, or Touch::wall, as Bullet's own default is -1.
+  // Returns the robot's index, or Touch::wall, because Bullet's default is -1.
   static std::uint32_t index_of(const btCollisionObject& collider) {
     return static_cast<std::uint32_t>(collider.getUserIndex());
   }
@@ -92,8 +92,8 @@ class BulletEngine final : public Engine {
                       {wall.centre.x(), wall.centre.y(), wall.centre.z()}, each_of_two(robot_.friction), wall_filter);
   }
 
-  // One collider of a link has one friction and one filter: the chassis has its casters and not its hull, which is
-  // below the turret.
+  // A collider of a link has one friction and one filter. The chassis therefore has its casters but not its hull, which
+  // is below the turret.
   void add_shapes() {
     casters_ = &world_.add_shape<btCompoundShape>();
     auto& ball = world_.add_shape<btSphereShape>(robot_.caster_radius);
@@ -135,7 +135,7 @@ class BulletEngine final : public Engine {
                        &add_motor(body, turret_link, robot_.max_turret_torque)});
   }
 
-  // Turret to turret, as they stand.
+  // Fixes one turret to another in their present poses.
   void connect(btMultiBody& before, btMultiBody& after) {
     const btTransform X_BA = before.getLink(turret_link)
                                  .m_collider->getWorldTransform()
@@ -163,7 +163,7 @@ std::string bullet_version() { return fmt::format("{}.{}", btGetVersion() / 100,
 
 std::optional<std::string> bullet_limitation(const Scene& scene) {
   if (scene.robots.size() > most_robots_in_bullet)
-    return fmt::format("some of its work grows with the square: more than {} robots take it minutes to set off",
+    return fmt::format("its set-up time grows quadratically: more than {} robots take minutes to start",
                        most_robots_in_bullet);
   return std::nullopt;
 }

@@ -9,7 +9,8 @@ constexpr int base = -1;
 btVector3 bullet_vector(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Vector3d eigen_vector(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 
-// A free body is the base of its btMultiBody; those of a chain are links, and the base stands still at the origin.
+// A mechanism in Bullet. A free body is the base of its btMultiBody; the bodies of a chain are links of a base that is
+// fixed at the origin.
 class BulletMechanism final : public MechanismRun {
  public:
   explicit BulletMechanism(const Mechanism& mechanism) : world_(mechanism.gravity, mechanism.step) {
@@ -68,7 +69,8 @@ class BulletMechanism final : public MechanismRun {
     return eigen_vector(body_->localDirToWorld(link_of(body), direction_B));
   }
 
-  // Of the centre. Bullet gives those of all links at once, the base first, each in its own axes.
+  // Returns the velocities of a body's centre of mass. Bullet returns those of all links at once, the base first, each
+  // in its own axes.
   Velocities velocities(std::size_t body) const {
     std::vector<btVector3> angular(static_cast<std::size_t>(body_->getNumLinks()) + 1);
     std::vector<btVector3> linear(angular.size());

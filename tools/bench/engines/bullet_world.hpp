@@ -1,6 +1,6 @@
 #pragma once
 
-// Bullet's own multibody world, as its users get it.
+// Bullet's multibody world with its default configuration.
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"
@@ -24,13 +24,13 @@
 
 namespace cohort::bench {
 
-/// Who may collide with whom: both of a pair have to name the other.
+/// A collision filter: two objects collide if each one's mask includes the other's group.
 struct BulletFilter {
   int group = btBroadphaseProxy::DefaultFilter;
   int mask = btBroadphaseProxy::AllFilter;
 };
 
-/// A `btMultiBodyDynamicsWorld` and all that is in it. What may be set is as Bullet sets it, but for what a scene says:
+/// A `btMultiBodyDynamicsWorld` and its contents. It keeps Bullet's default settings except for those of a scene:
 /// bodies have no damping and never sleep.
 class BulletWorld {
  public:
@@ -38,7 +38,7 @@ class BulletWorld {
     world_.setGravity({gravity.x(), gravity.y(), gravity.z()});
   }
 
-  /// One step of the fixed length, without Bullet's interpolation.
+  /// Advances by one fixed step, without Bullet's interpolation.
   void step() { world_.stepSimulation(step_, 0); }
 
   template <class Shape, class... Arguments>
@@ -64,13 +64,13 @@ class BulletWorld {
     return body;
   }
 
-  /// Once all links of the body are set up, and before they get colliders.
+  /// Call this when all links of the body are set up, before they get colliders.
   void finish(btMultiBody& body) {
     body.finalizeMultiDof();
     world_.addMultiBody(&body);
   }
 
-  /// `link`: -1 for the base.
+  /// `link`: index of the link, or -1 for the base.
   btMultiBodyLinkCollider& add_link_collider(btMultiBody& body, int link, btCollisionShape& shape, double friction,
                                              BulletFilter filter = {}) {
     const btTransform X_WL(body.localFrameToWorld(link, btMatrix3x3::getIdentity()),
@@ -96,7 +96,7 @@ class BulletWorld {
   const btCollisionDispatcher& dispatcher() const { return dispatcher_; }
 
  private:
-  // Where a collider is has to be known before it is added: Bullet pairs it with all that are near.
+  // A collider needs its pose before it is added, because Bullet pairs it with all objects nearby.
   template <class Collider>
   Collider& add_collider(std::unique_ptr<Collider> collider, btCollisionShape& shape, const btTransform& X_WC,
                          double friction, BulletFilter filter) {
@@ -109,7 +109,7 @@ class BulletWorld {
     return added;
   }
 
-  // Bullet keeps pointers to all of these, so the world goes first.
+  // Bullet keeps pointers to all of these, so the world is destroyed first.
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btMultiBody>> bodies_;
   std::vector<std::unique_ptr<btCollisionObject>> colliders_;
@@ -122,7 +122,7 @@ class BulletWorld {
   double step_;
 };
 
-/// Bullet multiplies the frictions of two colliders: of both, so that `friction` is what counts.
+/// Returns the friction of each of two colliders whose product is `friction`, because Bullet multiplies them.
 inline double each_of_two(double friction) { return std::sqrt(friction); }
 
 }  // namespace cohort::bench

@@ -46,7 +46,7 @@ class CohortEngine final : public Engine {
   std::vector<Touch> touches() const override {
     std::vector<Touch> touches;
     for (const physics::Contact& contact : world_->contacts()) {
-      const auto [low, high] = std::minmax(contact.body_a.value, contact.body_b.value);  // what is static comes first
+      const auto [low, high] = std::minmax(contact.body_a.value, contact.body_b.value);  // static bodies come first
       if (low == ground) continue;
       touches.push_back({high - first_robot_, low < first_robot_ ? Touch::wall : low - first_robot_});
     }

@@ -96,7 +96,7 @@ description::World describe(const Scene& scene, description::Dynamics dynamics) 
   world.gravity = {0.0, 0.0, -scene.gravity};
   world.physics.dynamics = dynamics;
   world.physics.sleeping = false;
-  world.physics.strict = true;  // a body that breaks is a result, not a saving
+  world.physics.strict = true;  // a failing body must be reported, not removed
   if (scene.drive == Drive::wheels) world.physics.fidelity = description::Fidelity::articulated;
   if (scene.planar) world.physics.fidelity = description::Fidelity::planar;
   place_static(world, description::Plane{}, scene.ground_friction, {});

@@ -42,7 +42,7 @@ Device proximity_ring(const SensingScene& scene, ProximityTechnique technique) {
   return ring;
 }
 
-// Eight light sensors and four microphones.
+// Returns eight light sensors and four microphones.
 std::vector<Device> senses(const SensingScene& scene, Perceived perceived) {
   const double z = scene.light_height - scene.scene.robot.turret_joint_height;
   std::vector<Device> devices;
@@ -153,7 +153,7 @@ class CohortSensing final : public SensingRun {
   sensing::SharedViews views_;
   sensing::LampView& lamp_view_;
   std::vector<std::unique_ptr<sensing::Sensor>> sensors_;
-  std::vector<std::size_t> ends_;  // of each sensor's values
+  std::vector<std::size_t> ends_;  // end index of each sensor's values
   std::vector<double> values_;
   std::uint64_t tick_ = 0;
 };

@@ -11,7 +11,8 @@
 
 namespace cohort::bench {
 
-/// Two bodies that touched during the last step: two robots, or a robot and `wall`. The ground does not count.
+/// Two bodies that touched during the last step: two robots, or a robot and `wall`. Contacts with the ground do not
+/// count.
 struct Touch {
   static constexpr std::uint32_t wall = 0xffffffffu;
 
@@ -28,10 +29,10 @@ class Engine {
   virtual ~Engine() = default;
 
   virtual void set_command(std::uint32_t robot, const Command& command) = 0;
-  /// Advances by one step of the scene. Throws std::runtime_error if the engine gives up.
+  /// Advances by one step of the scene. Throws std::runtime_error if the engine fails.
   virtual void step() = 0;
   virtual Eigen::Vector3d turret_centre(std::uint32_t robot) const = 0;  ///< in the world [m]
-  /// A pair appears as often as it has contact points.
+  /// Returns the touching pairs, once for each contact point.
   virtual std::vector<Touch> touches() const = 0;
 };
 

@@ -20,12 +20,12 @@ Limitation matrix_limitation(const Scene& scene) {
 
 Limitation world_step_limitation(const Scene& scene) {
   if (scene.connected && scene.robots.size() > most_connected_in_world_step)
-    return fmt::format("more than {} connected robots take it seconds a step", most_connected_in_world_step);
+    return fmt::format("more than {} connected robots take seconds per step", most_connected_in_world_step);
   return std::nullopt;
 }
 
 Limitation enki_limitation(const Scene& scene) {
-  if (scene.connected) return "it has no joints";
+  if (scene.connected) return "it does not support joints";
   return std::nullopt;
 }
 
@@ -44,8 +44,7 @@ std::vector<EngineKind> known_engines() {
       {"ode-quickstep", "libode-dev", {}, {}, none},
       {"mujoco", "libmujoco-dev", {}, {}, none},
       {"enki", "libenki-dev", {}, {}, enki_limitation}};
-  // The build defines each as true or false, and links the sources of those
-  // that are true.
+  // The build defines each macro as true or false, and links an engine's sources only if it is true.
   if constexpr (COHORT_BENCH_ODE) {
     kinds[3].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::world_step); };
     kinds[4].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::quick_step); };

@@ -10,22 +10,22 @@
 
 namespace cohort::bench {
 
-/// An engine that the benchmark knows, whether it is in this build or not.
+/// An engine that the benchmark supports, whether it is part of this build or not.
 struct EngineKind {
   std::string name;
-  std::string package;  ///< Debian's, which the engine comes with; empty for Cohort
-  /// Empty if the package was not there when this was built. `threads`: for Cohort; the others have one.
+  std::string package;  ///< Debian package of the engine; empty for Cohort
+  /// Creates the engine; empty if its package was missing in the build. `threads`: for Cohort; the others use one.
   std::function<std::unique_ptr<Engine>(const Scene&, unsigned threads)> make;
-  /// Empty also if the engine is not compared by its accuracy.
+  /// Creates a mechanism; also empty if the accuracy of the engine is not compared.
   std::function<std::unique_ptr<MechanismRun>(const Mechanism&)> make_mechanism;
-  /// Why the engine cannot do this scene, or nothing.
+  /// Returns why the engine cannot simulate a scene, or nothing.
   std::function<std::optional<std::string>(const Scene&)> limitation;
-  std::string version{};  ///< as the engine itself says; empty if it does not
+  std::string version{};  ///< version that the engine reports; empty if it reports none
 };
 
 const std::vector<EngineKind>& engine_kinds();
 
-/// Others are compared to this one.
+/// The engine to which the others are compared.
 inline constexpr const char* reference_engine = "ode-quickstep";
 
 }  // namespace cohort::bench

@@ -7,7 +7,7 @@
 #include "server/description/world.hpp"
 #include "tools/bench/engines/engine.hpp"
 
-/// What each engine's source file provides; engine_kinds.cpp picks those that are in this build.
+/// Functions of the engines' source files; engine_kinds.cpp selects those that are part of this build.
 namespace cohort::bench {
 
 std::unique_ptr<Engine> make_cohort_engine(const Scene& scene, unsigned threads,

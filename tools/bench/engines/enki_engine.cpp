@@ -6,7 +6,7 @@
 namespace cohort::bench {
 namespace {
 
-// Enki's units are centimetres and, where a mass matters, any.
+// Enki uses centimetres, and arbitrary units of mass.
 constexpr double centimetres = 100.0;
 constexpr double no_noise = 0.0;
 
@@ -23,7 +23,7 @@ class EnkiRobot final : public Enki::DifferentialWheeled {
   }
 
  protected:
-  // Both robots of a pair are told; none is a wall.
+  // Called for both robots of a pair; null means a wall.
   void collisionEvent(Enki::PhysicalObject* other) override {
     if (other == nullptr)
       touches_.push_back({uid, Touch::wall});
@@ -48,7 +48,7 @@ class EnkiEngine final : public Engine {
     }
   }
 
-  // It has no turret that turns.
+  // Enki has no rotating turret.
   void set_command(std::uint32_t robot, const Command& command) override {
     robots_[robot]->leftSpeed = command.left * centimetres;
     robots_[robot]->rightSpeed = command.right * centimetres;
@@ -67,7 +67,7 @@ class EnkiEngine final : public Engine {
   std::vector<Touch> touches() const override { return touches_; }
 
  private:
-  // Its walls begin at the origin.
+  // Enki's walls begin at the origin.
   static std::unique_ptr<Enki::World> make_world(const Scene& scene) {
     if (!scene.half_arena) return std::make_unique<Enki::World>();
     const double side = 2.0 * *scene.half_arena * centimetres;

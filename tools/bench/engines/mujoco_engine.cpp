@@ -11,24 +11,24 @@
 namespace cohort::bench {
 namespace {
 
-// Debian's 2.2 has dense matrices, newer ones sparse ones.
+// Debian's MuJoCo 2.2 has dense matrices, newer versions sparse ones.
 constexpr bool is_dense = mjVERSION_HEADER < 300;
 constexpr std::size_t most_robots = is_dense ? 512 : 2000;
 
-// Room for each robot: 2 wheels and a caster on the ground need 9 rows, a contact of two robots 4 and more. Memory of
-// dense matrices is counted in 32 bits, so there is little to spare in a crowd; some more for a few robots.
+// Constraint rows for each robot: two wheels and a caster on the ground need 9, a contact of two robots 4 and more. The
+// size of dense matrices is counted in 32 bits, which leaves little reserve in a crowd. A few robots get some more.
 constexpr std::size_t contacts_a_robot = 10;
 constexpr std::size_t rows_a_robot = 18;
 constexpr std::size_t rows_a_connection = 6;
 constexpr std::size_t freedoms_a_robot = 9;
 
-// For geoms: a pair collides if the type of one is in the affinity of the other.
+// Bits of geoms: a pair collides if the type of one is in the affinity of the other.
 constexpr int shell = 1;  // hulls, turrets and walls
 constexpr int wheel = 2;
 
-// MuJoCo numbers bodies as they stand in the text: the world, then of each robot chassis, wheels and turret.
+// MuJoCo numbers bodies in the order of the model: the world, then chassis, wheels and turret of each robot.
 constexpr int bodies_a_robot = 4;
-constexpr int turret_body = 4;  // of the first robot
+constexpr int turret_body = 4;  // turret of the first robot
 
 using Output = std::back_insert_iterator<std::string>;
 
@@ -39,9 +39,9 @@ std::string inertial_xml(const CylinderBody& body, double z) {
                      along);
 }
 
-// A bounded velocity motor that MuJoCo integrates stably in steps of 10 ms is a torque and a damping, which its
-// integrator treats implicitly: torque = damping * (commanded velocity - velocity). So the greatest torque is reached
-// when a robot is held that is told its greatest speed.
+// Returns the damping of a velocity motor with bounded torque that MuJoCo integrates stably in steps of 10 ms: torque =
+// damping * (commanded velocity - velocity). The integrator treats damping implicitly. The maximum torque is reached
+// when a robot that is commanded its maximum speed is held.
 double damping(double max_torque, double max_velocity) { return max_torque / max_velocity; }
 
 class ModelText {
@@ -53,7 +53,7 @@ class ModelText {
     text_ += R"(<mujoco><compiler angle="radian"/>)";
     is_dense ? add_dense_sizes() : add_sparse_sizes();
     fmt::format_to(out_, R"(<option timestep="{}" gravity="0 0 {}"/><worldbody>)", scene_.step, -scene_.gravity);
-    // Of a pair the larger friction and the larger number of dimensions count.
+    // The larger friction and the larger dimension of a pair are used.
     fmt::format_to(out_, R"(<geom type="plane" size="0 0 1" friction="0" condim="1" contype="0" conaffinity="{}"/>)",
                    shell | wheel);
     for (const Wall& wall : scene_.walls()) add_wall(wall);
@@ -67,7 +67,7 @@ class ModelText {
   }
 
  private:
-  // Twice to four times what robots were seen to need; MuJoCo by itself asks for 14 GB for 2000 of them.
+  // Two to four times the measured need of robots; by default, MuJoCo requests 14 GB for 2000 of them.
   void add_sparse_sizes() {
     const std::size_t robots = scene_.robots.size();
     fmt::format_to(out_, R"(<size memory="{}"/>)", 100 * robots * robots + 64'000 * robots + 1'000'000);
@@ -130,7 +130,7 @@ class ModelText {
     text_ += "</equality>";
   }
 
-  // In this order in mjData::ctrl.
+  // Adds motors in the order of mjData::ctrl.
   void add_motors(std::size_t i) {
     const Robot& robot = scene_.robot;
     for (const char* side : {"left", "right"})
@@ -177,7 +177,7 @@ class MujocoEngine final : public Engine {
         continue;
       const std::uint32_t a = robot_of(contact.geom1);
       const std::uint32_t b = robot_of(contact.geom2);
-      touches.push_back({std::min(a, b), std::max(a, b)});  // a wall is the greater
+      touches.push_back({std::min(a, b), std::max(a, b)});  // a wall has the larger index
     }
     return touches;
   }
@@ -199,8 +199,8 @@ std::string mujoco_version() { return mj_versionString(); }
 
 std::optional<std::string> mujoco_limitation(const Scene& scene) {
   if (scene.robots.size() > most_robots)
-    return fmt::format(is_dense ? "its matrices are dense, and those of more than {} robots too large for it"
-                                : "it takes it minutes to read a model of more than {} robots",
+    return fmt::format(is_dense ? "its matrices are dense and become too large for more than {} robots"
+                                : "reading a model of more than {} robots takes minutes",
                        most_robots);
   return std::nullopt;
 }

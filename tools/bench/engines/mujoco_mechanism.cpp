@@ -10,7 +10,7 @@ namespace {
 
 std::string three(const Eigen::Vector3d& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
 
-// Bodies of a chain stand inside of each other.
+// Returns the model as text; the bodies of a chain are nested.
 std::string text_of(const Mechanism& mechanism) {
   std::string text;
   const auto out = std::back_inserter(text);
@@ -45,7 +45,7 @@ class MujocoMechanism final : public MechanismRun {
 
   void step() override {
     step_mujoco(*model_, *data_);
-    mj_kinematics(model_.get(), data_.get());  // mj_step leaves poses and velocities as they were before it
+    mj_kinematics(model_.get(), data_.get());  // mj_step leaves poses and velocities from before the step
     mj_comPos(model_.get(), data_.get());
     mj_fwdVelocity(model_.get(), data_.get());
   }
@@ -59,7 +59,7 @@ class MujocoMechanism final : public MechanismRun {
   }
 
  private:
-  // Of the centre, in the world's axes: angular, then linear.
+  // Returns the velocity of a body's centre of mass in the world's axes: angular, then linear.
   Eigen::Matrix<double, 6, 1> velocities(std::size_t body) const {
     Eigen::Matrix<double, 6, 1> both;
     mj_objectVelocity(model_.get(), data_.get(), mjOBJ_BODY, static_cast<int>(body) + 1, both.data(), 0);

@@ -8,13 +8,13 @@
 namespace cohort::bench {
 namespace {
 
-// MuJoCo's own handlers write a file and wait for a key. There is no way on from an error.
+// Replaces MuJoCo's default handlers, which write a file and wait for a key. An error is fatal.
 void take_over_messages() {
   mju_user_error = [](const char* message) {
     std::fprintf(stderr, "cohort: error: MuJoCo: %s\n", message);
     std::_Exit(1);
   };
-  mju_user_warning = [](const char*) {};  // step_mujoco looks for them
+  mju_user_warning = [](const char*) {};  // step_mujoco checks for warnings
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ MujocoModel compile_mujoco(const std::string& text) {
 #else
   const bool is_taken = mj_addBufferVFS(files.get(), file, text.data(), size) == 0;
 #endif
-  if (!is_taken) throw std::runtime_error("MuJoCo does not take the model's text");
+  if (!is_taken) throw std::runtime_error("MuJoCo rejects the model");
   std::string message(1000, '\0');
   MujocoModel model(mj_loadXML(file, files.get(), message.data(), static_cast<int>(message.size())));
   mj_deleteVFS(files.get());

@@ -14,10 +14,10 @@ struct MujocoDelete {
 using MujocoModel = std::unique_ptr<mjModel, MujocoDelete>;
 using MujocoData = std::unique_ptr<mjData, MujocoDelete>;
 
-/// Of a text in MuJoCo's XML. Throws std::runtime_error for what is wrong with it.
+/// Compiles a model in MuJoCo's XML. Throws std::runtime_error if it is invalid.
 MujocoModel compile_mujoco(const std::string& text);
 
-/// Throws std::runtime_error if MuJoCo has warned: its results are then worth nothing.
+/// Advances by a step. Throws std::runtime_error if MuJoCo has warned, because its results are then invalid.
 void step_mujoco(const mjModel& model, mjData& data);
 
 }  // namespace cohort::bench

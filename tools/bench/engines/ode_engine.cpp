@@ -13,12 +13,12 @@ namespace {
 constexpr double error_reduction = 0.2;
 constexpr double constraint_force_mixing = 1e-5;
 constexpr int quick_step_iterations = 20;
-constexpr int most_points = 4;  // of one pair of shapes
-// Cells of the space are 2^-4 m to 2^2 m wide.
+constexpr int most_points = 4;  // contact points of a pair of shapes
+// Cells of the hash space are 2^-4 m to 2^2 m wide.
 constexpr int smallest_cell = -4;
 constexpr int largest_cell = 2;
 
-// Who may touch whom; one of a pair has to name the other. Wheels and casters touch the ground only.
+// Collision bits: a pair collides if one names the other. Wheels and casters collide with the ground only.
 constexpr unsigned long nothing = 0;
 constexpr unsigned long ground_bit = 1;
 constexpr unsigned long wall_bit = 2;
@@ -149,7 +149,7 @@ class OdeEngine final : public Engine {
     return add_hinge(chassis, wheel, robot.wheel_radius, axis.data(), robot.max_torque);
   }
 
-  // A space of its own for each robot: its parts are not tested against each other.
+  // Each robot has its own space, so that its parts are not tested against each other.
   void add_robot(const Placement& at) {
     const Robot& robot = scene_.robot;
     dSpaceID space = dSimpleSpaceCreate(space_);
@@ -201,7 +201,7 @@ class OdeEngine final : public Engine {
       dJointAttach(dJointCreateContact(world_, contact_joints_, &contact), dGeomGetBody(a), dGeomGetBody(b));
     }
     if (on_ground) return;
-    const auto [robot, other] = std::minmax(surface_a.robot, surface_b.robot);  // a wall is the greater
+    const auto [robot, other] = std::minmax(surface_a.robot, surface_b.robot);  // a wall has the larger index
     touches_.push_back({robot, other});
   }
 
@@ -212,7 +212,7 @@ class OdeEngine final : public Engine {
   dJointGroupID contact_joints_;
   std::vector<Body> robots_;
   std::deque<Surface> surfaces_;                  // ODE keeps pointers to them
-  std::array<dContact, most_points> contacts_{};  // of the pair at hand
+  std::array<dContact, most_points> contacts_{};  // contacts of the present pair
   std::vector<Touch> touches_;
 };
 

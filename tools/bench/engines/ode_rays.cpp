@@ -8,14 +8,14 @@
 namespace cohort::bench {
 namespace {
 
-// A space for each robot's solids and one for its rays: the first test is of their boxes. Rays are placed anew each
-// time, as they have to be for robots that may move.
+// Sensors measured with rays of ODE. Each robot has a space for its solids and one for its rays, whose boxes are tested
+// first. Rays are placed again in each frame, as moving robots require.
 class OdeRays : public SensingRun {
  public:
-  // `first_hit`: any is enough, the nearest is not asked for.
+  // `first_hit`: stop at any hit instead of searching for the nearest.
   OdeRays(const SensingScene& scene, bool first_hit)
       : scene_(scene), first_hit_(first_hit), solids_(dHashSpaceCreate(nullptr)) {
-    dSpaceSetSublevel(solids_, 1);  // spaces of rays count as one geom each for it
+    dSpaceSetSublevel(solids_, 1);  // each space of rays counts as one geom
     dCreatePlane(solids_, 0.0, 0.0, 1.0, 0.0);
     for (const Wall& wall : scene.scene.walls())
       place(dCreateBox(solids_, wall.size.x(), wall.size.y(), wall.size.z()), {wall.centre.x(), wall.centre.y(), 0.0},
@@ -48,15 +48,15 @@ class OdeRays : public SensingRun {
  protected:
   struct Ray {
     dGeomID geom = nullptr;
-    Eigen::Vector3d origin_R;  // in the axes of the robot, from where it is on the ground
+    Eigen::Vector3d origin_R;  // in the axes of the robot, relative to its position on the ground
     Eigen::Vector3d direction_R;
-    double depth = 0.0;  // of the nearest hit; the length if there is none
+    double depth = 0.0;  // depth of the nearest hit; the ray's length if there is none
     double length = 0.0;
   };
   struct Rays {
     Placement at;
     dSpaceID space = nullptr;
-    dSpaceID own = nullptr;  // of the robot's solids, which its rays pass through
+    dSpaceID own = nullptr;  // space of the robot's own solids, which its rays ignore
     bool first_hit = false;
     std::deque<Ray> rays;  // geoms keep pointers to them
   };
@@ -93,7 +93,7 @@ class OdeRays : public SensingRun {
     rays.space = dSimpleSpaceCreate(nullptr);
   }
 
-  // Of spaces, or of a ray and a solid, in either order.
+  // Handles a pair of spaces, or a ray and a solid in either order.
   static void near_callback(void* data, dGeomID a, dGeomID b) {
     auto& rays = *static_cast<Rays*>(data);
     if (a == reinterpret_cast<dGeomID>(rays.own) || b == reinterpret_cast<dGeomID>(rays.own)) return;

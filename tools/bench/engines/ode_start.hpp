@@ -6,10 +6,10 @@
 
 namespace cohort::bench {
 
-/// Whoever uses ODE first starts it; it holds no more than tables.
+/// Initialises ODE on the first call; ODE only allocates tables.
 inline void start_ode() {
   static const bool started = [] { return dInitODE2(0) != 0; }();
-  if (!started) throw std::runtime_error("ODE does not start");
+  if (!started) throw std::runtime_error("cannot initialise ODE");
 }
 
 }  // namespace cohort::bench

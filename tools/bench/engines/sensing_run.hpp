@@ -8,7 +8,7 @@
 
 namespace cohort::bench {
 
-/// The sensors of robots that stand still, by one way to measure.
+/// One method of measuring the sensors of robots at rest.
 class SensingRun {
  public:
   SensingRun() = default;
@@ -16,25 +16,25 @@ class SensingRun {
   SensingRun& operator=(const SensingRun&) = delete;
   virtual ~SensingRun() = default;
 
-  /// All sensors of all robots, once.
+  /// Measures all sensors of all robots once.
   virtual void sense() = 0;
-  /// Of the last frame: the mean reading of proximity sensors, or the share of sources that robots see.
+  /// Returns, for the last frame, the mean reading of proximity sensors, or the fraction of sources that robots see.
   virtual std::optional<double> answer() const = 0;
 };
 
 enum class Perceived { light, sound, both };
 
-/// Sensors alone, as they are between two steps.
+/// Sensors only, as between two steps.
 std::unique_ptr<SensingRun> make_cohort_proximity(const SensingScene& scene, description::ProximityTechnique technique);
 std::unique_ptr<SensingRun> make_cohort_sources(const SensingScene& scene, Perceived perceived);
-/// Whole ticks of a simulation: physics too, which does not know that nobody moves.
+/// Whole ticks of a simulation, including physics, which is not told that all robots are at rest.
 std::unique_ptr<SensingRun> make_cohort_proximity_ticks(const SensingScene& scene,
                                                         description::ProximityTechnique technique);
 std::unique_ptr<SensingRun> make_cohort_sources_ticks(const SensingScene& scene, Perceived perceived);
 
-/// Of each proximity sensor one of ODE's rays against all around; nothing else is done.
+/// Casts one ray of ODE for each proximity sensor against all solids nearby, and nothing else.
 std::unique_ptr<SensingRun> make_ode_proximity(const SensingScene& scene);
-/// Of each robot and source a ray that meets nothing or something.
+/// Casts a ray from each robot to each source, and only tests whether it hits a solid.
 std::unique_ptr<SensingRun> make_ode_visibility(const SensingScene& scene);
 
 }  // namespace cohort::bench

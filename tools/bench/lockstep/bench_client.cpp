@@ -9,7 +9,7 @@
 namespace cohort::bench {
 namespace {
 
-// Answers with neutral values. The first robot of a process computes for all of its robots.
+// A controller that answers with neutral values. The first robot of a process does the computation of all its robots.
 class Computer final : public Controller {
  public:
   Computer(double work, std::uint32_t& computing) : work_(work), computing_(computing) {}

@@ -12,18 +12,19 @@
 
 namespace cohort::bench {
 
-/// Some client processes of `cohort bench lockstep`, and what CPU time they take. Gone when this is.
+/// Client processes of `cohort bench lockstep`, and their CPU time. The destructor ends them.
 class BenchProcesses {
  public:
-  /// `arguments` of each process, after `cohort bench client`; `failed` is told if one ends before `may_end`.
+  /// `arguments` are those of each process after `cohort bench client`. `failed` is called if a process ends before
+  /// `may_end`.
   BenchProcesses(const std::vector<std::vector<std::string>>& arguments,
                  std::function<void(const std::string&)> failed);
 
-  /// From now on they may end by themselves.
+  /// Allows the processes to end from now on.
   void may_end() { children_.stop_restarting(); }
-  /// Gives them two seconds to.
+  /// Gives the processes two seconds to end by themselves.
   void let_finish() { children_.let_finish(); }
-  /// Of all together, so far [s].
+  /// Returns the CPU time of all processes together so far [s].
   double cpu_seconds();
 
  private:

@@ -17,9 +17,9 @@
 namespace cohort::bench {
 namespace {
 
-constexpr double warm_up = 0.3;  // of each way, before the first repetition [s]
+constexpr double warm_up = 0.3;  // duration of each method before the first repetition [s]
 
-// What is counted while one way has its turn.
+// Counters of one turn.
 class Counter {
  public:
   explicit Counter(BenchProcesses& processes) : processes_(processes) {}
@@ -32,7 +32,7 @@ class Counter {
     begin_ = wall_seconds();
   }
   void add_barrier(double seconds) { barriers_.push_back(seconds); }
-  /// How long it lasts.
+  /// Counts a tick, and returns its duration.
   double add_tick() {
     ++ticks_;
     return wall_seconds() - begin_;
@@ -67,7 +67,7 @@ class Counter {
   double begin_ = 0.0;
 };
 
-// Robots of each process.
+// Returns the robots of each process.
 Shares shares_of(ClientPlacement placement, std::uint32_t robots) {
   const std::uint32_t processes = process_count(placement, robots);
   Shares shares;
@@ -94,8 +94,8 @@ UdpFloor floor_of(const Shares& shares) {
   return {observations, commands};
 }
 
-// The floor has its turns between two ticks of the server, on the server's own thread: both ways in the same minute,
-// with the same processes waiting meanwhile.
+// The raw UDP exchange takes its turns between two ticks of the server, on the server's thread: both methods run in the
+// same minute, while the same processes wait.
 class RowMeasurement {
  public:
   RowMeasurement(ClientPlacement placement, std::uint32_t robots, const LockstepOptions& options,
@@ -154,7 +154,7 @@ class RowMeasurement {
   bool has_to_end() const { return surroundings_.stop || broken_; }
   [[noreturn]] void throw_why() const {
     if (surroundings_.stop) throw Interrupted();
-    throw std::runtime_error("a client of the floor ended");
+    throw std::runtime_error("a client of the UDP measurement ended");
   }
 
   void say(const std::string& what) const {

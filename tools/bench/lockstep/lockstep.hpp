@@ -12,8 +12,8 @@ struct LockstepResults {
   nlohmann::ordered_json json;
   std::string graph;  ///< an SVG document
 };
-/// Measures row by row; `print` gets each row as soon as it is there. Throws Interrupted, and std::runtime_error if a
-/// process fails.
+/// Measures one row after the other, and passes each finished row to `print`. Throws Interrupted, and
+/// std::runtime_error if a process fails.
 LockstepResults measure_lockstep(const LockstepOptions& options, const Surroundings& surroundings,
                                  const std::function<void(const std::string&)>& print);
 

@@ -20,7 +20,7 @@ double median_of(const std::vector<LockstepTurn>& turns, double LockstepTurn::*q
   return spread_of(turns, quantity).median;
 }
 
-// Of a tick, what is not the barrier: the world's step, and sensing.
+// Returns the part of a tick outside of the barrier: the world's step, and sensing.
 double world_share(const LockstepRow& row) {
   std::vector<double> shares;
   for (const LockstepTurn& turn : row.cohort) shares.push_back(1.0 - turn.barrier_mean * turn.ticks_a_second);
@@ -39,7 +39,7 @@ std::string rate_of(double ticks_a_second) { return fmt::format("{:.0f}", ticks_
 
 using Quantity = double (*)(const LockstepRow&);
 
-// A dot for each number of robots, a line for each placement.
+// Returns a line for each placement, with a dot for each number of robots.
 std::vector<figures::Series> series_of(const std::vector<LockstepRow>& rows, const std::string& name,
                                        Quantity quantity) {
   std::vector<figures::Series> all;
@@ -58,8 +58,8 @@ std::vector<figures::Series> series_of(const std::vector<LockstepRow>& rows, con
 }  // namespace
 
 std::string draw_rows(const std::vector<LockstepRow>& rows) {
-  const char* what = "all in one process, in eights, each in one";
-  figures::Page page{"lockstep", "The barrier over DDS, and the same bytes over raw UDP", {}};
+  const char* what = "controllers: all in one process, groups of eight, one process each";
+  figures::Page page{"lockstep", "Lockstep barrier over DDS, compared with the same bytes over raw UDP", {}};
   page.panels.push_back(
       {"Barrier over DDS", what, "robots", "median, microseconds", series_of(rows, "", [](const LockstepRow& row) {
          return micro * median_of(row.cohort, &LockstepTurn::barrier_median);

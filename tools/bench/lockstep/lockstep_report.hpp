@@ -6,14 +6,14 @@
 
 #include "tools/bench/lockstep/lockstep_rows.hpp"
 
-/// Lines of tables for people, and JSON; docs/bench.md lists the keys.
+/// Lines of tables, and JSON; docs/bench.md lists the keys.
 namespace cohort::bench {
 
 std::string lockstep_heading();
 std::string line_of(const LockstepRow& row);
 nlohmann::ordered_json to_json(const LockstepRow& row);
 
-/// The graph of rows of any placements: an SVG document.
+/// Returns the graph of rows of any placements as an SVG document.
 std::string draw_rows(const std::vector<LockstepRow>& rows);
 
 std::string look_ahead_heading();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t first_domain = 1;
 constexpr std::uint32_t domains = 59;
-constexpr std::size_t processes_per_domain = 64;  // as `cohort run` has them
+constexpr std::size_t processes_per_domain = 64;  // as in `cohort run`
 
 std::vector<std::vector<std::string>> arguments_of(const IdleClients& clients,
                                                    const std::vector<std::uint32_t>& domains_served) {
@@ -36,7 +36,7 @@ LockstepRun::LockstepRun(std::uint32_t robots, std::uint32_t delay, const IdleCl
                                               [this](const std::string& text) { server_->fail(text); });
 }
 
-// Any that no other server has.
+// Opens domains that no other server uses.
 void LockstepRun::open_domains(std::size_t wanted) {
   const auto start = static_cast<std::uint32_t>(getpid());
   for (std::uint32_t i = 0; participants_.size() < wanted; ++i) {

@@ -13,33 +13,33 @@
 
 namespace cohort::bench {
 
-/// Robots of each process: the first, and the one after the last.
+/// The robots of each process: the first one, and one past the last.
 using Shares = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// What an idle run's clients do.
+/// The clients of an idle run.
 struct IdleClients {
   Shares shares;
   bool inline_step = true;
   double work = 0.0;  ///< CPU time of each step of a process [s]
 };
 
-/// What a run calls, on its thread. Each may be empty.
+/// Callbacks of a run, called on its thread. Each may be empty.
 struct LockstepListener {
   std::function<void()> boundary{};               ///< before the first frame and after each step
   std::function<void(double seconds)> barrier{};  ///< from a tick's first frame to the last answer needed
 };
 
-/// A server of idle robots, as `cohort run` makes it but for its world, and its client processes.
+/// A server of idle robots and its client processes. Except for the world, it is the server of `cohort run`.
 class LockstepRun {
  public:
-  /// Starts the clients. `delay` is theirs, in ticks.
+  /// Starts the clients. `delay` is the delay of the controllers in ticks.
   LockstepRun(std::uint32_t robots, std::uint32_t delay, const IdleClients& clients);
 
   BenchProcesses& clients() { return *clients_; }
   std::uint64_t tick() const { return simulation_.tick(); }
-  /// Until `stop` is called, or `interrupted` is set. Throws std::runtime_error if anything fails.
+  /// Runs until `stop` is called, or `interrupted` is set. Throws std::runtime_error if anything fails.
   void run(const LockstepListener& listener, const std::atomic<bool>& interrupted);
-  /// From the listener.
+  /// Stops the run; called by the listener.
   void stop() { stop_ = true; }
 
  private:

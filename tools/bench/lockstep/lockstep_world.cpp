@@ -11,10 +11,11 @@ namespace cohort::bench {
 namespace {
 
 constexpr double apart = 10.0;            // [m]
-constexpr double height = 0.1;            // above the ground [m]
-constexpr std::size_t camera_spots = 10;  // of six values, and their count
+constexpr double height = 0.1;            // height above the ground [m]
+constexpr std::size_t camera_spots = 10;  // maximum number of spots, of six values each
 
-// Encapsulation, the fixed members, then two sequences: ids of 4 bytes, and values of 8 that begin at a multiple of 8.
+// Returns the size of a message: encapsulation, the fixed members, then two sequences. They contain ids of 4 bytes, and
+// values of 8 bytes that are aligned to 8.
 std::size_t message_bytes(std::size_t fixed_members, std::size_t robots, std::size_t values) {
   constexpr std::size_t encapsulation = 4;
   constexpr std::size_t length = 4;
@@ -41,7 +42,7 @@ description::Model idle_robot() {
 description::Experiment idle_robots(std::uint32_t robots, std::uint32_t delay) {
   description::Experiment experiment;
   experiment.name = "lockstep";
-  experiment.duration = std::chrono::nanoseconds(std::numeric_limits<std::int64_t>::max());  // until it is stopped
+  experiment.duration = std::chrono::nanoseconds(std::numeric_limits<std::int64_t>::max());  // runs until it is stopped
   description::World& world = experiment.world;
   world.name = "lockstep";
   world.physics.fidelity = description::Fidelity::planar;

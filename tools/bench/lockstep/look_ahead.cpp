@@ -15,7 +15,7 @@ constexpr std::uint32_t robots = 8;
 constexpr std::uint64_t first_ticks = 20;  // not counted
 constexpr double works[] = {1e-3, 5e-3, 10e-3};
 
-// Median wall time of a tick.
+// Returns the median wall time of a tick.
 double run_once(std::uint32_t delay, double work, const LockstepOptions& options, const Surroundings& surroundings) {
   LockstepRun run(robots, delay, {{{0, robots}}, options.inline_step, work});
   std::vector<double> ticks;
@@ -23,7 +23,7 @@ double run_once(std::uint32_t delay, double work, const LockstepOptions& options
   double last = 0.0;
   LockstepListener listener;
   listener.boundary = [&] {
-    if (run.tick() > 0) compute(work);  // as if the step had taken it
+    if (run.tick() > 0) compute(work);  // simulates the duration of a step
     const double now = wall_seconds();
     if (run.tick() == first_ticks) begin = now;
     if (run.tick() > first_ticks) ticks.push_back(now - last);

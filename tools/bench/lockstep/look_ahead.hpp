@@ -6,8 +6,8 @@
 
 namespace cohort::bench {
 
-/// What `delay: 1` is worth: the physics (one thread) and a controller process compute for the same time in each tick.
-/// Without a delay one waits for the other, with one they compute at the same time. Throws as `measure_lockstep`.
+/// Measures the benefit of `delay: 1`. Physics (one thread) and a controller process compute for the same time in each
+/// tick: one after the other without a delay, at the same time with it. Throws like `measure_lockstep`.
 std::vector<LookAheadRow> measure_look_ahead(const LockstepOptions& options, const Surroundings& surroundings);
 
 }  // namespace cohort::bench

@@ -12,16 +12,16 @@
 namespace cohort::bench {
 namespace {
 
-// At the front of each datagram, which is never smaller.
+// The header of each datagram, which is never smaller.
 struct Head {
   std::uint64_t tick;
   std::uint32_t client;
-  std::uint32_t bytes;  // of the whole message; 0: a client's first call
+  std::uint32_t bytes;  // size of the whole message; 0: a client's first message
 };
 
-constexpr std::size_t largest_datagram = 65'000;  // UDP has 65'507 at the most
-constexpr int socket_buffer = 4 << 20;            // as our DDS sockets have
-constexpr timeval patience{0, 100'000};           // before what may be lost is sent again
+constexpr std::size_t largest_datagram = 65'000;  // the limit of UDP is 65'507
+constexpr int socket_buffer = 4 << 20;            // as for Cohort's DDS sockets
+constexpr timeval patience{0, 100'000};           // time until a datagram that may be lost is sent again
 
 [[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
@@ -38,7 +38,7 @@ void set_up(int descriptor) {
   setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
 }
 
-// Each part has a head of its own within its bytes.
+// Each part contains its own header.
 template <class Send>
 void send_parts(std::vector<std::byte>& buffer, Head head, Send&& send) {
   for (std::size_t left = head.bytes; left > 0;) {
@@ -147,7 +147,7 @@ void run_udp_client(const UdpClientOptions& options, const std::atomic<bool>& st
     }
     Head head{};
     std::memcpy(&head, buffer.data(), sizeof head);
-    // The same tick again, after it was complete: its answer was lost, or a part of the frame.
+    // A complete tick is sent again because its answer, or a part of the frame, was lost.
     if (head.tick != tick || received >= head.bytes) received = 0;
     tick = head.tick;
     received += static_cast<std::size_t>(bytes);

@@ -29,7 +29,7 @@ RigidBody box(const Vector3d& size, const Vector3d& centre_W) {
   return body;
 }
 
-// A kilogram at the end of a light rod.
+// Returns a mass of one kilogram at the end of a light rod.
 RigidBody bob(const Vector3d& hinge_W, const Vector3d& centre_W) {
   RigidBody body;
   body.inertia = Vector3d::Constant(1e-3);
@@ -59,7 +59,7 @@ double fall(const Make& make, double step) {
   return falling->position(0).z() - (100.0 - 0.5 * g);
 }
 
-// A slope is a floor under gravity that leans.
+// Returns a box on a slope, which is modelled as a floor under tilted gravity.
 Mechanism box_on_slope(double step, double friction) {
   constexpr double slope = 0.4;  // [rad]
   const Vector3d size(0.2, 0.2, 0.1);
@@ -85,7 +85,7 @@ double creep(const Make& make, double step) {
   return (resting->position(0) - start_W).norm();
 }
 
-// From ten passages through the middle to the same side.
+// Returns the period, measured over ten passages through the middle in the same direction.
 double pendulum_period(const Make& make, double step) {
   constexpr double amplitude = 0.2;  // [rad]
   constexpr int periods = 10;
@@ -111,7 +111,7 @@ double pendulum_period(const Make& make, double step) {
   }
 }
 
-// Two rods of a metre, let go from the side.
+// Returns the energy error of two rods of one metre, released from the side.
 double double_pendulum_energy(const Make& make, double step) {
   const Mechanism mechanism{
       .step = step,
@@ -126,7 +126,8 @@ double double_pendulum_energy(const Make& make, double step) {
   return greatest;
 }
 
-// About the axis of the middle moment, where it turns over again and again. Shares of energy and of momentum.
+// Returns the relative errors of energy and angular momentum of a box that rotates about the axis of its middle moment,
+// where it turns over repeatedly.
 std::pair<double, double> tumble(const Make& make, double step) {
   RigidBody body = box({0.3, 0.2, 0.1}, Vector3d::Zero());
   body.box.reset();
@@ -149,7 +150,7 @@ struct Case {
   double (*error)(const Make&, double step);
 };
 constexpr Case cases[] = {
-    {"free fall, way of 1 s", "mm", [](const Make& make, double step) { return 1e3 * fall(make, step); }},
+    {"free fall, distance in 1 s", "mm", [](const Make& make, double step) { return 1e3 * fall(make, step); }},
     {"box sliding down a slope, speed after 1 s", "mm/s",
      [](const Make& make, double step) { return 1e3 * slide(make, step); }},
     {"box at rest on a slope, creep in 5 s", "mm",

@@ -4,7 +4,7 @@
 
 namespace cohort::bench {
 
-/// How far an engine is off in one case.
+/// The error of an engine in one case.
 struct AccuracyError {
   std::string engine;
   double step = 0.0;  ///< [s]
@@ -20,7 +20,7 @@ struct AccuracyResult {
   std::vector<AccuracyCase> cases;
 };
 
-/// Systems with a known solution, in steps of 10 ms and of 1 ms, in each of the engines that can build them.
+/// Measures systems with a known solution in steps of 10 ms and 1 ms, in each engine that can build them.
 AccuracyResult measure_accuracy(const std::string& name, const std::vector<EngineKind>& engines,
                                 const Surroundings& surroundings);
 

@@ -15,15 +15,15 @@
 namespace cohort::bench {
 namespace {
 
-// What a child tells its parent.
+// The result that a child process sends to its parent.
 struct Built {
   double cpu = 0.0;               // [s]
-  double resident = 0.0;          // of the whole process [bytes]
-  std::array<char, 200> error{};  // why it gave up; empty if it did not
+  double resident = 0.0;          // resident memory of the whole process [bytes]
+  std::array<char, 200> error{};  // reason of a failure; empty if there was none
 };
 
 double resident_bytes() {
-  std::ifstream statm("/proc/self/statm");  // in pages: the whole, then what is resident
+  std::ifstream statm("/proc/self/statm");  // in pages: total, then resident
   double whole = 0.0;
   double resident = 0.0;
   statm >> whole >> resident;
@@ -38,7 +38,7 @@ Built build_here(const EngineKind& kind, std::uint32_t robots, std::uint64_t see
   return {cpu_seconds() - before, resident_bytes(), {}};
 }
 
-// The child: leaves without tidying up, which is the parent's business.
+// The child process, which exits without cleaning up: that is left to the parent.
 [[noreturn]] void build_and_report(const EngineKind& kind, std::uint32_t robots, std::uint64_t seed, int report) {
   Built built;
   try {
@@ -52,9 +52,9 @@ Built build_here(const EngineKind& kind, std::uint32_t robots, std::uint64_t see
 
 Built build_in_child(const EngineKind& kind, std::uint32_t robots, std::uint64_t seed) {
   std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) throw std::runtime_error("no pipe to a child process");
+  if (pipe(ends.data()) != 0) throw std::runtime_error("cannot create a pipe to a child process");
   const pid_t child = fork();
-  if (child < 0) throw std::runtime_error("no child process");
+  if (child < 0) throw std::runtime_error("cannot start a child process");
   if (child == 0) {
     close(ends[0]);
     build_and_report(kind, robots, seed, ends[1]);
@@ -65,7 +65,7 @@ Built build_in_child(const EngineKind& kind, std::uint32_t robots, std::uint64_t
   close(ends[0]);
   while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
   }
-  if (!reported) throw std::runtime_error("the process that built it ended without a result");
+  if (!reported) throw std::runtime_error("the process that builds the world ended without a result");
   if (built.error[0] != '\0') throw std::runtime_error(built.error.data());
   return built;
 }
@@ -93,7 +93,7 @@ BuildResult measure_build(const std::string& name, std::uint32_t robots, const s
         bytes.push_back((all.resident - one.resident) / std::max(1u, robots - 1));
       }
       result.costs.push_back({kind.name, spread_of(cpu), spread_of(bytes).median});
-    } catch (const std::runtime_error& error) {  // a signal may also have cut the reading short
+    } catch (const std::runtime_error& error) {  // a signal may also have interrupted the read
       if (surroundings.stop) throw Interrupted();
       result.left_out.push_back({kind.name, error.what()});
     }

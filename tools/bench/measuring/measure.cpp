@@ -14,7 +14,7 @@ namespace {
 
 constexpr unsigned steps_a_control_tick = 10;
 constexpr double warm_up = 1.0;          // [s]
-constexpr double straight_speed = 0.15;  // commanded [m/s]
+constexpr double straight_speed = 0.15;  // commanded speed [m/s]
 constexpr std::uint32_t straight_robots = 4;
 
 double median(std::vector<double> values) {
@@ -33,7 +33,7 @@ unsigned control_ticks(double seconds, double step) {
   return static_cast<unsigned>(std::max(1.0, std::round(seconds / (step * steps_a_control_tick))));
 }
 
-// One engine with the scene, driving at random.
+// A scene in one engine, with random commands.
 class Run {
  public:
   Run(const EngineKind& kind, unsigned threads, const Scene& scene, const Options& options)
@@ -82,7 +82,7 @@ class Run {
     return {cpu_seconds() - cpu, wall_seconds() - wall};
   }
 
-  // Returns how many pairs touch.
+  // Returns the number of touching pairs.
   std::size_t look() {
     std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
     for (const Touch& touch : engine_->touches()) pairs.insert(std::minmax(touch.robot, touch.other));
@@ -108,13 +108,13 @@ class Run {
   RandomDriving driving_;
   std::unique_ptr<Engine> engine_;
   std::uint64_t tick_ = 0;
-  std::vector<double> cpu_;  // one for each repetition, of one robot and step
+  std::vector<double> cpu_;  // one value for each repetition, per robot and step
   std::vector<double> wall_;
   std::vector<double> touches_;
   double error_ = 0.0;
 };
 
-// A second to get going, then the way of a second.
+// Returns the speed ratio, measured over one second after one second of acceleration.
 double straight_speed_ratio(const EngineKind& kind, Drive drive, std::uint64_t seed) {
   Scene scene = spread(straight_robots, seed);
   scene.drive = drive;
@@ -197,7 +197,7 @@ class Measurement {
     }
   }
 
-  // An engine that gives up is left out from then on.
+  // An engine that fails is skipped from then on.
   void measure_each(unsigned repetition, unsigned ticks) {
     for (std::size_t i = 0; i < runs_.size();) {
       say(runs_[i]->name(), fmt::format("repetition {} of {}", repetition, options_.repetitions));

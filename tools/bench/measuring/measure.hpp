@@ -14,14 +14,14 @@ namespace cohort::bench {
 struct Options {
   std::vector<std::string> scenes;    ///< empty: all
   std::vector<std::string> engines;   ///< empty: all that are in this build
-  std::vector<std::uint32_t> robots;  ///< empty: those of the scene
-  double seconds = 1.0;               ///< simulated, of each repetition
+  std::vector<std::uint32_t> robots;  ///< empty: the scene's own numbers
+  double seconds = 1.0;               ///< simulated time of each repetition [s]
   unsigned repetitions = 5;
-  unsigned threads = 1;  ///< above 1: Cohort runs with one thread and with these
+  unsigned threads = 1;  ///< above 1: Cohort runs with one thread and with this number
   std::uint64_t seed = 1;
 };
 
-/// What a measurement asks between its parts.
+/// Callbacks of a measurement, used between its parts.
 struct Surroundings {
   std::function<void(const std::string&)> progress;
   const std::atomic<bool>& stop;
@@ -32,7 +32,7 @@ class Interrupted : public std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Of several repetitions.
+/// Statistics of several repetitions.
 struct Spread {
   double median = 0.0;
   double least = 0.0;
@@ -48,15 +48,17 @@ struct LeftOut {
 struct StepCost {
   std::string engine;
   unsigned threads = 1;
-  Spread cpu;                ///< of all threads, of one robot and step [s]
+  Spread cpu;                ///< CPU time of all threads for one robot and step [s]
   Spread wall;               ///< the same
-  double touches = 0.0;      ///< pairs that touch, of robots or of a robot and a wall, for each robot
-  double error = 0.0;        ///< the worst: of two turrets the overlap, of a connection's length what it is off [m]
-  double speed_ratio = 0.0;  ///< reached to commanded, straight on and alone
-  std::optional<double> against_reference;  ///< CPU time of the reference engine to this one's, median of repetitions
-  std::optional<double> speed_up;           ///< wall time with one thread to this, median of repetitions
-  /// The share of the work that, were the rest spread evenly, would explain the speed-up (Karp and Flatt, "Measuring
-  /// parallel processor performance", CACM 33(5), 1990): what is serial, and all else that keeps threads waiting.
+  double touches = 0.0;      ///< touching pairs (two robots, or a robot and a wall) per robot
+  double error = 0.0;        ///< largest error: overlap of two turrets, or deviation of a connection's length [m]
+  double speed_ratio = 0.0;  ///< ratio of reached to commanded speed, driving straight and alone
+  std::optional<double>
+      against_reference;           ///< ratio of the reference engine's CPU time to this one's, median of repetitions
+  std::optional<double> speed_up;  ///< ratio of the wall time with one thread to this one, median of repetitions
+  /// The experimentally determined serial fraction (Karp and Flatt, "Measuring parallel processor performance", CACM
+  /// 33(5), 1990): the serial fraction that would explain the speed-up if the rest were distributed evenly. It includes
+  /// all other causes of waiting threads.
   std::optional<double> serial_share;
 };
 
@@ -69,8 +71,8 @@ struct StepResult {
   std::vector<LeftOut> left_out;
 };
 
-/// Builds `scene` in each engine, lets all drive for a second and then measures them in turns: one repetition of each,
-/// then the next of each, so that whatever disturbs the machine disturbs all alike.
+/// Builds `scene` in each engine, drives all for one second and then measures them alternately: one repetition of each
+/// engine, then the next. Disturbances of the machine thus affect all engines alike.
 StepResult measure_steps(const std::string& name, const Scene& scene, const std::vector<EngineKind>& engines,
                          const Options& options, const Surroundings& surroundings);
 

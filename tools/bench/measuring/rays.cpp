@@ -10,7 +10,7 @@
 namespace cohort::bench {
 namespace {
 
-constexpr double least_rays = 5e5;  // in one repetition, so that reading the clock is nothing
+constexpr double least_rays = 5e5;  // per repetition, so that the cost of reading the clock is negligible
 
 }  // namespace
 

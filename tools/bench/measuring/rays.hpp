@@ -6,8 +6,8 @@ namespace cohort::bench {
 
 struct RayCost {
   std::string density;
-  double spacing = 0.0;  ///< of the robots [m]
-  double hits = 0.0;     ///< share of the rays
+  double spacing = 0.0;  ///< distance of neighbouring robots [m]
+  double hits = 0.0;     ///< fraction of rays that hit
   Spread rays_a_second;
 };
 
@@ -17,7 +17,8 @@ struct RayResult {
   std::vector<RayCost> costs;
 };
 
-/// 24 rays of 20 cm from the rim of each robot against all others, with the grid of moving things built anew each time.
+/// Casts 24 rays of 20 cm from the rim of each robot against all others, and rebuilds the grid of moving objects each
+/// time.
 RayResult measure_rays(const std::string& name, std::uint32_t robots, const Options& options,
                        const Surroundings& surroundings);
 

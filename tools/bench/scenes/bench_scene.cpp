@@ -8,7 +8,7 @@
 namespace cohort::bench {
 namespace {
 
-constexpr double covered = 0.17;     // share of the arena's floor
+constexpr double covered = 0.17;     // covered fraction of the arena's floor
 constexpr double spread_cell = 2.0;  // two robots at 0.2 m/s meet after 4.7 s at the earliest
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double max_track_speed = 0.2;   // [m/s]
 constexpr double max_turret_rate = 1.0;   // [rad/s]
-constexpr std::uint64_t least_ticks = 5;  // between two draws
+constexpr std::uint64_t least_ticks = 5;  // minimum number of ticks between two draws
 constexpr std::uint64_t most_ticks = 19;
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t rays_a_robot = 24;
 constexpr double range = 0.2;       // [m]
-constexpr double least_gap = 0.01;  // between two robots [m]
+constexpr double least_gap = 0.01;  // minimum gap between two robots [m]
 constexpr CylinderBody turret = Robot{}.turret;
 
 }  // namespace

@@ -7,14 +7,14 @@
 
 namespace cohort::bench {
 
-/// Turrets in the cells of a square grid, at random but never touching, with 24 rays of 20 cm each.
+/// Turrets at random positions in the cells of a square grid, without contacts, with 24 rays of 20 cm each.
 class RayField {
  public:
   RayField(std::uint32_t robots, double spacing, std::uint64_t seed);
 
-  /// Sets every pose anew and takes them into the grid, as after a step.
+  /// Sets every pose and updates the grid, as after a step.
   void move_all();
-  /// From the rim of each robot against all others, as a proximity ring casts its rays. Returns the number of hits.
+  /// Casts rays from the rim of each robot against all others, as a proximity ring does. Returns the number of hits.
   std::size_t cast() const;
 
   double rays() const;

@@ -10,12 +10,12 @@
 namespace cohort::bench {
 namespace {
 
-constexpr std::uint32_t least_arena = 64;  // robots that the smallest arena is made for
-constexpr std::uint32_t things = 24;       // obstacles or sources in it
+constexpr std::uint32_t least_arena = 64;  // number of robots in the smallest arena
+constexpr std::uint32_t things = 24;       // number of obstacles or sources in it
 constexpr double area_a_robot = 0.1;       // [m^2]
 constexpr double widest = 0.071;           // half of the diagonal of a box [m]
 
-// Places for robots first, then for other things; all at random.
+// Returns random positions, first of the robots, then of the other objects.
 std::vector<Placement> places(std::uint32_t robots, std::uint32_t others, double side, std::uint64_t seed) {
   const std::uint32_t room_for = std::max(robots, least_arena) + others;
   const auto columns = static_cast<std::uint32_t>(std::ceil(std::sqrt(room_for)));

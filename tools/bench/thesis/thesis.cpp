@@ -11,7 +11,7 @@
 namespace cohort::bench {
 namespace {
 
-// Robots draw new commands at multiples of this [s], whatever the step.
+// Robots get new commands at multiples of this time [s], for any step.
 constexpr double control_tick = 0.1;
 constexpr double ours = 0.01;        // our step [s]
 constexpr double thesis_step = 0.1;  // the thesis's [s]
@@ -67,7 +67,7 @@ ThesisCell measure_cell(const Column& column, Scene scene, const ThesisOptions& 
   }
 }
 
-// Room for each robot, on a plane without walls; where only we go, ours alone.
+// Cell size and random displacement of robots on a plane without walls [m].
 constexpr double room = 0.25;
 constexpr double freedom = 0.05;
 
@@ -77,7 +77,7 @@ Scene random_scene(std::uint32_t robots, std::uint64_t seed) {
   return scene;
 }
 
-// Rows as even as can be, along which each robot is connected to the one before it.
+// Returns rows of almost equal length, in which each robot is connected to the previous one.
 Scene connected_scene(std::uint32_t robots) {
   Scene scene;
   scene.connected = true;
@@ -206,7 +206,7 @@ nlohmann::ordered_json measure_thesis(const ThesisOptions& options, const Surrou
   };
   print(
       fmt::format("CPU seconds for {:g} simulated seconds, one thread; *: extrapolated from {:g} s of CPU time.\n"
-                  "The thesis's own were measured on an Athlon XP 2800+ of 2003, in steps of 100 ms.\n",
+                  "The thesis measured on an Athlon XP 2800+ of 2003, with steps of 100 ms.\n",
                   options.seconds, options.budget));
   const auto is_wanted = [&](const char* table) {
     return options.tables.empty() || std::ranges::find(options.tables, table) != options.tables.end();

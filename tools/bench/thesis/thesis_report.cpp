@@ -14,13 +14,13 @@ std::string text_of(const ThesisCell& cell) {
   return fmt::format("{:.3g}{}", cell.seconds, cell.is_extrapolated ? "*" : "");
 }
 
-// Right-aligned under a heading.
+// Returns text that is right-aligned under a heading.
 std::string in_column(const std::string& heading, const std::string& text) {
   constexpr std::size_t least = 8;
   return fmt::format("  {:>{}}", text, std::max(least, heading.size()));
 }
 
-// Of what `thesis_text` and `cell_text` say of a row's numbers, a line for each row.
+// Returns a line for each row, formatted by `thesis_text` and `cell_text`.
 template <class ThesisText, class CellText>
 std::string lines_of(const ThesisTable& table, ThesisText thesis_text, CellText cell_text) {
   std::string text;
@@ -57,7 +57,7 @@ std::string text_of(const ThesisTable& table) {
   text += "\n";
   text += lines_of(table, seconds_of, [](const ThesisRow&, const ThesisCell& cell) { return text_of(cell); });
   if (table.frames > 0)
-    text += "  microseconds for a robot and frame:\n" +
+    text += "  microseconds per robot and frame:\n" +
             lines_of(table, no_text, [&](const ThesisRow& row, const ThesisCell& cell) {
               return cell.is_missing ? "-" : fmt::format("{:.2f}", cost_of_robot_frame(cell, row.robots, table.frames));
             });
@@ -70,7 +70,7 @@ std::string text_of(const ThesisTable& table) {
 }
 
 std::string text_of(const std::vector<Behaviour>& behaviours) {
-  std::string text = "What a robot alone does\n";
+  std::string text = "Behaviour of a single robot\n";
   text +=
       fmt::format("  {:<16}{:>9}{:>8}{:>19}{:>13}\n", "engine", "step ms", "speed", "creep mm in 5 s", "sinking mm");
   for (const Behaviour& each : behaviours)

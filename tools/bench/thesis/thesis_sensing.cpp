@@ -13,7 +13,7 @@ namespace {
 
 using description::ProximityTechnique;
 
-constexpr unsigned repetitions = 5;   // with a seed each
+constexpr unsigned repetitions = 5;   // each with its own seed
 constexpr double thesis_frame = 0.1;  // [s]
 constexpr std::uint32_t swarm = 1000;
 constexpr std::size_t both = 2;  // the column of table 5.4 with light and sound
@@ -25,15 +25,15 @@ struct Way {
 };
 
 struct Measured {
-  std::vector<double> seconds_a_frame;  // of each repetition
+  std::vector<double> seconds_a_frame;  // one value for each repetition
   bool is_cut_short = false;
-  std::optional<double> answer;  // of the first repetition
+  std::optional<double> answer;  // answer of the first repetition
 };
 
-// Asks the clock only now and then: a frame may be a microsecond.
+// Reads the clock only occasionally, because a frame may take a microsecond.
 void measure_frames(SensingRun& run, std::uint64_t frames, double budget, Measured& into) {
   constexpr std::uint64_t most_at_once = 64;
-  run.sense();  // what is only done once, and caches
+  run.sense();  // excludes one-time work and fills caches
   double cpu = 0.0;
   std::uint64_t done = 0;
   for (std::uint64_t at_once = 1; done < frames && cpu <= budget; at_once = std::min(2 * at_once, most_at_once)) {
@@ -54,7 +54,7 @@ ThesisCell cell_of(const Measured& measured, std::uint64_t frames) {
           measured.answer};
 }
 
-// All ways in turns, then all of them in the next scene.
+// Measures all methods alternately, then again in the next scene.
 template <class MakeScene>
 ThesisRow measure_row(const KnownRow& known, const MakeScene& make_scene, const std::vector<Way>& ways,
                       std::uint64_t frames, const ThesisOptions& options, const Surroundings& surroundings) {
@@ -136,7 +136,7 @@ std::vector<ThesisTable> proximity_sensors(const ThesisOptions& options, const S
     ThesisTable table;
     table.frames = frames_of(options, frame);
     table.title = fmt::format("Table 5.3, proximity sensors: {} frames of {:g} ms", table.frames, 1e3 * frame);
-    // The thesis has them of its own frames only.
+    // The thesis has times for its own frames only.
     if (frame == thesis_frame) table.thesis_columns = {"raytracing", "sampling", "shadow"};
     std::vector<KnownRow> rows = known;
     if (frame != thesis_frame)
@@ -159,9 +159,9 @@ ThesisTable light_and_sound(const ThesisOptions& options, const Surroundings& su
   ThesisTable table;
   table.frames = frames_of(options, thesis_frame);
   table.title = fmt::format(
-      "Table 5.4, light and sound: {} frames, 24 lamps and 24 sounds (the thesis has a figure without numbers)",
+      "Table 5.4, light and sound: {} frames, 24 lamps and 24 sounds (the thesis shows a figure without numbers)",
       table.frames);
-  table.answers = "share of lamps in sight";
+  table.answers = "fraction of visible lamps";
   const auto make_scene = [&](std::uint32_t robots, std::uint64_t seed) {
     SensingScene scene = among_sources(robots, seed);
     scene.scene.step = 0.01;
@@ -171,8 +171,8 @@ ThesisTable light_and_sound(const ThesisOptions& options, const Surroundings& su
   for (const ThesisRow& row : table.rows)
     if (row.robots == swarm)
       table.note = fmt::format(
-          "24 lamps and 24 sounds, {} robots with 8 light sensors and 4 microphones: {:.2f} us for a robot and frame "
-          "(aim: less than 5)",
+          "24 lamps and 24 sounds, {} robots with 8 light sensors and 4 microphones: {:.2f} us per robot and frame "
+          "(goal: less than 5)",
           swarm, cost_of_robot_frame(row.cells[both], row.robots, table.frames));
   return table;
 }

@@ -6,8 +6,6 @@
 #include <cstdio>
 #include <exception>
 
-#include "tools/bridges/common/robot_bridge.hpp"
-
 namespace cohort::bridges {
 namespace {
 
@@ -17,7 +15,7 @@ constexpr std::uint32_t most_robots = 100;
 std::uint32_t id_in(const std::string& text) {
   constexpr std::size_t most_digits = 6;
   if (text.empty() || text.size() > most_digits || text.find_first_not_of("0123456789") != std::string::npos)
-    throw UsageError("'" + text + "' is not an id of a robot");
+    throw UsageError("'" + text + "': expected the id of a robot");
   return static_cast<std::uint32_t>(std::stoul(text));
 }
 
@@ -31,12 +29,12 @@ std::vector<std::string> single_robots(const std::string& list) {
       for (std::uint32_t id = id_in(selector.substr(0, dots)); id <= last && robots.size() <= most_robots; ++id)
         robots.push_back(std::to_string(id));
     } else if (selector == "all" || selector.find('*') != std::string::npos) {
-      throw UsageError("--robots expects single robots or ranges of ids such as 0..3: each has a link of its own");
+      throw UsageError("--robots expects single robots or ranges of ids such as 0..3: each robot needs its own link");
     } else {
       robots.push_back(selector);
     }
   }
-  if (robots.empty()) throw UsageError("--robots names no robot");
+  if (robots.empty()) throw UsageError("'--robots' is empty; expected at least one selector");
   if (robots.size() > most_robots) throw UsageError("at most " + std::to_string(most_robots) + " robots");
   return robots;
 }
@@ -44,7 +42,7 @@ std::vector<std::string> single_robots(const std::string& list) {
 BridgeProgram::BridgeProgram(std::string name, std::string who, const std::string& text)
     : name_(std::move(name)), who_(std::move(who)), app_(text, name_) {
   client_.name = name_;
-  app_.add_option("--robots", robots_, "Ids, ranges of ids and names, separated by commas")
+  app_.add_option("--robots", robots_, "Ids, ranges of ids or names of robots, separated by commas")
       ->type_name("ROBOT[,ROBOT...]")
       ->capture_default_str();
   app_.add_option("--server", client_.server, "The server's IPv4 address or host name")
@@ -55,9 +53,13 @@ BridgeProgram::BridgeProgram(std::string name, std::string who, const std::strin
       ->type_name("N")
       ->envname("COHORT_DOMAIN")
       ->capture_default_str();
-  app_.add_option("--secure", client_.secure, "Folder of this client's identity (default: without security)")
+  app_.add_option("--secure", client_.secure, "Folder of this client's identity (default: no security)")
       ->type_name("DIR")
       ->envname("COHORT_SECURE");
+}
+
+void BridgeProgram::offer_to_run_programs(const std::string& text) {
+  app_.add_option("--run", command_, text)->type_name("COMMAND");
 }
 
 void BridgeProgram::add_choice_of(const std::string& option, const std::vector<std::string>& names,
@@ -65,28 +67,58 @@ void BridgeProgram::add_choice_of(const std::string& option, const std::vector<s
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : "|") + name;
   const auto check = [names, all](const std::string& given) {
-    return std::ranges::find(names, given) != names.end() ? std::string() : "'" + given + "' is none of " + all;
+    return std::ranges::find(names, given) != names.end() ? std::string() : "'" + given + "': expected one of " + all;
   };
   app_.add_option_function<std::string>(option, choose, text)->check(check, "", "")->type_name(all);
 }
 
+CLI::Option& BridgeProgram::add_serial() {
+  return *app_.add_option("--serial", serial_,
+                          "Serial devices of hardware, one for each robot, such as /dev/ttyACM0:115200")
+              ->delimiter(',')
+              ->allow_extra_args(false)
+              ->type_name("DEVICE:BAUD[,DEVICE:BAUD...]");
+}
+
 int BridgeProgram::run(int argc, char** argv, const std::function<std::unique_ptr<Firmware>()>& make,
                        const std::function<std::string(std::size_t robot, std::size_t robots)>& link_of) {
+  return run(argc, argv, [&](const std::vector<std::string>& robots, std::size_t robot) -> Driver {
+    if (has_serial() && serial_.size() != robots.size()) throw UsageError("--serial expects one device for each robot");
+    return {make(), open_link(has_serial() ? "serial:" + serial_[robot] : link_of(robot, robots.size()))};
+  });
+}
+
+int BridgeProgram::run(int argc, char** argv, const MakeDriver& make) {
+  return run_to_exit_code(argc, argv, [&] {
+    const std::vector<std::string> robots = single_robots(robots_);
+    std::atomic<bool>& stop = stop_on_signals();
+    std::vector<std::unique_ptr<RobotBridge>> bridges;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      RobotBridge::Options options{client_, who_, command_};
+      options.client.robots = {robots[i]};
+      bridges.push_back(std::make_unique<RobotBridge>(std::move(options), make(robots, i), patience_, stop));
+    }
+    return run_bridges(bridges);
+  });
+}
+
+int BridgeProgram::run(int argc, char** argv, const std::function<ClientEnd(const ClientOptions& client)>& drive) {
+  return run_to_exit_code(argc, argv, [&] {
+    ClientOptions client = client_;
+    client.robots = split_selectors(robots_);
+    if (client.robots.empty()) throw UsageError("'--robots' is empty; expected at least one selector");
+    return exit_code_of(drive(client));
+  });
+}
+
+int BridgeProgram::run_to_exit_code(int argc, char** argv, const std::function<int()>& body) {
   try {
     app_.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app_.exit(error) == 0 ? 0 : exit_usage;
   }
   try {
-    const std::vector<std::string> robots = single_robots(robots_);
-    std::atomic<bool>& stop = stop_on_signals();
-    std::vector<std::unique_ptr<RobotBridge>> bridges;
-    for (std::size_t i = 0; i < robots.size(); ++i) {
-      RobotBridge::Options options{client_, link_of(i, robots.size()), who_};
-      options.client.robots = {robots[i]};
-      bridges.push_back(std::make_unique<RobotBridge>(std::move(options), make(), patience_, stop));
-    }
-    return run_bridges(bridges);
+    return body();
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s: %s. Try --help.\n", name_.c_str(), error.what());
   } catch (const std::exception& error) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/bridges/common/firmware.hpp"
+#include "tools/bridges/common/robot_bridge.hpp"
 
 namespace cohort::bridges {
 
@@ -25,6 +25,13 @@ class BridgeProgram {
   /// `name`: of the program. `who`: what people call what drives a robot.
   BridgeProgram(std::string name, std::string who, const std::string& text);
 
+  /// Adds the option --run: programs for robots, started in virtual time. `text`: what it is for.
+  void offer_to_run_programs(
+      const std::string& text =
+          "Shell command that drives a robot: started once for each robot, with simulated time as its clock");
+  /// Returns the command of --run; empty: none was given.
+  const std::string& command() const { return command_; }
+
   CLI::App& app() { return app_; }
   Patience& patience() { return patience_; }
 
@@ -36,12 +43,25 @@ class BridgeProgram {
                   [&value, choices](const std::string& given) { value = choices.at(given); });
   }
 
+  /// Adds --serial, which takes the place of the links that the program's other options name. For programs that create
+  /// firmware and links separately.
+  CLI::Option& add_serial();
+  bool has_serial() const { return !serial_.empty(); }
+
   /// Reads the command line, then drives each robot by a firmware that `make` gives, over the link that `link_of`
   /// names for the robot's place among those of --robots. Returns the program's exit code.
   int run(int argc, char** argv, const std::function<std::unique_ptr<Firmware>()>& make,
           const std::function<std::string(std::size_t robot, std::size_t robots)>& link_of);
 
+  /// The same with firmware and links that `make` gives for each of the robots, by its place among those of --robots.
+  using MakeDriver = std::function<Driver(const std::vector<std::string>& robots, std::size_t robot)>;
+  int run(int argc, char** argv, const MakeDriver& make);
+  /// Reads the command line, then calls `drive`, whose client has all robots of --robots, which may be any selectors.
+  /// Returns the program's exit code.
+  int run(int argc, char** argv, const std::function<ClientEnd(const ClientOptions& client)>& drive);
+
  private:
+  int run_to_exit_code(int argc, char** argv, const std::function<int()>& body);
   template <class Value>
   static std::vector<std::string> names_of(const std::map<std::string, Value>& choices) {
     std::vector<std::string> names;
@@ -56,6 +76,8 @@ class BridgeProgram {
   CLI::App app_;
   ClientOptions client_;
   std::string robots_ = "0";
+  std::vector<std::string> serial_;
+  std::string command_;  // command of --run
   Patience patience_;
 };
 

@@ -23,13 +23,36 @@ Conversation::Conversation(std::unique_ptr<Link> link, std::string who, Callback
 
 bool Conversation::connect() {
   if (!link_->connect()) return false;
-  if (!std::exchange(is_connected_, true)) callbacks_.tell("the " + who_ + " has connected from " + link_->peer());
+  if (!std::exchange(is_connected_, true)) {
+    ++connections_;
+    tell("has connected from " + link_->peer());
+  }
+  return true;
+}
+
+bool Conversation::wait_for_connection(const Patience& patience) {
+  if (is_in_virtual_time()) {
+    do {
+      program_->settle();
+      if (connect()) return true;
+    } while (program_->go_on());
+    if (program_->runs()) return false;
+  }
+  while (!connect()) {
+    if (patience.silence != Silence::wait) return false;
+    wait_for(POLLIN, Clock::time_point::max());
+  }
   return true;
 }
 
 std::optional<std::vector<std::uint8_t>> Conversation::receive(const Framing& framing, const Patience& patience) {
   const bool waits = patience.silence == Silence::wait;
   std::optional<Clock::time_point> deadline;
+  if (callbacks_.given_up()) throw GaveUp{};
+  if (is_in_virtual_time()) {
+    if (auto message = receive_in_virtual_time(framing)) return message;
+    if (program_->runs()) return std::nullopt;
+  }
   for (;;) {
     if (!connect()) {
       if (!waits) return std::nullopt;
@@ -48,17 +71,31 @@ std::optional<std::vector<std::uint8_t>> Conversation::receive(const Framing& fr
   }
 }
 
+// The link is looked at while the program is at rest only: what is there then does not depend on how fast it computes.
+std::optional<std::vector<std::uint8_t>> Conversation::receive_in_virtual_time(const Framing& framing) {
+  do {
+    program_->settle();
+    if (!connect() || !has_sent_all()) continue;
+    do {
+      if (auto message = take(framing)) return message;
+    } while (is_connected_ && read_more());
+  } while (program_->go_on());
+  return std::nullopt;
+}
+
 // False if there was nothing.
 bool Conversation::read_more() {
   std::array<std::uint8_t, 4096> bytes{};
   try {
+    const std::string peer = link_->is_connectionless() ? link_->peer() : "";
     const std::size_t count = link_->read(bytes);
+    if (link_->is_connectionless() && count > 0 && link_->peer() != peer) tell("speaks from " + link_->peer());
     received_.insert(received_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
     return count > 0;
   } catch (const LinkLost& lost) {
     std::string part;
     if (!received_.empty()) {
-      part = " in the middle of a message, after " + std::to_string(received_.size());
+      part = " inside a message, after " + std::to_string(received_.size());
       if (expected_size_ > 0) part += " of " + std::to_string(expected_size_);
       part += " bytes";
     }
@@ -73,9 +110,9 @@ std::optional<std::vector<std::uint8_t>> Conversation::take(const Framing& frami
   try {
     size = framing(received_);
     if (size == 0 && received_.size() >= largest_message)
-      throw std::runtime_error("its message has more than " + std::to_string(largest_message) + " bytes");
+      throw std::runtime_error("a message has more than " + std::to_string(largest_message) + " bytes");
   } catch (const std::runtime_error& mistake) {
-    hang_up(std::string("is cut off: ") + mistake.what());
+    hang_up(std::string("is disconnected: ") + mistake.what());
     return std::nullopt;
   }
   expected_size_ = size;
@@ -86,24 +123,57 @@ std::optional<std::vector<std::uint8_t>> Conversation::take(const Framing& frami
   return message;
 }
 
+void Conversation::drop_received() {
+  while (is_connected_ && read_more()) {
+  }
+  received_.clear();
+  expected_size_ = 0;
+}
+
 void Conversation::send(std::span<const std::uint8_t> message) {
+  if (is_in_virtual_time()) return send_in_virtual_time(message);
+  while (!write(message)) wait_for(POLLOUT, Clock::time_point::max());
+}
+
+void Conversation::send_in_virtual_time(std::span<const std::uint8_t> message) {
+  if (has_sent_all() && write(message)) return;
+  if (unsent_.size() >= most_unsent) return hang_up("is disconnected: it does not read what is sent to it");
+  unsent_.emplace_back(message.begin(), message.end());
+}
+
+bool Conversation::has_sent_all() {
+  while (!unsent_.empty()) {
+    std::vector<std::uint8_t> message = std::move(unsent_.front());
+    unsent_.pop_front();
+    std::span<const std::uint8_t> left = message;
+    if (write(left)) continue;
+    unsent_.emplace_front(left.begin(), left.end());
+    return false;
+  }
+  return true;
+}
+
+// Writes as much as can be taken now. Returns false if something is left, which `message` then is.
+bool Conversation::write(std::span<const std::uint8_t>& message) {
   while (is_connected_ && !message.empty()) {
     try {
       const std::size_t count = link_->write(message);
+      if (count == 0) return false;
       message = message.subspan(count);
-      if (count == 0) wait_for(POLLOUT, Clock::time_point::max());
     } catch (const LinkLost& lost) {
       hang_up(lost.what());
     }
   }
+  return true;
 }
 
 void Conversation::hang_up(const std::string& why) {
   link_->hang_up();
   is_connected_ = link_->is_connectionless();
   received_.clear();
+  unsent_.clear();
   expected_size_ = 0;
-  callbacks_.tell("the " + who_ + " " + why);
+  tell(why);
 }
 
 void Conversation::wait_for(short event, Clock::time_point until) const {

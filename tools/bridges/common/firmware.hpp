@@ -17,7 +17,8 @@ class Firmware {
   virtual void start(const DrivenRobot& robot) = 0;
 
   /// Makes one exchange: sends what the robot senses and receives what the firmware commands, in the order that its
-  /// protocol has, and keeps the command for `act`. Returns false if the firmware was silent.
+  /// protocol has, and keeps the command for `act`. Returns false if the firmware was silent: under Silence::wait the
+  /// frame of a robot whose team is free is then left unanswered, so that its team's `deadline` counts.
   virtual bool exchange(Conversation& conversation, const Observation& observation) = 0;
 
   /// Sets the robot's command, as the last exchange gave it.

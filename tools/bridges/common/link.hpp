@@ -23,7 +23,7 @@ class Link {
   /// Returns where the firmware reaches it, such as `127.0.0.1:1000` or `/dev/pts/3`.
   virtual std::string place() const = 0;
 
-  /// Returns whether it has no connections, as a serial line and UDP: then it is connected always.
+  /// Returns whether it has no connections, as a pseudo-terminal and UDP: then it is connected always.
   virtual bool is_connectionless() const = 0;
 
   /// Returns whether firmware is connected, and connects firmware that waits to be.
@@ -49,9 +49,12 @@ class Link {
 /// Opens the link that `place` names; an address is an IPv4 address of this machine, a port of 0 is any free one:
 ///
 /// - `tcp:ADDRESS:PORT` waits for one connection at a time.
-/// - `udp:ADDRESS:PORT` takes datagrams, and answers to where the last one came from.
+/// - `udp:ADDRESS:PORT` takes datagrams, and answers to where the last one came from. One that another sender has
+///   replaced is not heard any more, unless the other is hung up.
 /// - `udp:ADDRESS:PORT:PEER_ADDRESS:PEER_PORT` also sends there before any came, and takes none from elsewhere.
-/// - `serial:DEVICE:BAUD` opens a serial line, raw, 8 data bits, no parity, 1 stop bit.
+/// - `serial:DEVICE:BAUD` opens a serial line, raw, 8 data bits, no parity, 1 stop bit. Its device is there at first,
+/// and
+///   is opened again when it was unplugged and has come back.
 /// - `pty` makes a pseudo-terminal, whose other end is a serial device to the firmware; `pty:PATH` also makes PATH a
 ///   symbolic link to it.
 ///

@@ -37,10 +37,13 @@ std::unique_ptr<Link> open_link(const std::string& place) {
   if (kind == "tcp" && parts.size() == 3) return listen_for_tcp(parts[1], port(2));
   if (kind == "udp" && parts.size() == 3) return open_udp(parts[1], port(2), std::nullopt);
   if (kind == "udp" && parts.size() == 5) return open_udp(parts[1], port(2), endpoint_of(parts[3], port(4)));
-  if (kind == "serial" && parts.size() == 3) return open_serial(parts[1], number_in<unsigned>(parts[2], "rate", place));
+  if (kind == "serial" && parts.size() >= 3) {  // names of /dev/serial/by-path have colons
+    const auto begin = kind.size() + 1;
+    return open_serial(place.substr(begin, place.rfind(':') - begin), number_in<unsigned>(parts.back(), "rate", place));
+  }
   if (kind == "pty" && parts.size() <= 2) return make_pty(parts.size() == 2 ? parts[1] : "");
   throw std::runtime_error("'" + place +
-                           "' is not a link: expected tcp:ADDRESS:PORT, udp:ADDRESS:PORT[:PEER_ADDRESS:PEER_PORT], "
+                           "': expected a link tcp:ADDRESS:PORT, udp:ADDRESS:PORT[:PEER_ADDRESS:PEER_PORT], "
                            "serial:DEVICE:BAUD or pty[:PATH]");
 }
 

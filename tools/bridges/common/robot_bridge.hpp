@@ -11,19 +11,24 @@
 
 namespace cohort::bridges {
 
+/// One robot's firmware, and the link to it.
+struct Driver {
+  std::unique_ptr<Firmware> firmware;
+  std::unique_ptr<Link> link;
+};
+
 /// One robot that firmware drives: a client of its own on a thread of its own, so that the other robots go on while
 /// this one waits for its firmware.
 class RobotBridge {
  public:
   struct Options {
     ClientOptions client;  ///< `robots` names the robot
-    std::string link;      ///< as `open_link` takes it
     std::string who = "firmware";
+    std::string command{};  ///< for the shell: a program that is started to connect; empty: none
   };
 
-  /// Opens the link and says where firmware reaches it. The bridge ends when `stop` is set, and sets it if it fails.
-  /// Throws std::runtime_error.
-  RobotBridge(Options options, std::unique_ptr<Firmware> firmware, Patience patience, std::atomic<bool>& stop);
+  /// Says where firmware reaches the link. The bridge ends when `stop` is set, and sets it if it fails.
+  RobotBridge(Options options, Driver driver, Patience patience, std::atomic<bool>& stop);
   RobotBridge(const RobotBridge&) = delete;
   RobotBridge& operator=(const RobotBridge&) = delete;
   ~RobotBridge();
@@ -35,7 +40,10 @@ class RobotBridge {
  private:
   void run();
   ClientEnd drive(Client& client);
-  void answer(const Frame& frame);
+  void begin_frame(const Frame& frame, const Start& robot);
+  void answer(Client& client, const Frame& frame);
+  void start_program(std::chrono::nanoseconds time);
+  void end_program();
   void tell(const std::string& text) const;
 
   Options options_;
@@ -44,12 +52,14 @@ class RobotBridge {
   std::atomic<bool>& stop_;
   const Client* client_ = nullptr;  // while it runs
   Conversation conversation_;
+  std::unique_ptr<TimedProgram> program_;
+  bool is_other_run_ = false;  // than that of the last frame
   ClientEnd end_ = ClientEnd::failed;
   std::thread thread_;
 };
 
-/// Runs bridges until all have ended, and returns the exit code of their program: that of the first that ended
-/// otherwise than by the run's end or by the end of the others.
+/// Runs bridges until all have ended. Returns the exit code for their program: that of the first bridge that ended for
+/// another reason than the end of the run or of the other bridges.
 int run_bridges(const std::vector<std::unique_ptr<RobotBridge>>& bridges);
 
 }  // namespace cohort::bridges

@@ -1,7 +1,9 @@
 #include "tools/bridges/common/serial.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <stdlib.h>
+#include <sys/file.h>
 #include <termios.h>
 
 #include <array>
@@ -31,7 +33,7 @@ speed_t speed_of(unsigned baud) {
     if (rate == baud) return speed;
     known += (known.empty() ? "" : ", ") + std::to_string(rate);
   }
-  throw std::runtime_error("a serial line has no rate of " + std::to_string(baud) + " baud: expected one of " + known);
+  throw std::runtime_error("unsupported rate of " + std::to_string(baud) + " baud: expected one of " + known);
 }
 
 void make_raw(const Descriptor& line, const std::string& name, std::optional<speed_t> speed) {
@@ -44,39 +46,77 @@ void make_raw(const Descriptor& line, const std::string& name, std::optional<spe
     throw std::runtime_error(name + " cannot be set up as a serial line: " + text_of_error(errno));
 }
 
-// A line that is open for good: who is at its other end is not seen.
 class SerialLink : public Link {
  public:
   SerialLink(Descriptor line, std::string name) : line_(std::move(line)), name_(std::move(name)) {}
 
   std::string place() const override { return name_; }
   std::string peer() const override { return name_; }
-  bool is_connectionless() const override { return true; }
   int descriptor() const override { return line_.number(); }
-  bool connect() override { return true; }
 
   std::size_t read(std::span<std::uint8_t> bytes) override {
     const ssize_t count = ::read(line_.number(), bytes.data(), bytes.size());
     if (count > 0) return static_cast<std::size_t>(count);
-    // EIO of a pseudo-terminal: nobody has its other end open.
-    if (count == 0 || is_for_later(errno) || errno == EIO) return 0;
-    throw LinkLost("is lost: " + text_of_error(errno));
+    if (count < 0 && is_for_later(errno)) return 0;
+    return lose(count == 0 ? EIO : errno);
   }
 
   std::size_t write(std::span<const std::uint8_t> bytes) override {
     const ssize_t count = ::write(line_.number(), bytes.data(), bytes.size());
     if (count >= 0) return static_cast<std::size_t>(count);
-    if (is_for_later(errno)) return 0;
-    throw LinkLost("does not take its answer: " + text_of_error(errno));
+    return is_for_later(errno) ? 0 : lose(errno);
   }
 
   void hang_up() override { ::tcflush(line_.number(), TCIOFLUSH); }
 
- private:
+ protected:
+  // Called where the line gives and takes nothing, with an error number. Returns 0 or throws LinkLost.
+  virtual std::size_t lose(int error) = 0;
+
   Descriptor line_;
+
+ private:
   std::string name_;
 };
 
+// The line stays open while its device is there, because opening one resets many boards.
+class DeviceLink final : public SerialLink {
+ public:
+  DeviceLink(const std::string& device, speed_t speed) : SerialLink(open(device, speed), device), speed_(speed) {}
+
+  bool is_connectionless() const override { return false; }
+  bool connect() override {
+    if (line_.is_open()) return true;
+    try {
+      line_ = open(place(), speed_);
+    } catch (const std::runtime_error&) {
+      return false;  // it is not plugged in again, or not set up by the system yet
+    }
+    return true;
+  }
+
+ private:
+  static Descriptor open(const std::string& device, speed_t speed) {
+    Descriptor line(::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+    if (!line.is_open())
+      throw std::runtime_error(
+          "cannot open " + device + ": " + text_of_error(errno) +
+          (errno == EACCES ? ". Add your user to the group of the device (see 'ls -l'), often dialout" : ""));
+    if (::flock(line.number(), LOCK_EX | LOCK_NB) != 0)
+      throw std::runtime_error("cannot open " + device + ": another program has it open");
+    make_raw(line, device, speed);
+    return line;
+  }
+
+  std::size_t lose(int error) override {
+    line_ = Descriptor();
+    throw LinkLost("is lost: " + place() + " is unplugged, or its other end is closed (" + text_of_error(error) + ")");
+  }
+
+  speed_t speed_;
+};
+
+// Open for good: who is at its other end is not seen.
 class PtyLink final : public SerialLink {
  public:
   // `other_end` stays open, so that bytes are kept while the firmware opens and closes it.
@@ -89,6 +129,15 @@ class PtyLink final : public SerialLink {
     std::filesystem::create_symlink(name, symlink_, error);
     if (error) throw std::runtime_error("cannot make the symbolic link " + symlink_.string() + ": " + error.message());
   }
+  bool is_connectionless() const override { return true; }
+  bool connect() override { return true; }
+  // The kernel hands bytes over to the other end some time later, or when that is looked at.
+  std::size_t write(std::span<const std::uint8_t> bytes) override {
+    const std::size_t count = SerialLink::write(bytes);
+    pollfd other_end{other_end_.number(), POLLIN, 0};
+    ::poll(&other_end, 1, 0);
+    return count;
+  }
   PtyLink(const PtyLink&) = delete;
   PtyLink& operator=(const PtyLink&) = delete;
   ~PtyLink() override {
@@ -97,6 +146,11 @@ class PtyLink final : public SerialLink {
   }
 
  private:
+  std::size_t lose(int error) override {
+    if (error == EIO) return 0;  // its other end is not open
+    throw LinkLost("is lost: " + text_of_error(error));
+  }
+
   Descriptor other_end_;
   std::filesystem::path symlink_;
 };
@@ -104,11 +158,7 @@ class PtyLink final : public SerialLink {
 }  // namespace
 
 std::unique_ptr<Link> open_serial(const std::string& device, unsigned baud) {
-  const speed_t speed = speed_of(baud);
-  Descriptor line(::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  if (!line.is_open()) throw std::runtime_error("cannot open " + device + ": " + text_of_error(errno));
-  make_raw(line, device, speed);
-  return std::make_unique<SerialLink>(std::move(line), device);
+  return std::make_unique<DeviceLink>(device, speed_of(baud));
 }
 
 std::unique_ptr<Link> make_pty(const std::filesystem::path& symlink) {

@@ -4,7 +4,9 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "tools/bridges/common/descriptor.hpp"
 
@@ -20,6 +22,10 @@ std::string text_of(const sockaddr_in& endpoint) {
 const sockaddr* generic(const sockaddr_in& endpoint) { return reinterpret_cast<const sockaddr*>(&endpoint); }
 sockaddr* generic(sockaddr_in& endpoint) { return reinterpret_cast<sockaddr*>(&endpoint); }
 
+bool is_same(const sockaddr_in& a, const sockaddr_in& b) {
+  return a.sin_addr.s_addr == b.sin_addr.s_addr && a.sin_port == b.sin_port;
+}
+
 Descriptor bind_socket(int type, const std::string& address, std::uint16_t port) {
   const sockaddr_in endpoint = endpoint_of(address, port);
   Descriptor bound(::socket(AF_INET, type | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
@@ -30,7 +36,7 @@ Descriptor bind_socket(int type, const std::string& address, std::uint16_t port)
   if (is_bound) return bound;
   const int error = errno;
   throw std::runtime_error("cannot listen at " + text_of(endpoint) + ": " + text_of_error(error) +
-                           (error == EACCES ? ". Ports below 1024 may be reserved to root: choose another port" : ""));
+                           (error == EACCES ? ". Ports below 1024 may be reserved for root: choose another port" : ""));
 }
 
 std::string place_of(const Descriptor& bound) {
@@ -101,29 +107,39 @@ class UdpLink final : public Link {
     sockaddr_in from{};
     socklen_t size = sizeof from;
     const ssize_t count = ::recvfrom(socket_.number(), bytes.data(), bytes.size(), 0, generic(from), &size);
-    // An earlier datagram found nobody: its receiver may come yet.
+    // An earlier datagram had no receiver, which may appear later.
     if (count <= 0) return 0;
-    const bool is_peer = peer_ && from.sin_addr.s_addr == peer_->sin_addr.s_addr && from.sin_port == peer_->sin_port;
-    if (is_fixed_ && !is_peer) return 0;
+    if (peer_ && is_same(from, *peer_)) return static_cast<std::size_t>(count);
+    // Two that speak at once would take turns otherwise.
+    if (is_fixed_ || std::ranges::any_of(replaced_, [&](const auto& other) { return is_same(from, other); })) return 0;
+    if (peer_) replaced_.push_back(*peer_);
+    if (replaced_.size() > most_replaced) replaced_.erase(replaced_.begin());
     peer_ = from;
     return static_cast<std::size_t>(count);
   }
 
   std::size_t write(std::span<const std::uint8_t> bytes) override {
-    if (!peer_) return bytes.size();  // nobody to send to
+    if (!peer_) return bytes.size();  // no receiver
     const ssize_t count = ::sendto(socket_.number(), bytes.data(), bytes.size(), 0, generic(*peer_), sizeof *peer_);
     if (count < 0 && is_for_later(errno)) return 0;
-    return bytes.size();  // what nobody takes is lost, as datagrams are
+    return bytes.size();  // datagrams without a receiver are lost
   }
 
   void hang_up() override {
-    if (!is_fixed_) peer_.reset();
+    if (is_fixed_) return;
+    peer_.reset();
+    if (replaced_.empty()) return;
+    peer_ = replaced_.back();
+    replaced_.pop_back();
   }
 
  private:
+  static constexpr std::size_t most_replaced = 16;
+
   Descriptor socket_;
   std::optional<sockaddr_in> peer_;
   bool is_fixed_;
+  std::vector<sockaddr_in> replaced_;  // by one that spoke later, the last one at the end
 };
 
 }  // namespace

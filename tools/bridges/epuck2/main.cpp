@@ -16,27 +16,29 @@ int main(int argc, char** argv) {
   epuck2::Packets packets = epuck2::Packets::both;
 
   bridges::BridgeProgram program("cohort-epuck2-bridge", "program",
-                                 "Programs for the WiFi of an e-puck2 drive robots of a simulation.");
+                                 "Connects programs for the WiFi of an e-puck2 to robots of a simulation.");
   CLI::App& app = program.app();
   app.add_option("--listen", addresses,
-                 "Where programs connect: an IPv4 address of this machine, or one for each robot, separated by commas")
+                 "IPv4 address of this machine at which programs connect, or one for each robot, separated by commas")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("ADDRESS[,ADDRESS...]")
       ->capture_default_str();
   app.add_option("--port", first_port,
-                 "Of the first robot; with one address the others' count upwards. 0: any that are free")
+                 "Port of the first robot; with one address, the ports of the next robots follow it. 0: any free ports")
       ->type_name("N")
       ->capture_default_str();
+  program.offer_to_run_programs();
   program.add_choice<bridges::Silence>(
       "--without-program", program.patience().silence,
       {{"wait", bridges::Silence::wait}, {"stand", bridges::Silence::stand}},
-      "When a program has left: time stands still until another one commands (wait, the default), or its robot stops "
-      "and the run goes on (stand)");
+      "When a program has disconnected: simulated time stops until another one commands (wait, the default), or the "
+      "robot stops and the run continues (stand)");
   program.add_choice<epuck2::Packets>(
       "--packets", packets, {{"both", epuck2::Packets::both}, {"in-turn", epuck2::Packets::in_turn}},
-      "The answer where image and sensors are asked for: both (the default), or one of them by turns, for programs "
+      "Answer to a request for image and sensors: both (the default), or one of them in turn, for programs "
       "that read a single packet after each command");
+  program.add_serial().excludes(app.get_option("--listen"))->excludes(app.get_option("--port"));
   app.footer("Example: cohort serve worlds/experiments/epuck2.yaml & cohort-epuck2-bridge --robots 0..3");
 
   return program.run(
@@ -46,7 +48,7 @@ int main(int argc, char** argv) {
         if (!counts_ports && addresses.size() != robots)
           throw bridges::UsageError("--listen expects one address, or one for each robot");
         const std::size_t port = counts_ports && first_port != 0 ? first_port + robot : first_port;
-        if (port > 65535) throw bridges::UsageError("there are no ports beyond 65535");
+        if (port > 65535) throw bridges::UsageError("--port: the port of the last robot exceeds 65535");
         return "tcp:" + addresses[counts_ports ? 0 : robot] + ":" + std::to_string(port);
       });
 }

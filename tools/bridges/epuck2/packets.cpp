@@ -57,7 +57,7 @@ std::optional<std::string> mistake_of(std::span<const std::uint8_t> begun) {
     return "a command begins with " + hexadecimal(command_id) + ", not with " + hexadecimal(begun[0]);
   }
   if (begun.size() > 1 && (begun[1] & ~known_requests) != 0) {
-    return "request " + hexadecimal(begun[1]) + ": there are but image (1) and sensors (2)";
+    return "request " + hexadecimal(begun[1]) + ": expected image (1), sensors (2) or both (3)";
   }
   return std::nullopt;
 }

@@ -15,7 +15,8 @@ inline constexpr std::size_t command_size = 21;
 inline constexpr std::size_t sensors_size = 104;
 inline constexpr int image_width = 160;
 inline constexpr int image_height = 120;
-inline constexpr std::uint8_t greatest_brightness = 100;  // of a colour of an RGB LED; above, it is left as it is
+inline constexpr std::uint8_t greatest_brightness =
+    100;  // for each colour of an RGB LED; larger values leave it unchanged
 
 /// A command, as it is written.
 struct Command {
@@ -33,12 +34,12 @@ struct Command {
   std::uint8_t sound = 0;
 };
 
-/// What is wrong with the first bytes of a command, which may not all have come yet; nothing if a robot would take it.
+/// Returns the error in the first bytes of a command, which may be incomplete; nothing if a robot would accept it.
 std::optional<std::string> mistake_of(std::span<const std::uint8_t> begun);
 /// Decodes the `command_size` bytes of a command.
 Command decode(std::span<const std::uint8_t> bytes);
 
-/// What the sensors packet says, in its own units.
+/// Contents of the sensors packet, in its own units.
 struct Sensors {
   std::array<std::int16_t, 3> acceleration{};  ///< x to the right, y forward, z up; 768 is 1 g
   float acceleration_size = 0.0F;
@@ -61,7 +62,7 @@ struct Sensors {
   std::uint8_t button = 0;
 };
 
-/// What a robot sends: an id of one byte, then what belongs to it.
+/// Packets of a robot: an id of one byte, then its payload.
 std::vector<std::uint8_t> sensors_packet(const Sensors& sensors);
 /// All black: nothing is rendered.
 std::vector<std::uint8_t> image_packet();

@@ -33,7 +33,7 @@ Integer counts(double value) {
       std::lround(std::clamp<double>(value, std::numeric_limits<Integer>::min(), std::numeric_limits<Integer>::max())));
 }
 
-// What a sensor counts of a wall at a distance [m], as in Enki's model of the e-puck.
+// Returns a sensor's count for a wall at a distance [m], as in Enki's model of the e-puck.
 double reflected(double distance) {
   const double cm = 100.0 * distance;
   return cm < 0.5 ? 2965.98144 - 440.0 * cm : 4526.0 * std::exp(-0.9994 * cm);
@@ -89,8 +89,9 @@ void Robot::start(const DrivenRobot& robot) {
 bool Robot::exchange(bridges::Conversation& program, const Observation& observation) {
   if (owes_an_answer_) answer(program, observation);
   owes_an_answer_ = false;
-  // Time stands still until a program has driven the robot for the first time.
-  const auto received = program.receive(command_framing, driven_ ? patience_ : bridges::Patience{});
+  // Time stands still until a program has driven the robot for the first time, unless the bridge has started it.
+  const bool is_under_way = driven_ || program.has_started_program();
+  const auto received = program.receive(command_framing, is_under_way ? patience_ : bridges::Patience{});
   if (!received) return false;
   driven_ = true;
   owes_an_answer_ = true;

@@ -8,7 +8,7 @@
 
 namespace cohort::epuck2 {
 
-/// What answers a command that asks for image and sensors.
+/// The answer to a command that requests image and sensors.
 enum class Packets {
   both,     ///< the image, then the sensors, as the robot sends them
   in_turn,  ///< one of them, by turns, for programs that read a single packet after each command

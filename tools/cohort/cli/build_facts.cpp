@@ -13,7 +13,9 @@ namespace {
 
 std::string mathematics() {
   const std::vector<std::string> foreign = functions_not_portable();
-  return foreign.empty() ? "portable" : fmt::format("not portable, the C library's: {}", fmt::join(foreign, ", "));
+  return foreign.empty()
+             ? "portable"
+             : fmt::format("functions taken from the C library, not portable: {}", fmt::join(foreign, ", "));
 }
 
 }  // namespace

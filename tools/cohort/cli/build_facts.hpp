@@ -4,8 +4,8 @@
 
 namespace cohort::tool {
 
-/// What `cohort --version` prints: the version, then what this program was built from, by, with and for, and whether
-/// its mathematics is portable (client_sdk/math) as it runs here.
+/// Returns the text of `cohort --version`: the version, the source commit, compiler, libraries and target of the build,
+/// and whether its mathematics (client_sdk/math) is portable at run time.
 std::string version_text();
 
 }  // namespace cohort::tool

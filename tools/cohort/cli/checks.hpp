@@ -7,7 +7,7 @@
 
 namespace cohort::tool {
 
-/// Tells what was expected in place of an option's value; nothing if the value is right.
+/// A check of an option's value. Returns what was expected; empty if the value is valid.
 using Check = std::function<std::string(const std::string& value)>;
 
 inline constexpr double most_seconds = 9e9;  ///< fits into nanoseconds

@@ -38,21 +38,25 @@ std::vector<std::string> commands_of(const CLI::App& app) {
 
 std::string unexpected(const CLI::App& app) {
   const std::vector<std::string> extras = app.remaining(true);
+  const CLI::App& command = command_of(app);
+  const std::vector<std::string> commands = commands_of(command);
+  // An unknown command's options are unknown too.
+  const bool is_of_command = command.get_subcommands().empty() && !commands.empty() && !extras.empty();
+  if (is_of_command && !extras.front().starts_with('-'))
+    return fmt::format("there is no command '{}'{}", extras.front(), suggestion(extras.front(), commands));
   const auto option =
       std::find_if(extras.begin(), extras.end(), [](const auto& text) { return text.starts_with('-'); });
   if (option != extras.end()) {
     const std::string name = option->substr(0, option->find('='));
-    return fmt::format("there is no option '{}'{}", name, suggestion(name, options_of(command_of(app))));
+    return fmt::format("there is no option '{}'{}", name, suggestion(name, options_of(command)));
   }
-  const CLI::App& command = command_of(app);
-  const std::vector<std::string> commands = commands_of(command);
   if (extras.empty()) return fmt::format("expected a command; known: {}", fmt::join(commands, ", "));
   if (!commands.empty())
     return fmt::format("there is no command '{}'{}", extras.front(), suggestion(extras.front(), commands));
   return fmt::format("unexpected '{}'", extras.front());
 }
 
-// The variable that an option's value came from, if the message is about one.
+// Returns the environment variable that an option's value came from, if the message is about such an option.
 std::string origin(const CLI::App& command, const std::string& message) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_envname().empty() || !message.starts_with(option->get_name() + ":")) continue;
@@ -77,7 +81,7 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   return fmt::format("{} Try 'cohort {}--help'", message, &command == &app ? "" : command.get_name() + " ");
 }
 
-// CLI11 knows mistakes by its own errors only.
+// CLI11 reports only errors of its own types.
 template <class Value>
 std::function<void(const Value&)> with_errors_of_cli11(std::function<void(const Value&)> take) {
   return [take = std::move(take)](const Value& value) {

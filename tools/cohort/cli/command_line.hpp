@@ -12,80 +12,80 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// What of CLI11 the commands use, under CLI11's names, without its header, which takes seconds to compile.
+/// The part of CLI11 that the commands use, under CLI11's names, without its header, which takes seconds to compile.
 namespace cohort::tool {
 
-/// A mistake in a command line, in one sentence.
+/// An error in a command line, described in one sentence.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// An option, an operand or a flag of a command line. Each call returns the same one.
+/// An option, an operand or a flag of a command line. Each member function returns the same option.
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
 
   Option required();
   Option check(Check check);
-  /// What stands for the value in help, such as FILE or above|side; empty for operands.
+  /// Sets the placeholder of the value in help, such as FILE or above|side; empty for operands.
   Option type_name(const std::string& name);
-  /// Variable of the environment that stands in for it.
+  /// Sets the environment variable from which the option takes its default.
   Option envname(const std::string& variable);
-  /// Help tells the value that the variable has now.
+  /// Shows the present value of the variable as the default in help.
   Option capture_default_str();
-  /// Each time that it is given it takes one value.
+  /// Makes each occurrence of the option take one value.
   Option one_value();
-  /// One value, with commas between its parts.
+  /// Makes the option take one value, of which commas separate the parts.
   Option comma_separated();
   /// Calls `take` for each value. It may throw UsageError.
   Option each(std::function<void(const std::string&)> take);
   Option needs(Option other);
   Option excludes(Option other);
-  /// In no help.
+  /// Hides the option from help.
   Option hide();
 
  private:
   CLI::Option* option_;
 };
 
-/// The command line of a program, or of a command of it; all copies are the same one. What its options fill in has to
-/// outlive it.
+/// The command line of a program, or of one of its commands. All copies refer to the same one. The variables that its
+/// options write must outlive it.
 class CommandLine {
  public:
   CommandLine(const std::string& text, const std::string& name);
 
-  /// `name`: such as `--seed`, `-o,--output`, or `FILE` for an operand. Values are strings, paths, numbers, optional
-  /// ones, and vectors of them: those that command_line.cpp lists.
+  /// Adds an option. `name` is, for example, `--seed`, `-o,--output`, or `FILE` for an operand. A value is a string, a
+  /// path, a number, an optional number, or a vector: command_line.cpp lists the types.
   template <class Value>
   Option add_option(const std::string& name, Value& value, const std::string& text = {});
-  /// The same, with what is done with the value, which may throw UsageError. Values are strings, doubles and
+  /// Adds an option whose value is passed to `take`, which may throw UsageError. A value is a string, a double or a
   /// std::uint64_t.
   template <class Value>
   Option add_option_function(const std::string& name, std::function<void(const Value&)> take, const std::string& text);
-  /// A `name` that ends in `{false}` makes it false.
+  /// Adds a flag. A `name` that ends in `{false}` sets `value` to false.
   Option add_flag(const std::string& name, bool& value, const std::string& text = {});
 
   CommandLine add_subcommand(const std::string& name, const std::string& text);
-  /// For options of which exactly one is required.
+  /// Adds a group of options of which exactly one is required.
   CommandLine add_alternatives(const std::string& name);
   void set_version(std::function<std::string()> version, const std::string& text);
   void set_help(const std::string& text);
   void footer(const std::string& text);
   void require_subcommand();
-  /// Subcommands take its options too.
+  /// Makes subcommands accept the options of this command too.
   void fallthrough();
-  /// Called when this command is parsed.
+  /// Sets a function that is called when this command is parsed.
   void callback(std::function<void()> parsed);
-  /// In no help.
+  /// Hides the command from help.
   void hide();
-  /// Whatever follows is for another program to understand, `--help` too.
+  /// Leaves all following arguments, including `--help`, to another program.
   void take_all();
 
-  /// False if help or the version was asked for, which is then printed. Throws UsageError with the nearest known name,
-  /// and which help to ask for.
+  /// Parses the command line. Returns false if help or the version was requested and has been printed. Throws
+  /// UsageError, which suggests the nearest known name and the help to read.
   bool parse(int argc, const char* const* argv);
-  /// Whether this command was asked for.
+  /// Returns whether this command was given on the command line.
   bool parsed() const;
 
   const CLI::App& app() const { return *app_; }
@@ -93,7 +93,7 @@ class CommandLine {
  private:
   explicit CommandLine(std::shared_ptr<CLI::App> app) : app_(std::move(app)) {}
 
-  std::shared_ptr<CLI::App> app_;  // of a subcommand: owns the whole program's
+  std::shared_ptr<CLI::App> app_;  // a subcommand's pointer owns the whole program's
 };
 
 }  // namespace cohort::tool

@@ -7,7 +7,7 @@
 namespace cohort::tool {
 namespace {
 
-// Of above|side both, of max|X the first, of N|A..B none.
+// Returns the fixed words of a placeholder: both for above|side, the first for max|X, none for N|A..B.
 std::vector<std::string> words_of(const std::string& text) {
   if (text.find('|') == std::string::npos) return {};
   std::vector<std::string> words = CLI::detail::split(text, '|');
@@ -50,7 +50,7 @@ void add_lines(const CLI::App& app, CommandTree& tree) {
     else
       tree.operands.push_back(operand_line(*option));
   }
-  // CLI11 has a group of options of which one is wanted as a command without a name.
+  // CLI11 represents a group of alternative options as a command without a name.
   for (const CLI::App* part : parts_of(app))
     if (part->get_name().empty()) add_lines(*part, tree);
 }

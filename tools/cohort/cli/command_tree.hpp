@@ -5,13 +5,13 @@
 
 #include "tools/cohort/cli/command_line.hpp"
 
-/// The command lines that a program understands, as CLI11 was told of them: for shells' completion and the manual page.
+/// The command lines that a program accepts, as declared to CLI11: for shell completion and the manual page.
 namespace cohort::tool {
 
-/// What stands for the value of an option or for an operand.
+/// The placeholder of an option's value or of an operand.
 struct Placeholder {
-  std::string text;                ///< such as FILE, N or above|side; empty: there is no value
-  std::vector<std::string> words;  ///< that may be written as they are: above, side
+  std::string text;                ///< such as FILE, N or above|side; empty: no value
+  std::vector<std::string> words;  ///< literal values, such as above and side
   bool is_file() const;
   bool is_folder() const;
 };
@@ -20,7 +20,7 @@ struct OptionLine {
   std::vector<std::string> names;  ///< with their dashes
   Placeholder value;
   std::string text;
-  std::string variable;  ///< of the environment, which stands in for it; empty: none
+  std::string variable;  ///< environment variable with its default; empty: none
 };
 
 struct OperandLine {
@@ -32,7 +32,7 @@ struct OperandLine {
 };
 
 struct CommandTree {
-  std::string path;  ///< with the commands that it is part of: cohort ctl step
+  std::string path;  ///< including its parent commands, such as cohort ctl step
   std::string name;
   std::string text;
   std::string footer;
@@ -41,10 +41,10 @@ struct CommandTree {
   std::vector<CommandTree> commands;
 };
 
-/// Without what CLI11 was told to hide.
+/// Returns the tree of a command line, without hidden commands and options.
 CommandTree command_tree(const CommandLine& line);
 
-/// The command itself, then those below it, each before its own.
+/// Returns the command and all its subcommands, in depth-first order.
 std::vector<const CommandTree*> all_commands(const CommandTree& root);
 
 }  // namespace cohort::tool

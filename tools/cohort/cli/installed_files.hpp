@@ -1,30 +1,35 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
-/// What lies in `../share/cohort` as seen from the folder of the running program, in a build tree as in an
-/// installation, whether it is there or not. Empty if the system does not tell where the program is.
+/// Paths in `../share/cohort`, relative to the folder of the running program, both in a build tree and in an
+/// installation. They need not exist. They are empty if the system does not report the program's path.
 namespace cohort::tool {
 
-/// The models that come with Cohort: `robots` and `objects` in `worlds`.
+/// Returns the folders of the models that are installed with Cohort: `robots` and `objects` in `worlds`.
 std::vector<std::filesystem::path> installed_model_folders();
 
-/// The experiments that come with Cohort, and all that they need: `worlds`.
+/// Returns `worlds`, the folder of the experiments that are installed with Cohort, and of all files that they need.
 std::filesystem::path installed_worlds_folder();
 
-/// Names of the experiments that come with Cohort, in alphabetical order.
+/// Returns the names of the experiments that are installed with Cohort, in alphabetical order.
 std::vector<std::string> installed_experiments();
-/// The file of what a person calls an experiment: the name of one that comes with Cohort, unless there is a file of
-/// this name; anything else as it is. Throws std::invalid_argument for a name that is neither.
+/// Returns the file of the model of this name that is installed with Cohort, or nothing.
+std::optional<std::filesystem::path> installed_model(const std::string& name);
+/// Returns the names of the robots that are installed with Cohort, in alphabetical order.
+std::vector<std::string> installed_robots();
+/// Returns the file of an experiment or a model that is installed with Cohort if `name` names one and no file has this
+/// name. Returns any other path unchanged. Throws std::invalid_argument for a plain name that is unknown.
 std::filesystem::path experiment_called(const std::filesystem::path& name);
 
-/// The file of what a person calls a model: the name of one that comes with Cohort, unless there is a file of this
-/// name; anything else as it is. Throws std::invalid_argument for a name that is neither.
+/// Returns the file of a model that is installed with Cohort if `name` names one and no file has this name. Returns any
+/// other path unchanged. Throws std::invalid_argument for a plain name that is neither.
 std::filesystem::path model_called(const std::filesystem::path& name);
 
-/// The built page of `cohort view`.
+/// Returns the folder of the built page of `cohort view`.
 std::filesystem::path installed_page_folder();
 
 }  // namespace cohort::tool

@@ -36,7 +36,7 @@ std::shared_ptr<spdlog::logger> make_logger(LogFormat format, const std::string&
   return logger;
 }
 
-// What follows time and level. Texts of files and controllers need not be UTF-8.
+// Returns the members of a JSON line after time and level. Texts of files and controllers need not be UTF-8.
 std::string json_members(const std::string& message, const LogFields& fields) {
   nlohmann::ordered_json object = {{"message", message}};
   for (const auto& [name, value] : fields) std::visit([&](const auto& held) { object[name] = held; }, value.get());
@@ -44,7 +44,7 @@ std::string json_members(const std::string& message, const LogFields& fields) {
   return text.substr(1, text.size() - 2);
 }
 
-// What a warning says, whatever it names.
+// Returns the text of a warning without the names in it, so that warnings of the same kind compare equal.
 std::string kind_of(const description::Problem& warning) {
   std::string kind = warning.file.string() + ":";
   bool is_named = false;
@@ -76,7 +76,7 @@ Log::Log(const LogOptions& options)
       rewrites_progress_(options.format == LogFormat::text && isatty(STDERR_FILENO) != 0),
       messages_(make_logger(options.format, "%^%n: %l:%$ %v")),
       lines_(make_logger(options.format, "%v")) {
-  messages_->set_level(to_spdlog(options.level));
+  messages_->set_level(spdlog::level::debug);  // `write` and `urgent_warning` have their own limits
   lines_->set_level(spdlog::level::debug);
 }
 
@@ -84,6 +84,10 @@ Log::~Log() { clear_progress(); }
 
 void Log::write(LogLevel level, const std::string& message, const LogFields& fields) {
   if (shows(level)) print(*messages_, level, message, fields);
+}
+
+void Log::urgent_warning(const std::string& message, const LogFields& fields) {
+  if (options_.level != LogLevel::off) print(*messages_, LogLevel::warning, message, fields);
 }
 
 void Log::problem(LogLevel level, const description::Problem& problem) {
@@ -111,7 +115,7 @@ void Log::warnings(const std::vector<description::Problem>& warnings) {
   for (const description::Problem& each : warnings) {
     std::size_t& count = counts[kind_of(each)];
     if (shows_all) count = 1;
-    if (count == 0) continue;  // its kind has been told
+    if (count == 0) continue;  // a warning of this kind has been printed
     description::Problem first = each;
     if (count > 1) first.message += " (and " + std::to_string(count - 1) + " more like this: --verbose)";
     problem(LogLevel::warning, first);

@@ -24,19 +24,19 @@ namespace cohort::tool {
 enum class LogFormat { text, json };
 enum class LogLevel { debug, info, warning, error, off };
 
-/// What it says, in words for people also if memory is what lacks.
+/// Returns the message of an exception; for std::bad_alloc, a readable one.
 std::string text_of(const std::exception& error);
 
-/// The level of what a client tells.
+/// Returns the level for a client's message of this severity.
 LogLevel level_of(Severity severity);
 
 struct LogOptions {
   LogFormat format = LogFormat::text;
-  LogLevel level = LogLevel::warning;  ///< the least that is printed
+  LogLevel level = LogLevel::warning;  ///< least severe level that is printed
   bool progress = true;                ///< print progress and notices, which have no level
 };
 
-/// A value of a field: a number, a text, or texts.
+/// The value of a field: a number, a text, or several texts.
 class LogValue {
  public:
   LogValue(std::integral auto value) : value_(std::int64_t{value}) {}
@@ -52,11 +52,11 @@ class LogValue {
   std::variant<std::int64_t, std::uint64_t, double, std::string, std::vector<std::string>> value_;
 };
 
-/// What a message is about, for machines: printed in JSON only.
+/// Machine-readable fields of a message, printed in JSON only.
 using LogFields = std::vector<std::pair<std::string, LogValue>>;
 
-/// All that a command has to say on standard error: as text for people, or as JSON, an object on each line with `time`,
-/// `level`, `message` and fields. Any thread may call it; a line is never torn apart.
+/// The messages of a command on standard error: as text, or as JSON with one object per line, which has `time`,
+/// `level`, `message` and fields. Any thread may call it; lines are written whole.
 class Log {
  public:
   explicit Log(const LogOptions& options);
@@ -71,21 +71,24 @@ class Log {
   void warning(const std::string& message, const LogFields& fields = {}) { write(LogLevel::warning, message, fields); }
   void error(const std::string& message, const LogFields& fields = {}) { write(LogLevel::error, message, fields); }
 
-  /// In text as compilers do, so that editors find the place: `FILE:LINE: ELEMENT: MESSAGE`.
+  /// Prints a warning also with --quiet, for when the program would seem to do nothing.
+  void urgent_warning(const std::string& message, const LogFields& fields = {});
+
+  /// Prints a problem. Text has the format of compilers, so that editors find the place: `FILE:LINE: ELEMENT: MESSAGE`.
   void problem(LogLevel level, const description::Problem& problem);
   void problems(const description::InputError& error);
-  /// Warnings of a file: the first of each kind, with how many more there are; in JSON and at the level `info` all of
-  /// them.
+  /// Prints the warnings of a file: the first of each kind, with the number of the others. In JSON and at the level
+  /// `info`, prints all of them.
   void warnings(const std::vector<description::Problem>& warnings);
 
-  /// What people wait for, such as that the server is there. In text without a prefix.
+  /// Prints a message that users wait for, such as that the server is ready. Text has no prefix.
   void notice(const std::string& message, const LogFields& fields = {});
-  /// The same, and the next one takes its place if `rewrites_progress`.
+  /// Prints a notice that the next one overwrites if `rewrites_progress`.
   void progress(const std::string& message, const LogFields& fields = {});
   bool rewrites_progress() const { return rewrites_progress_; }
-  /// What another program printed, line by line: as it is if it is one of our lines.
+  /// Prints a line of another program's output, unchanged if it already has the format of this log.
   void echo(const std::string& line, const LogFields& fields);
-  /// Before something else is printed to the terminal.
+  /// Clears the progress line before other output to the terminal.
   void clear_progress();
 
  private:
@@ -97,7 +100,7 @@ class Log {
   std::mutex mutex_;
   bool progress_line_open_ = false;
   std::shared_ptr<spdlog::logger> messages_;
-  std::shared_ptr<spdlog::logger> lines_;  // in text without a prefix
+  std::shared_ptr<spdlog::logger> lines_;  // logger of lines without a prefix in text
 };
 
 }  // namespace cohort::tool

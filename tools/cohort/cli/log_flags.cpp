@@ -31,14 +31,14 @@ LogLevel level_from_environment() {
     if (name == text) return level;
     names.push_back(name);
   }
-  throw UsageError("COHORT_LOG is '" + text + "'" + suggestion(text, names));
+  throw UsageError("COHORT_LOG: invalid level '" + text + "'" + suggestion(text, names));
 }
 
 LogFormat log_format(std::string text) {
   if (text.empty()) text = environment("COHORT_LOG_FORMAT");
   if (text.empty() || text == "text") return LogFormat::text;
   if (text == "json") return LogFormat::json;
-  throw UsageError("COHORT_LOG_FORMAT is '" + text + "'" + suggestion(text, log_formats));
+  throw UsageError("COHORT_LOG_FORMAT: invalid format '" + text + "'" + suggestion(text, log_formats));
 }
 
 }  // namespace
@@ -47,14 +47,14 @@ void add_log_flags(CommandLine line, LogFlags& flags) {
   line.add_option("--log-format", flags.format, "Messages as text or as json (default: $COHORT_LOG_FORMAT, or text)")
       .check(one_of(log_formats))
       .type_name("text|json");
-  line.add_flag("--verbose", flags.verbose, "Say what happens, not only what goes wrong; $COHORT_LOG has more levels");
+  line.add_flag("--verbose", flags.verbose, "Print informational messages too; $COHORT_LOG selects other levels");
 }
 
 LogOptions log_options(const LogFlags& flags) {
   LogOptions options;
   options.format = log_format(flags.format);
   options.level = level_from_environment();
-  if (flags.verbose && flags.quiet) throw UsageError("choose one of --verbose and --quiet");
+  if (flags.verbose && flags.quiet) throw UsageError("'--verbose' cannot be used with '--quiet'");
   if (flags.verbose) options.level = std::min(options.level, LogLevel::info);
   if (flags.quiet) options.level = std::max(options.level, LogLevel::error);
   options.progress = !flags.quiet && options.level != LogLevel::off;

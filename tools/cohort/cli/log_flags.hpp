@@ -7,20 +7,21 @@
 
 namespace cohort::tool {
 
-/// What the command line says of messages.
+/// Options of the command line for messages.
 struct LogFlags {
   std::string format{};
   bool verbose = false;
   bool quiet = false;
 };
 
-/// Format and verbosity. `flags` must outlive the command line.
+/// Adds the options for format and verbosity. `flags` must outlive the command line.
 void add_log_flags(CommandLine line, LogFlags& flags);
 
-/// Where the flags say nothing, $COHORT_LOG and $COHORT_LOG_FORMAT do. Throws UsageError.
+/// Returns the options that the flags select; by default, those of $COHORT_LOG and $COHORT_LOG_FORMAT. Throws
+/// UsageError.
 LogOptions log_options(const LogFlags& flags);
 
-/// The format that is asked for by a command line that cannot be read, and so does not say it as such.
+/// Returns the message format that a command line selects, even if it cannot be parsed.
 LogFormat format_of_unreadable(int argc, const char* const* argv);
 
 }  // namespace cohort::tool

@@ -21,7 +21,7 @@ namespace {
 void check_writable(std::string_view what, const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) refuse(what, file, EISDIR);
-  if (std::filesystem::exists(file, ignored)) {  // not opened: it may be a pipe, and someone reads from it
+  if (std::filesystem::exists(file, ignored)) {  // not opened: it may be a pipe with a reader
     if (access(file.c_str(), W_OK) != 0) refuse(what, file, errno);
     return;
   }

@@ -6,10 +6,10 @@
 
 #include "client_sdk/text/printable.hpp"
 
-/// What people and programs are given to read: UTF-8, and nothing that a terminal obeys, whatever is in it.
+/// Output for users and programs: valid UTF-8 without terminal control sequences, even if the input is not.
 namespace cohort::tool {
 
-/// Returns JSON of nlohmann's library as text; what is not UTF-8 in it is replaced.
+/// Returns a JSON value of nlohmann's library as text, with invalid UTF-8 replaced.
 template <class Json>
 std::string json_text(const Json& json, int indent = -1) {
   return printable(json.dump(indent, ' ', false, Json::error_handler_t::replace), std::string::npos, Lines::kept);

@@ -11,6 +11,7 @@
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
+#include "tools/cohort/models/robot_sheet.hpp"
 #include "tools/cohort/running/controller_ends.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
 
@@ -23,15 +24,17 @@ void print_world(const description::World& world) {
             << std::chrono::duration<double, std::milli>(world.step).count() << " ms\n";
 }
 
-int check(const std::filesystem::path& file, parsing::Xacro xacro, bool loads_controllers, Log& log) {
+int check(const std::filesystem::path& named, parsing::Xacro xacro, bool loads_controllers, Log& log) {
+  const std::filesystem::path file = experiment_called(named);
   try {
     if (parsing::kind_of_file(file) == parsing::FileKind::sdf) {
       description::Experiment experiment;
       experiment.file = file;
       experiment.world = parsing::read_world_or_model(file, experiment.seed, installed_model_folders(), xacro);
       log.warnings(experiment.world.warnings);
-      const Simulation built(experiment, 1);  // some mistakes only show when physics takes the world
+      const Simulation built(experiment, 1);  // some errors appear only when the physics is built
       print_world(experiment.world);
+      if (parsing::holds_lone_model(file)) show(robot_sheet(file, named.string(), xacro));
     } else {
       const description::Experiment experiment = parsing::read_experiment(file, {}, {}, installed_model_folders());
       log.warnings(experiment.world.warnings);
@@ -47,7 +50,8 @@ int check(const std::filesystem::path& file, parsing::Xacro xacro, bool loads_co
         show("team " + team.name + ": " + counted(team.robots.size(), "robot") + ", controller " + team.controller +
              "\n");
       if (!loads_controllers && !experiment.teams.empty())
-        std::cout << "controllers were not loaded: --load-controllers also checks parameters and channels\n";
+        std::cout << "controllers were not loaded; '--load-controllers' also checks parameters and channels\n";
+      if (const auto model = installed_model(named.string())) show(robot_sheet(*model, named.string(), xacro));
     }
     std::cout << file.string() << ": no mistakes found\n";
     return exit_ok;
@@ -68,11 +72,14 @@ Subcommand add_check(CommandLine app) {
     bool runs_xacro = false;
   };
   const auto command = std::make_shared<CheckCommand>();
-  CommandLine line = app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
-  line.add_option("FILE", command->file, "Experiment (.yaml) or world (.sdf)").required().type_name("");
+  CommandLine line =
+      app.add_subcommand("check", "Check a world, a model or an experiment for errors without running it");
+  line.add_option("FILE", command->file, "Experiment (.yaml), world or model, or the name of an example or a robot")
+      .required()
+      .type_name("");
   add_reading_options(line, command->runs_xacro);
   line.add_flag("--load-controllers", command->loads_controllers,
-                "Also load the plugins of controllers and start them on trial, which runs their code");
+                "Also load the controllers' plugins and start the controllers, which executes their code");
   line.footer("Example: cohort check worlds/arenas/obstacles.sdf");
   return {line, [command](Log& log, const std::atomic<bool>&) {
             return check(command->file, xacro_of(command->runs_xacro), command->loads_controllers, log);

@@ -9,14 +9,14 @@
 #include "tools/cohort/cli/log.hpp"
 #include "tools/cohort/cli/log_flags.hpp"
 
-/// The commands of `cohort`, one file each. What no run needs and takes long to build is in a program of its own beside
-/// it, `cohort-whole`, which has all commands: what follows as `in_whole` is found there, and `cohort` starts it.
+/// The commands of `cohort`, one file each. Commands that no run needs and that take long to build are in a second
+/// program, `cohort-whole`, which has all commands. `in_whole` lists them; `cohort` starts that program for them.
 namespace cohort::tool {
 
-/// A command: its part of the command line, and what it does once that is parsed.
+/// A command: its part of the command line, and the function that executes it.
 struct Subcommand {
   CommandLine line;
-  /// Returns the process's exit code. What it throws is a mistake of the user, and ends the process with exit_usage.
+  /// Returns the process's exit code. An exception is a user's error and ends the process with exit_usage.
   std::function<int(Log& log, const std::atomic<bool>& stop)> run;
 };
 
@@ -27,16 +27,19 @@ struct InWhole {
 };
 namespace in_whole {
 inline constexpr InWhole view = {"view", "Show a recording or a running server in a browser"};
-inline constexpr InWhole completion = {"completion", "Print a script that completes command lines in a shell"};
-inline constexpr InWhole man_page = {"man-page", "Print the manual page, which tells what all of --help tell"};
-inline constexpr InWhole bench = {"bench", "Measure Cohort and other physics engines on the same scenes"};
+inline constexpr InWhole completion = {"completion", "Print a shell's completion script"};
+inline constexpr InWhole man_page = {"man-page", "Print the manual page, which contains the help of all commands"};
+inline constexpr InWhole bench = {"bench",
+                                  "Compare the performance of Cohort and other physics engines on the same scenes"};
 }  // namespace in_whole
 
-/// Each adds its command to `app`. Those that take the flags of messages have options that follow them in help.
+/// Each function adds its command to `app`. The functions that take `flags` show the message options after their own in
+/// help.
 Subcommand add_run(CommandLine app, LogFlags& flags);
 Subcommand add_serve(CommandLine app, LogFlags& flags);
 Subcommand add_host(CommandLine app, LogFlags& flags);
 Subcommand add_teleop(CommandLine app);
+Subcommand add_exec(CommandLine app);
 Subcommand add_ctl(CommandLine app);
 Subcommand add_record(CommandLine app);
 Subcommand add_view(CommandLine app);

@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "server/core/processors.hpp"
+#include "server/description/experiment.hpp"
 #include "server/recording/difference.hpp"
 #include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/cli/terminal/replay_progress.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/refuse_experiment.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -30,18 +33,77 @@ std::string line_of(const recording::QuantityDifference& difference) {
                      difference.object.empty() ? "the world" : difference.object, difference.detail, values);
 }
 
+// A setting of the runs that differs, and what it is in each.
+struct DifferingSetting {
+  std::string name;
+  std::string first;
+  std::string second;
+};
+
+using Settings = std::map<std::string, std::string>;
+
+std::string joined_text(const std::vector<std::string>& values) { return fmt::format("{}", fmt::join(values, ", ")); }
+
+Settings settings_of(const recording::Recording& recording) {
+  Settings settings;
+  for (const char* const name : {"experiment", "world", "robots", "version", "commit", "arithmetic"})
+    if (const auto fact = recording.facts().find(name); fact != recording.facts().end()) settings[name] = fact->second;
+  const recording::Recording::World& world = recording.worlds().front();
+  const auto seconds_text = [](std::chrono::nanoseconds time) { return fmt::format("{} s", Seconds(time).count()); };
+  settings["seed"] = std::to_string(world.begins.seed);
+  settings["duration"] = seconds_text(std::chrono::nanoseconds(world.begins.duration_ns));
+  const description::Experiment experiment = recording.experiment(world);
+  settings["step"] = seconds_text(experiment.world.step);
+  for (const description::Team& team : experiment.teams) {
+    settings["controller of team '" + team.name + "'"] = std::filesystem::path(team.controller).filename().string();
+    for (const description::Parameter& each : team.parameters)
+      settings["parameter '" + each.name + "' of team '" + team.name + "'"] = joined_text(each.values);
+  }
+  return settings;
+}
+
+// Returns what differs, the seed first.
+std::vector<DifferingSetting> differing_settings(const recording::Recording& first,
+                                                 const recording::Recording& second) {
+  const Settings of_first = settings_of(first);
+  const Settings of_second = settings_of(second);
+  Settings all = of_first;
+  all.insert(of_second.begin(), of_second.end());
+  const auto value = [](const Settings& settings, const std::string& name) {
+    const auto found = settings.find(name);
+    return found == settings.end() ? std::string("none") : found->second;
+  };
+  std::vector<DifferingSetting> differing;
+  for (const auto& [name, ignored] : all) {
+    DifferingSetting each{name, value(of_first, name), value(of_second, name)};
+    if (each.first != each.second) differing.insert(name == "seed" ? differing.begin() : differing.end(), each);
+  }
+  return differing;
+}
+
+void print_settings(const std::vector<DifferingSetting>& settings) {
+  if (settings.empty()) return;
+  fmt::print("the runs have different settings:\n");
+  for (const DifferingSetting& each : settings)
+    show(fmt::format("  {}: {} | {}\n", each.name, each.first, each.second));
+}
+
 void print_text(const recording::Comparison& found) {
   if (!found.parting && found.ends.empty()) return fmt::print("identical, {}\n", counted(found.boundaries, "tick"));
   if (!found.parting)
-    return show(fmt::format("{}; until then they are identical, {}\n", found.ends, counted(found.boundaries, "tick")));
-  fmt::print("they part at tick {} ({:.3f} s), after {}\n", found.parting->tick,
+    return show(fmt::format("{}; until then, they are identical, {}\n", found.ends, counted(found.boundaries, "tick")));
+  fmt::print("they diverge at tick {} ({:.3f} s), after {}\n", found.parting->tick,
              Seconds(found.parting->log_time).count(), counted(found.boundaries, "identical tick"));
   for (const auto& difference : found.parting->differences) show(line_of(difference) + "\n");
   if (found.parting->more > 0) fmt::print("  and {} more\n", found.parting->more);
 }
 
-void print_json(const recording::Comparison& found) {
-  nlohmann::ordered_json json = {{"identical_ticks", found.boundaries},
+void print_json(const std::vector<DifferingSetting>& settings, const recording::Comparison& found) {
+  nlohmann::ordered_json differing = nlohmann::ordered_json::array();
+  for (const DifferingSetting& each : settings)
+    differing.push_back({{"setting", each.name}, {"first", each.first}, {"second", each.second}});
+  nlohmann::ordered_json json = {{"settings", differing},
+                                 {"identical_ticks", found.boundaries},
                                  {"identical", !found.parting && found.ends.empty()}};
   if (!found.ends.empty()) json["ends"] = found.ends;
   if (found.parting) {
@@ -61,15 +123,14 @@ void print_json(const recording::Comparison& found) {
 }
 
 int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop) {
+  for (const std::filesystem::path& file : {command.first, command.second}) refuse_experiment(file);
   const recording::Recording first(command.first);
   const recording::Recording second(command.second);
   for (const recording::Recording* each : {&first, &second})
     if (!each->damage().empty()) log.warning(each->damage());
-  const std::uint64_t first_seed = first.worlds().front().begins.seed;
-  const std::uint64_t second_seed = second.worlds().front().begins.seed;
-  if (first_seed != second_seed)
-    log.warning(fmt::format("their seeds are {} and {}, so they part where the first random number is used", first_seed,
-                            second_seed));
+  const std::vector<DifferingSetting> settings = differing_settings(first, second);
+  if (!command.json) print_settings(settings);
+  std::fflush(stdout);
   ReplayProgress progress(log);
   const recording::Comparison found =
       recording::compare(first, second, available_processors(), [&](std::chrono::nanoseconds log_time) {
@@ -79,7 +140,7 @@ int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop) {
   log.clear_progress();
   if (stop) return exit_interrupted;
   if (command.json)
-    print_json(found);
+    print_json(settings, found);
   else
     print_text(found);
   return found.parting || !found.ends.empty() ? exit_failed : exit_ok;
@@ -89,10 +150,10 @@ int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop) {
 
 Subcommand add_diff(CommandLine app) {
   const auto command = std::make_shared<DiffCommand>();
-  CommandLine line = app.add_subcommand("diff", "Find where two recorded runs part, and in what");
+  CommandLine line = app.add_subcommand("diff", "Find the tick at which two recorded runs diverge, and what differs");
   line.add_option("FIRST", command->first, "Recording (MCAP)").required().type_name("");
   line.add_option("SECOND", command->second, "Another one").required().type_name("");
-  line.add_flag("--json", command->json, "Print it as JSON");
+  line.add_flag("--json", command->json, "Print the result as JSON");
   line.footer("Example: cohort diff monday.mcap tuesday.mcap");
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return diff(*command, log, stop); }};
 }

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What the comment at its beginning says first, in a line.
+// Returns the first sentence of the comment at the beginning of the file.
 std::string first_sentence(const fs::path& file) {
   std::ifstream stream(file);
   std::string text;
@@ -31,14 +31,13 @@ int list() {
     const fs::path file = installed_worlds_folder() / "experiments" / (name + ".yaml");
     std::printf("%-24s %s\n", name.c_str(), first_sentence(file).c_str());
   }
-  std::printf(
-      "\n'cohort run NAME' runs one; 'cohort examples --copy DIR' copies them, with their arenas and robots.\n");
+  std::printf("\n'cohort run NAME' runs one; 'cohort examples --copy DIR' copies all, with their arenas and robots.\n");
   return exit_ok;
 }
 
 int copy_to(const fs::path& folder) {
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
-    throw std::invalid_argument("'" + folder.string() + "' is there already: name a new folder, or an empty one");
+    throw std::invalid_argument("'" + folder.string() + "' exists: give a new folder, or an empty one");
   fs::create_directories(folder);
   fs::copy(installed_worlds_folder(), folder, fs::copy_options::recursive);
   std::printf("cohort run %s\n", (folder / "experiments/obstacle_avoidance.yaml").c_str());
@@ -50,7 +49,8 @@ int copy_to(const fs::path& folder) {
 Subcommand add_examples(CommandLine app) {
   const auto folder = std::make_shared<fs::path>();
   CommandLine line = app.add_subcommand("examples", "List the experiments that come with Cohort, or copy them");
-  line.add_option("--copy", *folder, "Copy them to this folder, with all that they need").type_name("DIR");
+  line.add_option("--copy", *folder, "Copy the examples, with all files that they need, to this folder")
+      .type_name("DIR");
   line.footer("Example: cohort examples --copy worlds");
   return {line, [folder](Log&, const std::atomic<bool>&) { return folder->empty() ? list() : copy_to(*folder); }};
 }

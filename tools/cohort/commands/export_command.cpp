@@ -16,7 +16,7 @@ namespace {
 struct ExportCommand {
   std::filesystem::path file;
   std::filesystem::path output;         ///< .sdf or .yaml
-  std::optional<std::uint64_t> seed{};  ///< of the populations; none: the experiment's, or 1
+  std::optional<std::uint64_t> seed{};  ///< seed of populations; none: the experiment's, or 1
   bool runs_xacro = false;
 };
 
@@ -30,7 +30,7 @@ description::World read(const ExportCommand& command) {
 int export_world(const ExportCommand& command, Log& log) {
   const bool as_yaml = parsing::is_yaml(command.output);
   if (!as_yaml && command.output.extension() != ".sdf") {
-    log.error("a world is written as .sdf or .yaml, not as '" + command.output.extension().string() + "'");
+    log.error("expected a file name that ends in .sdf or .yaml, not '" + command.output.extension().string() + "'");
     return exit_usage;
   }
   check_writable("the world", command.output);
@@ -45,10 +45,10 @@ int export_world(const ExportCommand& command, Log& log) {
 
 Subcommand add_export(CommandLine app) {
   const auto command = std::make_shared<ExportCommand>();
-  CommandLine line = app.add_subcommand("export", "Write a world, or that of an experiment, as SDF or YAML");
+  CommandLine line = app.add_subcommand("export", "Write a world, or the world of an experiment, as SDF or YAML");
   line.add_option("FILE", command->file, "World, model or experiment").required().type_name("");
-  line.add_option("-o,--output", command->output, "File to write, .sdf or .yaml").required().type_name("FILE");
-  line.add_option("--seed", command->seed, "Seed of the populations, instead of the experiment's")
+  line.add_option("-o,--output", command->output, "File to write (.sdf or .yaml)").required().type_name("FILE");
+  line.add_option("--seed", command->seed, "Seed for placing populations (default: the experiment's seed)")
       .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       .type_name("N");
   add_reading_options(line, command->runs_xacro);

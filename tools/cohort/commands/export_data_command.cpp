@@ -7,6 +7,7 @@
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/recording_part.hpp"
+#include "tools/cohort/commands/refuse_experiment.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 #include "tools/data/csv_tables.hpp"
 #include "tools/data/hdf5_tables.hpp"
@@ -23,7 +24,7 @@ struct ExportDataCommand {
   RecordingPart part{};
 };
 
-// Of the recording's first world; none for no selectors.
+// Returns the names of the selected robots in the recording's first world; empty if there are no selectors.
 std::set<std::string> selected_names(const recording::Recording& recording, const std::vector<std::string>& selectors) {
   std::set<std::string> names;
   if (selectors.empty()) return names;
@@ -35,6 +36,7 @@ std::set<std::string> selected_names(const recording::Recording& recording, cons
 }
 
 int export_data(const ExportDataCommand& command, Log& log) {
+  refuse_experiment(command.file);
   const recording::Recording recording(command.file);
   if (!recording.damage().empty()) log.warning(recording.damage());
   data::Selection selection{.robots = selected_names(recording, command.robots)};
@@ -57,8 +59,8 @@ Subcommand add_export_data(CommandLine app) {
   CommandLine line = app.add_subcommand("export-data", "Write a recording as tables");
   line.add_option("FILE", command->file, "Recording (MCAP)").required().type_name("");
   CommandLine target = line.add_alternatives("Target");
-  target.add_option("--csv", command->csv, "Folder for a CSV file for each table").type_name("DIR");
-  target.add_option("--hdf5", command->hdf5, "HDF5 file for all of them").type_name("FILE");
+  target.add_option("--csv", command->csv, "Folder in which each table becomes a CSV file").type_name("DIR");
+  target.add_option("--hdf5", command->hdf5, "HDF5 file for all tables").type_name("FILE");
   add_robots_of_recording(line, command->robots);
   add_part_options(line, command->part);
   line.footer("Example: cohort export-data run.mcap --csv tables");

@@ -1,3 +1,5 @@
+#include <cstdio>
+
 #include "client_sdk/hosting/plugin_loader.hpp"
 #include "client_sdk/src/attachment.hpp"
 #include "client_sdk/src/domains.hpp"
@@ -12,10 +14,12 @@ struct HostCommand {
   std::string plugin{};
   ClientSide client{};
   bool inline_step = false;  ///< ClientOptions
-  bool for_run = false;      ///< started by `cohort run`, whose server tells what becomes of a client
+  bool for_run = false;      ///< started by `cohort run`, whose server reports the client's events
 };
 
 int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
+  // Lines that a controller prints are seen at once, also by a pipe.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   const ControllerEnds ends(log, {.exit_code = exit_failed});
   const LoadedPlugin loaded(command.plugin, default_plugin_directories());
   const ControllerKind kind = loaded.kind();
@@ -26,7 +30,7 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
   options.secure = command.client.connection.secure;
   options.robots = command.client.robots;
   options.inline_step = command.inline_step;
-  options.start_must_succeed = command.for_run;  // nobody else would come in its place
+  options.start_must_succeed = command.for_run;  // no other client would take its place
   options.tell = [&](Severity severity, const std::string& text) {
     log.write(command.for_run ? LogLevel::debug : level_of(severity), kind.name + ": " + text,
               {{"controller", kind.name}});
@@ -47,14 +51,14 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
 Subcommand add_host(CommandLine app, LogFlags& flags) {
   const auto command = std::make_shared<HostCommand>();
   CommandLine line = app.add_subcommand("host", "Run a controller for some robots of a server");
-  line.add_option("PLUGIN", command->plugin, "Name of a controller, or path to its plugin or its file of Python")
+  line.add_option("PLUGIN", command->plugin, "Name of a controller, or path to its plugin or Python file")
       .required()
       .type_name("");
   add_client_options(line, command->client);
   add_log_flags(line, flags);
   line.add_flag("--inline", command->inline_step,
-                "Step on the thread that receives, while steps take less than 1 ms: a quicker answer");
-  line.add_flag("--for-run", command->for_run).hide();  // `cohort run` starts it so
+                "Step controllers on the receiving thread for less delay, as long as a step takes less than 1 ms");
+  line.add_flag("--for-run", command->for_run).hide();  // for `cohort run` only
   line.footer("Example: cohort host obstacle_avoidance --robots 0..7 --server 10.0.0.5 --domain 7");
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return host(*command, log, stop); }};
 }

@@ -14,12 +14,12 @@ namespace {
 
 struct ShowCommand {
   std::filesystem::path file;
-  double seconds = 0.0;  ///< simulated before it is shown
+  double seconds = 0.0;  ///< simulated time before the output
   bool as_json = false;
   bool runs_xacro = false;
 };
 
-int show(const ShowCommand& command, Log& log, const std::atomic<bool>& stop) {
+int show_model(const ShowCommand& command, Log& log, const std::atomic<bool>& stop) {
   const description::Experiment experiment = parsing::read_experiment(
       model_called(command.file), {}, {}, installed_model_folders(), xacro_of(command.runs_xacro));
   if (!command.as_json) log.warnings(experiment.world.warnings);
@@ -38,20 +38,20 @@ int show(const ShowCommand& command, Log& log, const std::atomic<bool>& stop) {
 
 Subcommand add_models(CommandLine app) {
   const auto command = std::make_shared<ShowCommand>();
-  CommandLine line = app.add_subcommand("models", "What models are made of, as Cohort reads them");
+  CommandLine line = app.add_subcommand("models", "Show the parts of models as Cohort reads them");
   line.require_subcommand();
   CommandLine of = line.add_subcommand("show", "Print links, masses, joints and limits of a model or a world");
-  of.add_option("FILE", command->file, "Model (SDF, URDF or YAML), world or experiment, or the name of a robot")
+  of.add_option("FILE", command->file, "Model (SDF, URDF or YAML), world, experiment, or the name of a robot model")
       .required()
       .type_name("");
-  of.add_flag("--json", command->as_json, "For programs: inertias, axes, poses and velocities too");
-  of.add_option("--after", command->seconds, "Simulated seconds before that; a model alone stands on a plane")
+  of.add_flag("--json", command->as_json, "Print JSON, with inertias, axes, poses and velocities too");
+  of.add_option("--after", command->seconds, "Simulate this many seconds first; a single model is placed on a plane")
       .check(number_from_zero(most_seconds))
       .type_name("SECONDS");
   add_reading_options(of, command->runs_xacro);
   of.footer("Example: cohort models show sbot --json --after 5");
   line.footer("Example: cohort models show sbot");
-  return {line, [command](Log& log, const std::atomic<bool>& stop) { return show(*command, log, stop); }};
+  return {line, [command](Log& log, const std::atomic<bool>& stop) { return show_model(*command, log, stop); }};
 }
 
 }  // namespace cohort::tool

@@ -2,51 +2,72 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
-#include "server/core/atomic_file.hpp"
 #include "server/core/processors.hpp"
 #include "server/core/text.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/recording/replay.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/cli/picture_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/recording_part.hpp"
+#include "tools/cohort/commands/refuse_experiment.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 #include "tools/drawing/chart.hpp"
 #include "tools/drawing/plot.hpp"
-#include "tools/processes/external_program.hpp"
 
 namespace cohort::tool {
 namespace {
 
 struct PlotCommand {
   std::filesystem::path file;
-  std::filesystem::path output;     ///< .svg or .png
-  std::vector<std::string> what{};  ///< `speed` and channels; empty: paths
+  std::filesystem::path output;     ///< .svg, .png or .pdf
+  std::vector<std::string> what{};  ///< `paths` alone, or `speed` and channels; empty: paths
   std::vector<std::string> robots{};
-  Viewpoint viewpoint = Viewpoint::above;  ///< of paths
+  Viewpoint viewpoint = Viewpoint::above;  ///< viewpoint of paths
   RecordingPart part{};
 };
 
 using recording::Replay;
 
-constexpr std::size_t most_points = 2000;  // of a series
-constexpr std::size_t most_robots = 12;    // in a chart
+constexpr std::size_t most_points = 2000;  // points per series
+constexpr std::size_t most_robots = 12;    // robots per chart
 
-// Where a world begins anew, the paths begin anew.
+// Returns the robots of the recording that are drawn, ascending. Throws std::invalid_argument if a selector selects
+// none.
+std::vector<std::uint32_t> drawn_robots(const Replay& replay, const PlotCommand& command) {
+  if (!command.robots.empty()) return description::select_robots(replay.experiment().world, command.robots);
+  std::vector<std::uint32_t> robots(replay.simulation().robot_count());
+  std::iota(robots.begin(), robots.end(), 0U);
+  return robots;
+}
+
+// Draws paths; they restart where the recording starts another world.
 std::string draw_paths(Replay& replay, const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
   std::optional<TraceRecorder> trace;
   const Simulation* simulation = nullptr;
   PlotCaption caption;
+  std::vector<std::uint32_t> robots;
   const auto visit = [&] {
     if (simulation != &replay.simulation()) {
       simulation = &replay.simulation();
+      robots = drawn_robots(replay, command);
       trace.emplace(replay.experiment().world, *simulation, command.viewpoint);
     }
     trace->boundary();
     caption = {replay.experiment().name, simulation->time(), simulation->state_hash()};
   };
-  return replay_part(replay, command.part, log, stop, visit) ? draw_plot(trace->finish(), caption) : std::string();
+  if (!replay_part(replay, command.part, log, stop, visit)) return "";
+  RunTrace drawn = trace->finish();
+  if (!command.robots.empty()) {
+    std::vector<RobotTrace> selected;
+    for (const std::uint32_t robot : robots)
+      if (robot < drawn.robots.size()) selected.push_back(std::move(drawn.robots[robot]));
+    drawn.robots = std::move(selected);
+  }
+  return draw_plot(drawn, caption);
 }
 
 struct Plotted {
@@ -55,14 +76,17 @@ struct Plotted {
   std::function<double(const Simulation&, std::uint32_t robot)> value;
 };
 
-std::vector<std::string> channels_of(const RobotKind& kind) {
-  std::vector<std::string> names;
+constexpr const char* paths_name = "paths";
+
+// Returns all that can be drawn over time, for suggestions.
+std::vector<std::string> quantities_of(const RobotKind& kind) {
+  std::vector<std::string> names = {paths_name, "speed"};
   for (const std::vector<Channel>* channels : {&kind.observation, &kind.command})
     for (const Channel& channel : *channels) names.push_back(channel.name);
   return names;
 }
 
-// The first value of a channel that a robot observes or is commanded.
+// Returns the first value of a channel that a robot observes or is commanded by.
 Plotted channel_of(const std::string& name, const RobotKind& kind) {
   for (const bool is_command : {false, true}) {
     std::size_t offset = 0;
@@ -75,7 +99,7 @@ Plotted channel_of(const std::string& name, const RobotKind& kind) {
     }
   }
   throw std::invalid_argument("robots of model '" + kind.model + "' have no channel '" + name + "'" +
-                              suggestion(name, channels_of(kind)));
+                              suggestion(name, quantities_of(kind)));
 }
 
 Plotted plotted(const std::string& what, const Simulation& simulation, std::uint32_t robot) {
@@ -89,21 +113,17 @@ Plotted plotted(const std::string& what, const Simulation& simulation, std::uint
   return channel_of(what, simulation.kinds()[simulation.kind_of(robot)]);
 }
 
-// A panel for each quantity, a line in it for each robot.
+// Draws a panel for each quantity, with a line for each robot.
 std::string draw_series(Replay& replay, const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
   std::vector<std::uint32_t> robots;
   std::vector<Plotted> quantities;
   figures::Page page{"", command.file.filename().string(), {}};
   const auto begin = [&] {
-    for (const std::string& selector : command.robots) {
-      const auto selected = description::select_robots(replay.experiment().world, selector);
-      robots.insert(robots.end(), selected.begin(), selected.end());
-    }
-    if (command.robots.empty())
-      for (std::uint32_t robot = 0; robot < replay.simulation().robot_count(); ++robot) robots.push_back(robot);
+    robots = drawn_robots(replay, command);
+    if (robots.empty()) throw std::invalid_argument("the world has no robots");
     if (robots.size() > most_robots) {
-      log.warning(
-          fmt::format("the first {} of {} robots are drawn; --robots chooses others", most_robots, robots.size()));
+      log.warning(fmt::format("only the first {} of {} robots are drawn; '--robots' selects others", most_robots,
+                              robots.size()));
       robots.resize(most_robots);
     }
     for (const std::string& what : command.what) {
@@ -133,36 +153,20 @@ std::string draw_series(Replay& replay, const PlotCommand& command, Log& log, co
   return figures::draw(page);
 }
 
-// What has no picture of its own is drawn by librsvg.
-void write_png(const std::filesystem::path& file, const std::string& svg) {
-  AtomicFile picture("the picture", std::filesystem::absolute(file));
-  const std::filesystem::path source = picture.path().string() + ".svg";
-  write_file("the picture", source, svg);
-  const ProgramResult result = run_program({"rsvg-convert", "--background-color", "white", "--zoom", "2", "--output",
-                                            picture.path().string(), source.string()},
-                                           picture.path().parent_path());
-  std::filesystem::remove(source);
-  if (result.exit_code != 0)
-    throw WriteError(fmt::format("{} cannot be drawn: rsvg-convert says {}", file.string(), result.errors));
-  picture.commit();
-}
-
 int plot(const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
-  const std::string extension = command.output.extension().string();
-  if (extension != ".svg" && extension != ".png")
-    throw std::invalid_argument(
-        fmt::format("{}: expected a file name that ends in .svg or .png", command.output.string()));
+  check_picture_file(command.output);
+  const bool draws_paths = command.what.empty() || command.what == std::vector<std::string>{paths_name};
+  if (!draws_paths && std::ranges::find(command.what, paths_name) != command.what.end())
+    throw std::invalid_argument("--what: 'paths' is a picture of its own and cannot be combined with other quantities");
   check_writable("the picture", command.output);
+  refuse_experiment(command.file, "--plot run.svg");
   const recording::Recording recording(command.file);
   if (!recording.damage().empty()) log.warning(recording.damage());
   Replay replay(recording, available_processors());
   const std::string svg =
-      command.what.empty() ? draw_paths(replay, command, log, stop) : draw_series(replay, command, log, stop);
+      draws_paths ? draw_paths(replay, command, log, stop) : draw_series(replay, command, log, stop);
   if (stop) return exit_interrupted;
-  if (extension == ".svg")
-    write_file("the picture", command.output, svg);
-  else
-    write_png(command.output, svg);
+  write_picture(command.output, svg);
   return exit_ok;
 }
 
@@ -170,10 +174,11 @@ int plot(const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
 
 Subcommand add_plot(CommandLine app) {
   const auto command = std::make_shared<PlotCommand>();
-  CommandLine line = app.add_subcommand("plot", "Draw a recording: paths, speeds, what robots sense");
+  CommandLine line = app.add_subcommand("plot", "Draw the paths, speeds or sensor readings of a recording");
   line.add_option("FILE", command->file, "Recording (MCAP)").required().type_name("");
-  line.add_option("-o,--output", command->output, "Picture to write (.svg or .png)").required().type_name("FILE");
-  line.add_option("--what", command->what, "Over time: speed, or channels such as proximity/3/reading (default: paths)")
+  line.add_option("-o,--output", command->output, "Picture to write (.svg, .png or .pdf)").required().type_name("FILE");
+  line.add_option("--what", command->what,
+                  "paths (the default); or over time: speed, or channels such as proximity/3/reading")
       .comma_separated()
       .type_name("WHAT[,WHAT...]");
   add_robots_of_recording(line, command->robots);

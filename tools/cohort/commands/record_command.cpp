@@ -11,6 +11,7 @@
 #include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
+#include "tools/cohort/running/run_recording.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -21,7 +22,7 @@ constexpr milliseconds until_it_knows{1'000};
 constexpr milliseconds asks_again_after{50};
 constexpr milliseconds until_a_notice{2'000};
 
-// As an experiment would say it; JSON is YAML too.
+// Returns the options in the format of an experiment; JSON is valid YAML.
 std::string recorded_text(const RecordOptions& options) {
   nlohmann::json text;
   if (options.pose_rate) text["poses"] = *options.pose_rate;
@@ -38,7 +39,7 @@ struct RecordCommand {
   Connection connection{};
 };
 
-// One call of the command.
+// One execution of the command.
 class LiveRecording {
  public:
   LiveRecording(const RecordCommand& command, Log& log, const std::atomic<bool>& stop)
@@ -75,7 +76,7 @@ class LiveRecording {
     return control_.wait_for_server(for_ever);
   }
 
-  // All of the file, to its end; a signal brings that about.
+  // Fetches the whole file. A signal makes the server end it.
   int fetch() {
     control_.stop_on(nullptr);
     control_.set_time_limit(for_a_reply);
@@ -90,14 +91,14 @@ class LiveRecording {
         if (part.bytes.empty()) std::this_thread::sleep_for(asks_again_after);
       }
     } catch (const recording::FileError& error) {
-      log_.error(fmt::format("{}. 'cohort recover' closes what is there", error.what()));
+      log_.error(fmt::format("{}. 'cohort recover' makes the file readable", error.what()));
     } catch (const std::exception& error) {
-      log_.error(fmt::format("the recording ended before its run: {}. {}", text_of(error), close_what_came()));
+      log_.error(fmt::format("the recording ended before the run: {}. {}", text_of(error), close_what_came()));
     }
     return exit_failed;
   }
 
-  // From the first part on, which gives the file its name.
+  // Called from the first part on, which gives the file its name.
   void sync_if_due() {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_sync_) return;
@@ -109,14 +110,24 @@ class LiveRecording {
     file_->finish();
     try {
       control_.set_time_limit(until_it_knows);
-      control_.fetch_recording(size_);  // so that the server may go
-    } catch (const ControlError&) {     // it has gone already
+      control_.fetch_recording(size_);  // so that the server may end
+    } catch (const ControlError&) {     // it has already ended
     }
     log_.notice(fmt::format("{}: {:.1f} MB, {}", command_.file.string(), 1e-6 * static_cast<double>(size_),
                             is_stopped_ ? "stopped" : "to the end of the run"));
-    if (last.problem.empty()) return exit_ok;
-    log_.warning(last.problem);
-    return exit_failed;
+    const bool is_bag = !command_.record.makes_rosbag2 || make_bag();
+    if (!last.problem.empty()) log_.warning(last.problem);
+    return last.problem.empty() && is_bag ? exit_ok : exit_failed;
+  }
+
+  bool make_bag() {
+    try {
+      write_rosbag2_metadata(command_.file);
+      return true;
+    } catch (const std::exception& error) {
+      log_.error(text_of(error));
+      return false;
+    }
   }
 
   std::string close_what_came() {
@@ -141,6 +152,7 @@ class LiveRecording {
 int record(const RecordCommand& command, Log& log, const std::atomic<bool>& stop) {
   check_writable("the recording", command.file);
   recording::check_not_being_written(command.file);
+  if (command.record.makes_rosbag2) check_rosbag2_metadata(command.file);
   LiveRecording recording(command, log, stop);
   try {
     return recording.run();
@@ -154,13 +166,13 @@ int record(const RecordCommand& command, Log& log, const std::atomic<bool>& stop
 
 Subcommand add_record(CommandLine app) {
   const auto command = std::make_shared<RecordCommand>();
-  CommandLine line = app.add_subcommand("record", "Record a run of a server from now on");
+  CommandLine line = app.add_subcommand("record", "Record a server's run, starting now");
   line.add_option("-o,--output", command->file, "File to write (MCAP)").required().type_name("FILE");
   add_recorded_options(line, command->record, "--");
   add_server_option(line, command->connection.server);
   add_domain_option(line, command->connection.domains, domain_of_server);
   add_secure_option(line, command->connection.secure,
-                    "Folder of an identity that looks on or controls (default: $COHORT_SECURE)");
+                    "Folder of an identity that may observe or control the run (default: $COHORT_SECURE)");
   line.footer("Example: cohort record --server 10.0.0.5 --domain 7 -o run.mcap");
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return record(*command, log, stop); }};
 }

@@ -6,6 +6,8 @@
 #include "server/recording/recording.hpp"
 #include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/refuse_experiment.hpp"
+#include "tools/cohort/running/run_recording.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -13,6 +15,7 @@ namespace {
 void print_fact(const std::string& name, const std::string& value) { show(fmt::format("  {:<22} {}\n", name, value)); }
 
 void list(const std::filesystem::path& file) {
+  refuse_experiment(file);
   const recording::Recording recording(file);
   show(file.string() + "\n");
   for (const auto& [name, value] : recording.facts()) print_fact(name, value);
@@ -26,14 +29,19 @@ void list(const std::filesystem::path& file) {
 
 Subcommand add_recordings(CommandLine app) {
   const auto files = std::make_shared<std::vector<std::filesystem::path>>();
-  CommandLine line = app.add_subcommand("recordings", "What recordings are of, and which files they hold");
+  CommandLine line =
+      app.add_subcommand("recordings", "Show what recordings contain, and make them readable as rosbag2 bags");
   line.require_subcommand();
-  CommandLine of = line.add_subcommand("list", "Print the facts of each run, and the files that are attached");
+  CommandLine of = line.add_subcommand("list", "Print the metadata of each run, and the attached files");
   of.add_option("FILE", *files, "Recordings (.mcap)").required().type_name("");
   of.footer("Example: cohort recordings list run.mcap");
+  CommandLine bag = line.add_subcommand(
+      "rosbag2", "Write metadata.yaml beside each recording, so that 'ros2 bag' reads its folder as a bag");
+  bag.add_option("FILE", *files, "Recordings (.mcap), each in a folder of its own").required().type_name("");
+  bag.footer("Example: cohort recordings rosbag2 house/run.mcap");
   line.footer("Example: cohort recordings list run.mcap");
-  return {line, [files](Log&, const std::atomic<bool>&) {
-            for (const std::filesystem::path& file : *files) list(file);
+  return {line, [files, bag](Log&, const std::atomic<bool>&) {
+            for (const std::filesystem::path& file : *files) bag.parsed() ? write_rosbag2_metadata(file) : list(file);
             return exit_ok;
           }};
 }

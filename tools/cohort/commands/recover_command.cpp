@@ -10,7 +10,7 @@ namespace {
 
 struct RecoverCommand {
   std::filesystem::path file;
-  std::filesystem::path output;  ///< empty: in place of `file`
+  std::filesystem::path output;  ///< empty: replace `file`
 };
 
 int recover(const RecoverCommand& command, Log& log) {
@@ -36,9 +36,9 @@ int recover(const RecoverCommand& command, Log& log) {
 
 Subcommand add_recover(CommandLine app) {
   const auto command = std::make_shared<RecoverCommand>();
-  CommandLine line = app.add_subcommand("recover", "Make a whole recording of what can be read of a damaged one");
+  CommandLine line = app.add_subcommand("recover", "Make a valid recording from the readable part of a damaged one");
   line.add_option("FILE", command->file, "Recording (.mcap)").required().type_name("");
-  line.add_option("-o,--output", command->output, "File to write (default: FILE itself is replaced)").type_name("FILE");
+  line.add_option("-o,--output", command->output, "File to write (default: replace FILE)").type_name("FILE");
   line.footer("Example: cohort recover run.mcap");
   return {line, [command](Log& log, const std::atomic<bool>&) { return recover(*command, log); }};
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "server/core/processors.hpp"
+#include "server/core/text.hpp"
 #include "server/recording/replay.hpp"
 #include "server/simulation/build_identity.hpp"
 #include "tools/cohort/cli/shown.hpp"
@@ -12,16 +13,20 @@
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/recording_part.hpp"
+#include "tools/cohort/commands/refuse_experiment.hpp"
+#include "tools/cohort/commands/ros2_playback.hpp"
 
 namespace cohort::tool {
 namespace {
 
 struct ReplayCommand {
   std::filesystem::path file;
-  bool verify = false;  ///< compare the state of every boundary
+  bool verify = false;  ///< compare the state at every tick boundary
   RecordingPart part{};
   unsigned threads = 0;  ///< 0: one for each core
   bool quiet = false;
+  bool is_for_ros2 = false;  ///< publish messages instead of simulating
+  Ros2Playback ros2{};
 };
 
 using Seconds = std::chrono::duration<double>;
@@ -39,21 +44,21 @@ BuildIdentity build_of(const recording::Recording& recording) {
   return {fact_of(recording, "version"), fact_of(recording, "commit"), fact_of(recording, "arithmetic")};
 }
 
-// What may explain that a replay differs.
+// Warns of differences between the builds that may explain a different replay.
 void warn_of_other_build(const recording::Recording& recording, Log& log) {
   if (const std::string why = why_results_differ(build_of(recording)); !why.empty())
     log.warning(fmt::format("{}: {}", recording.file().string(), why));
   if (const std::string functions = fact_of(recording, "functions_not_portable"); !functions.empty())
-    log.warning(fmt::format("{} was recorded with the C library's {}: on another CPU its run may have other bits",
+    log.warning(fmt::format("{} was recorded with {} of the C library: results may differ on another CPU",
                             recording.file().string(), functions));
 }
 
-// Only where it is asked why a replay differs: with the same arithmetic other commits have the same results, as a rule.
+// Reported only to explain a difference: with the same arithmetic, another commit usually has the same results.
 void tell_other_commit(const recording::Recording& recording, LogLevel level, Log& log) {
   const BuildIdentity recorded = build_of(recording);
   if (recorded.commit == this_build().commit || !why_results_differ(recorded).empty()) return;
   log.write(level,
-            fmt::format("{} was recorded by another commit of Cohort ({}), and this is {}", recording.file().string(),
+            fmt::format("{} was recorded by another commit of Cohort ({}); this is {}", recording.file().string(),
                         recorded.commit.empty() ? "unknown" : recorded.commit, this_build().commit));
 }
 
@@ -92,7 +97,7 @@ int verify(const recording::Recording& recording, recording::Replay& replay, con
   return stop ? exit_interrupted : report(found, recording, command, log);
 }
 
-// Without looking at what was recorded of the states.
+// Replays without comparing states with the recorded ones.
 int run_again(recording::Replay& replay, const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
   std::uint64_t ticks = 0;
   if (!replay_part(replay, command.part, log, stop, [&] { ++ticks; })) return exit_interrupted;
@@ -101,7 +106,16 @@ int run_again(recording::Replay& replay, const ReplayCommand& command, Log& log,
   return exit_ok;
 }
 
+int publish(ReplayCommand command, Log& log, const std::atomic<bool>& stop) {
+  command.ros2.file = command.file;
+  command.ros2.part = command.part;
+  command.ros2.quiet = command.quiet;
+  return play_to_ros2(command.ros2, log, stop);
+}
+
 int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
+  if (command.is_for_ros2) return publish(command, log, stop);
+  refuse_experiment(command.file);
   const recording::Recording recording(command.file);
   if (!recording.damage().empty()) log.warning(recording.damage());
   warn_of_other_build(recording, log);
@@ -116,19 +130,47 @@ int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop
   return stop ? exit_interrupted : code;
 }
 
+void add_ros2_options(CommandLine line, ReplayCommand& command, Option ros2) {
+  Ros2Playback& playback = command.ros2;
+  line.add_option_function<std::string>(
+          "--speed",
+          [&playback](const std::string& speed) { playback.speed = speed == "max" ? 0.0 : *parse_real(speed); },
+          "With --ros2: limit the speed, in recorded seconds per second (default: 1)")
+      .check(max_or_number_above_zero(1e9))
+      .type_name("max|X")
+      .needs(ros2);
+  line.add_option("--wait", playback.awaited, "With --ros2: begin when nodes have N subscriptions to the played topics")
+      .check(whole_number(1, 1'000'000))
+      .type_name("N")
+      .needs(ros2);
+  line.add_flag("--loop", playback.loops, "With --ros2: repeat the recording until Ctrl-C").needs(ros2);
+  line.add_option("--ros-domain", playback.domain, "With --ros2: ROS domain (default: $ROS_DOMAIN_ID, or 0)")
+      .check(whole_number(0, 232))
+      .type_name("N")
+      .needs(ros2);
+}
+
 }  // namespace
 
 Subcommand add_replay(CommandLine app) {
   const auto command = std::make_shared<ReplayCommand>();
-  CommandLine line = app.add_subcommand("replay", "Run a recording's world again, without controllers");
+  CommandLine line =
+      app.add_subcommand("replay", "Replay a recorded run without controllers, or play its messages to ROS 2 nodes");
   line.add_option("FILE", command->file, "Recording (MCAP)").required().type_name("");
-  line.add_flag("--verify", command->verify, "Compare the state of every tick with the recorded one");
+  const Option verify =
+      line.add_flag("--verify", command->verify, "Compare the state hash of every tick with the recorded hash");
   add_part_options(line, command->part);
-  line.add_option("--threads", command->threads, "Threads that step the world (default: the cores)")
-      .check(whole_number(1, 1024))
-      .type_name("N");
+  const Option threads =
+      line.add_option("--threads", command->threads, "Threads that step the world (default: one per core)")
+          .check(whole_number(1, 1024))
+          .type_name("N");
+  const Option ros2 = line.add_flag("--ros2", command->is_for_ros2,
+                                    "Publish the recorded messages and /clock to ROS 2 nodes, without simulating")
+                          .excludes(verify)
+                          .excludes(threads);
+  add_ros2_options(line, *command, ros2);
   line.add_flag("--quiet", command->quiet, "Print errors and differences only");
-  line.footer("Example: cohort replay run.mcap --verify");
+  line.footer("Example: cohort replay run.mcap --verify\n         cohort replay run.mcap --ros2 --speed 2");
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return replay(*command, log, stop); }};
 }
 

@@ -13,17 +13,17 @@ namespace cohort::tool {
 namespace {
 
 struct SamplesCommand {
-  std::filesystem::path file;  ///< model, or world whose first robot is meant
+  std::filesystem::path file;  ///< model, or world, of which the first robot is used
   std::string device{};        ///< name of a proximity ring
   std::filesystem::path output;
   sensing::SampleGrid grid{};
   bool runs_xacro = false;
 };
 
-// The model and the device that are meant: of the first robot of the file.
+// Returns the model of the file's first robot, and checks that it has the device.
 const description::Model& robot_of(const description::World& world, const SamplesCommand& command) {
   if (world.robots.empty())
-    throw std::runtime_error("'" + command.file.string() + "' has no robot: a model with devices");
+    throw std::runtime_error("'" + command.file.string() + "' has no robot (a model with devices)");
   return world.robot_model(0);
 }
 
@@ -52,10 +52,12 @@ int take_samples(const SamplesCommand& command) {
 
 Subcommand add_samples(CommandLine app) {
   const auto command = std::make_shared<SamplesCommand>();
-  CommandLine line = app.add_subcommand("samples", "Write what a ring of proximity sensors reads of a cylinder");
+  CommandLine line = app.add_subcommand("samples", "Write the readings of a ring of proximity sensors near a cylinder");
   constexpr double longest = 1e3;  // [m]
-  line.add_option("MODEL", command->file, "Model, or world whose first robot is meant").required().type_name("");
-  line.add_option("DEVICE", command->device, "Name of its proximity_ring").required().type_name("");
+  line.add_option("MODEL", command->file, "Model, or a world, of which the first robot is used")
+      .required()
+      .type_name("");
+  line.add_option("DEVICE", command->device, "Name of the robot's proximity_ring").required().type_name("");
   line.add_option("-o,--output", command->output, "File to write").required().type_name("FILE");
   line.add_option("--radius", command->grid.radius, "Radius of the cylinder in metres")
       .check(number_above_zero(longest))
@@ -65,11 +67,11 @@ Subcommand add_samples(CommandLine app) {
       .check(number_above_zero(longest))
       .capture_default_str()
       .type_name("M");
-  line.add_option("--distances", command->grid.distances, "How many distances, from contact to the end of the range")
+  line.add_option("--distances", command->grid.distances, "Number of distances, from contact to the end of the range")
       .check(whole_number(2, 10'000))
       .capture_default_str()
       .type_name("N");
-  line.add_option("--angles", command->grid.angles, "How many angles, evenly all round")
+  line.add_option("--angles", command->grid.angles, "Number of angles, evenly spaced around the robot")
       .check(whole_number(1, 10'000))
       .capture_default_str()
       .type_name("N");

@@ -26,13 +26,14 @@ void add_secure_option(CommandLine line, std::filesystem::path& folder, const st
 }
 
 void add_client_options(CommandLine line, ClientSide& client) {
-  line.add_option("--robots", client.robots, "Which robots: all, an id, ids A..B, or a name with *; several by commas")
+  line.add_option("--robots", client.robots,
+                  "Robots to drive: all, an id, ids A..B, or a name with *, separated by commas")
       .required()
       .comma_separated()
       .type_name("SEL[,SEL...]");
   add_server_option(line, client.connection.server);
   add_domain_option(line, client.connection.domains,
-                    "DDS domain of the server, or a range: then one of it (default: 0)");
+                    "DDS domain of the server, or a range from which one is chosen (default: 0)");
   add_secure_option(line, client.connection.secure, "Folder of this client's identity (default: $COHORT_SECURE)");
 }
 
@@ -41,43 +42,49 @@ void add_reading_options(CommandLine line, bool& runs_xacro) {
           "--allow-files",
           [](const std::string& folders) {
             ::setenv("COHORT_ALLOW_FILES", folders.c_str(), 1);
-          },  // who reads looks there
-          "More folders that the world may read files of, with colons between them (default: $COHORT_ALLOW_FILES)")
+          },  // the parser reads this variable
+          "More folders from which the world may read files, separated by colons (default: $COHORT_ALLOW_FILES)")
       .type_name("DIR[:DIR...]");
   line.add_flag("--xacro", runs_xacro,
-                "Expand FILE itself with the program xacro, which runs what FILE says: only for one that you trust");
+                "Expand FILE with xacro, which executes code in FILE: use it only for files that you trust");
 }
 
 void add_robots_of_recording(CommandLine line, std::vector<std::string>& robots) {
-  line.add_option("--robots", robots, "Which robots, as of 'cohort host' (default: all)")
+  line.add_option("--robots", robots, "Robots, selected as by --robots of 'cohort host' (default: all)")
       .comma_separated()
       .type_name("SEL[,SEL...]");
 }
 
 void add_recorded_options(CommandLine line, RecordOptions& options, const std::string& prefix) {
   constexpr double most_hertz = 1e9;
-  line.add_option(prefix + "poses", options.pose_rate, "Poses a simulated second in it, 0 for none")
+  line.add_option(prefix + "poses", options.pose_rate, "Recorded poses per simulated second (0: none)")
       .check(number_from_zero(most_hertz))
       .type_name("HZ");
-  line.add_option(prefix + "joints", options.joint_rate, "Joint states and poses of all links a simulated second")
+  line.add_option(prefix + "joints", options.joint_rate,
+                  "Recorded joint states and link poses per simulated second (0: none)")
       .check(number_from_zero(most_hertz))
       .type_name("HZ");
-  line.add_option(prefix + "observations", options.observation_rate, "Observations of a robot a simulated second")
+  line.add_option(prefix + "observations", options.observation_rate,
+                  "Recorded observations of each robot per simulated second (0: none)")
       .check(number_from_zero(most_hertz))
       .type_name("HZ");
-  line.add_option(prefix + "robots", options.robots, "Whose observations: as --robots of 'cohort host'")
+  line.add_option(prefix + "robots", options.robots,
+                  "Robots whose observations are recorded, selected as by --robots of 'cohort host'")
       .comma_separated()
       .type_name("SEL[,SEL...]");
-  line.add_option(prefix + "snapshots", options.snapshot_interval, "Simulated seconds between snapshots, 0 for none")
+  line.add_option(prefix + "snapshots", options.snapshot_interval,
+                  "Simulated seconds between recorded snapshots (0: none)")
       .check(number_from_zero(most_seconds))
       .type_name("S");
+  line.add_flag(prefix + "rosbag2", options.makes_rosbag2,
+                "Write metadata.yaml beside the recording at the end, so that 'ros2 bag' reads its folder as a bag");
 }
 
 void add_viewpoint_option(CommandLine line, const std::string& name, const std::string& subject, Viewpoint& viewpoint) {
   line.add_option_function<std::string>(
           name,
           [&viewpoint](const std::string& view) { viewpoint = view == "side" ? Viewpoint::side : Viewpoint::above; },
-          subject + ": from above (the default), or from the side")
+          subject + ": above (the default) or side")
       .check(one_of({"above", "side"}))
       .type_name("above|side");
 }

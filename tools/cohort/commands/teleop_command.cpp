@@ -22,7 +22,7 @@ std::string help_of(const std::vector<KeyBinding>& bindings) {
       text += fmt::format(" {} = {:g} ", setting.channel, setting.value);
     text += "\n";
   }
-  return text + "  space  let all go\n  + -    more or less of it\n  q      leave";
+  return text + "  space  release all keys\n  + -    increase or reduce the speed\n  q      quit";
 }
 
 std::string status_of(const Keyboard& keyboard) {
@@ -33,12 +33,12 @@ std::string status_of(const Keyboard& keyboard) {
                      100.0 * state.share, keys.empty() ? "no key" : keys);
 }
 
-// What the person sees and does, beside the client. Sets `leave` for `q` and when `stop` is set.
+// The keys and the display beside the client. Sets `leave` for `q` and when `stop` is set.
 class Console {
  public:
   Console(Keyboard& keyboard, Log& log, const std::atomic<bool>& stop, std::atomic<bool>& leave)
       : keyboard_(keyboard), log_(log), stop_(stop), leave_(leave) {
-    // What is there already counts from the first tick on.
+    // Keys that are already typed take effect from the first tick on.
     while (const auto key = keys_.read(std::chrono::milliseconds(0))) heed(*key);
     thread_ = std::thread([this] { run(); });
   }
@@ -90,7 +90,7 @@ int teleop(const ClientSide& client, Log& log, const std::atomic<bool>& stop) {
   options.robots = client.robots;
   options.name = "teleop";
   options.tell = [&](Severity severity, const std::string& text) {
-    if (leave && !stop) return;  // nobody is surprised by that
+    if (leave && !stop) return;  // the user has quit on purpose
     log.write(level_of(severity), text);
   };
   const Console console(keyboard, log, stop, leave);

@@ -35,7 +35,7 @@ Json numbers(const Pose& pose) {
 
 Json limit(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-/// One object of a simulation.
+/// An object of a simulation.
 struct Seen {
   const Simulation& simulation;
   BodyId body;

@@ -6,11 +6,11 @@
 
 namespace cohort::tool {
 
-/// All objects of a simulation as it is now, for programs: JSON, in SI units, radians and rows of numbers. A pose is
-/// x y z and the quaternion x y z w. What has no limit is null. docs/cli.md says what there is.
+/// Returns the present state of all objects of a simulation as JSON, in SI units and radians. Matrices are arrays of
+/// rows. A pose is x y z and the quaternion x y z w. A missing limit is null. docs/cli.md lists the keys.
 std::string facts_as_json(const Simulation& simulation);
 
-/// The same for people: a line for each link and joint.
+/// Returns the same as text, with a line for each link and joint.
 std::string facts_as_text(const Simulation& simulation);
 
 }  // namespace cohort::tool

@@ -30,7 +30,7 @@ std::atomic<bool> clears_progress{false};
 std::atomic<bool> is_silent{false};
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
-// Text of limited length that needs no memory but its own, for signal handlers. What is too long is cut off.
+// Text of limited length for signal handlers, which allocates no memory. Longer text is truncated.
 class FixedText {
  public:
   template <class... Values>
@@ -39,7 +39,7 @@ class FixedText {
         fmt::format_to_n(text_.data() + size_, room(), fmt::runtime(fmt::string_view(format)), values...);
     size_ += std::min(room(), written.size);
   }
-  // As it stands in a string of JSON.
+  // Adds text, escaped for a JSON string.
   void add_escaped(std::string_view text) {
     for (const char letter : text) {
       if (static_cast<unsigned char>(letter) < 0x20)
@@ -59,7 +59,7 @@ class FixedText {
   std::size_t size_ = 0;
 };
 
-// What happened to the process, and in which call.
+// Describes what happened to the process, and in which call.
 void describe(FixedText& text, const CallUnderWay& call, std::string_view what) {
   if (call.callee == nullptr)
     text.add("the process {} at tick {}, while no controller was called", what, call.tick);
@@ -98,13 +98,13 @@ void on_crash(int signal, siginfo_t* info, void*) {
   }
   const auto place = std::ranges::find(crash_signals, signal) - crash_signals.begin();
   ::sigaction(signal, &actions_before[static_cast<std::size_t>(place)], nullptr);
-  // What the processor found happens again when this returns; what somebody sent does not.
+  // A fault of the processor recurs when this handler returns; a signal that was sent does not.
   if (info->si_code <= 0) ::raise(signal);
 }
 
 }  // namespace
 
-// Handlers of signals, on a stack of their own: a controller may have used up the thread's.
+// Signal handlers with a separate stack, because a controller may have used up the thread's stack.
 struct ControllerEnds::CrashHandlers {
   CrashHandlers() : stack(std::size_t{64} << 10U) {
     const stack_t own = {.ss_sp = stack.data(), .ss_flags = 0, .ss_size = stack.size()};
@@ -129,7 +129,7 @@ ControllerEnds::ControllerEnds(Log& log, const Options& options) : log_(log), op
   writes_json = log.format() == LogFormat::json;
   clears_progress = log.rewrites_progress();
   is_silent = !log.shows(LogLevel::error);
-  // As late as can be: what was made before is destroyed after this has run.
+  // Registered as late as possible: objects that were created before are destroyed after this has run.
   [[maybe_unused]] static const bool is_registered = std::atexit(at_exit) == 0 && std::at_quick_exit(at_exit) == 0;
   if (options.crashes) crashes_ = std::make_unique<CrashHandlers>();
   ends_now = this;
@@ -145,7 +145,7 @@ void ControllerEnds::end_process() {
   const CallUnderWay call = call_under_way();
   FixedText why;
   describe(why, call, "ended the process");
-  why.add(". A controller that cannot go on throws an exception");
+  why.add(". A controller that cannot continue should throw an exception");
   int exit_code = options_.exit_code;
   if (finish_ && call.is_on_this_thread)
     exit_code = finish_(std::string(why.text()));

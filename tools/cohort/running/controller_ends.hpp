@@ -11,22 +11,22 @@
 
 namespace cohort::tool {
 
-/// Names the controller that ends this process, by `exit` or `quick_exit`, or that crashes it. At most one at a time.
+/// Names the controller that crashes this process, or ends it by `exit` or `quick_exit`. At most one exists at a time.
 class ControllerEnds {
  public:
   struct Options {
-    int exit_code = 1;     ///< of the process, if a controller ends it
-    bool crashes = false;  ///< name those that crash too; the process still ends by the signal
+    int exit_code = 1;     ///< exit code of the process if a controller ends it
+    bool crashes = false;  ///< also name controllers that crash; the process still ends by the signal
   };
 
-  /// `log` must outlive this. On the thread that calls controllers, if it names crashes.
+  /// `log` must outlive this. If crashes are named, construct this on the thread that calls controllers.
   ControllerEnds(Log& log, const Options& options);
   ControllerEnds(const ControllerEnds&) = delete;
   ControllerEnds& operator=(const ControllerEnds&) = delete;
   ~ControllerEnds();
 
-  /// Ends the run, with a sentence that says why, in place of a message. Returns the exit code. Called where a
-  /// controller that this thread calls ends the process.
+  /// Sets a function that ends the run, instead of a message, when a controller called by this thread ends the process.
+  /// It takes the reason as a sentence and returns the exit code.
   void finish_with(std::function<int(const std::string& why)> finish) { finish_ = std::move(finish); }
 
  private:

@@ -30,7 +30,7 @@ std::filesystem::path identity_for(const description::Experiment& experiment, co
     if (std::ranges::includes(allowed, team.robots)) return std::filesystem::absolute(secure) / "clients" / door.name;
   }
   throw std::runtime_error(fmt::format(
-      "no client of {0} may drive all robots of team '{1}': 'cohort security add {0} {1} --robots {2}' makes one",
+      "no client in {0} may drive all robots of team '{1}'; 'cohort security add {0} {1} --robots {2}' adds one",
       secure.string(), team.name, selectors_of(team.robots)));
 }
 
@@ -65,12 +65,32 @@ std::vector<Children::Command> controller_processes(const description::Experimen
   return commands;
 }
 
+Children::Command ros2_bridge_process(const description::Experiment& experiment,
+                                      const std::vector<std::uint32_t>& robots, const std::string& server,
+                                      std::uint32_t domain, const std::filesystem::path& secure) {
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cohort-ros2-bridge";
+  if (!std::filesystem::exists(program))
+    throw std::runtime_error("'--ros2' requires the program " + program.string() + ", which is not installed");
+  Children::Command command;
+  command.arguments = {program, "--robots", selectors_of(robots),  "--server",
+                       server,  "--domain", std::to_string(domain)};
+  if (!secure.empty()) {
+    description::Team driven;
+    driven.name = "ros2";
+    driven.robots = robots;
+    command.arguments.insert(command.arguments.end(), {"--secure", identity_for(experiment, driven, secure).string()});
+  }
+  command.name = "the bridge to ROS 2";
+  command.restarts = false;
+  return command;
+}
+
 Children::Listener listener_of_controllers(session::Server& server, Log& log) {
   Children::Listener listener;
   listener.started = [&](const Children::Command& command, pid_t pid) {
-    log.info(
-        fmt::format("{}: controller process {} is started: {}", command.name, pid, fmt::join(command.arguments, " ")),
-        {{"controller_of", command.name}, {"process", pid}, {"command", command.arguments}});
+    log.info(fmt::format("{}: started controller process {}: {}", command.name, pid, fmt::join(command.arguments, " ")),
+             {{"controller_of", command.name}, {"process", pid}, {"command", command.arguments}});
   };
   listener.restarted = listener.killed = [&](const Children::Command& command, const std::string& text) {
     log.warning(text, {{"controller_of", command.name}});
@@ -78,8 +98,8 @@ Children::Listener listener_of_controllers(session::Server& server, Log& log) {
   listener.ended = [&](pid_t pid) { server.note_process_end(static_cast<std::uint32_t>(pid)); };
   listener.gave_up = [&](const std::string& text) { server.fail(text); };
   listener.may_end_with = [](int exit_code) { return exit_code == exit_superseded; };
-  // A host writes JSON itself if it is to, but not its controllers, nor what a runtime says of a process that it
-  // aborts.
+  // A host writes JSON itself on request, but its controllers do not, nor does a language runtime that aborts the
+  // process.
   if (log.format() == LogFormat::json)
     listener.wrote = [&](const Children::Command& command, const std::string& line) {
       log.echo(line, {{"controller_of", command.name}});

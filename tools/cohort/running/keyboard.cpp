@@ -15,14 +15,14 @@ constexpr std::array<std::pair<const char*, const char*>, 8> letter_pairs = {
     {{"r", "f"}, {"t", "g"}, {"y", "h"}, {"u", "j"}, {"i", "k"}, {"o", "l"}, {"a", "z"}, {"s", "x"}}};
 constexpr std::string_view reserved = "+-q ";
 constexpr double share_step = 0.1;
-constexpr double turning_share = 0.5;  // of full speed, on the spot
+constexpr double turning_share = 0.5;  // fraction of full speed for turning on the spot
 
 bool is_key(const std::string& key) {
   if (std::ranges::find(arrows, key) != arrows.end()) return true;
   return key.size() == 1 && reserved.find(key) == std::string_view::npos && key[0] > ' ' && key[0] <= '~';
 }
 
-// An unknown channel is a mistake of the parameter that names it.
+// Returns the channel of a name; reports an unknown channel as an error of the parameter that names it.
 CommandChannel command_named(const Start& start, const std::string& name, const std::string& parameter) {
   try {
     return start.command(name);
@@ -37,7 +37,7 @@ std::vector<KeyBinding> bindings_of(const Start& start) {
     const std::string key = parameter.name.substr(0, parameter.name.find('.'));
     if (key == parameter.name) throw ParameterError(parameter.name, "expected 'CHANNEL: VALUE' under a key");
     if (!is_key(key))
-      throw ParameterError(parameter.name, "'" + key + "' is no key to bind: expected up, down, left, right or a " +
+      throw ParameterError(parameter.name, "'" + key + "' is not a valid key; expected up, down, left, right or a " +
                                                "character other than +, - and q");
     const std::string name = parameter.name.substr(key.size() + 1);
     const CommandChannel channel = command_named(start, name, parameter.name);
@@ -111,7 +111,7 @@ class KeyboardController final : public Controller {
     }
   }
 
-  void save(StateWriter&) const override {}  // which keys are held is the keyboard's
+  void save(StateWriter&) const override {}  // the keyboard stores the keys that are held
 
  private:
   struct Setting {
@@ -137,7 +137,7 @@ OwnedController make_controller(Keyboard* keyboard) {
 std::vector<KeyBinding> key_bindings(const Start& start) {
   const bool is_bound = start.controller == keyboard_controller && !start.parameters.all().empty();
   if (is_bound) return bindings_of(start);
-  // Parameters are another controller's then.
+  // The parameters belong to another controller: mark them as used.
   for (const Parameter& parameter : start.parameters.all()) start.parameters.has(parameter.name);
   return usual_bindings(start);
 }

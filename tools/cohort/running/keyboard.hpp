@@ -9,10 +9,10 @@
 
 namespace cohort::tool {
 
-/// The name by which an experiment says that people drive a team.
+/// The controller name of teams that people drive.
 inline constexpr const char* keyboard_controller = "keyboard";
 
-/// What a key does: it gives channels values, which hold until another key changes them.
+/// The effect of a key: it sets channels to values, which hold until another key changes them.
 struct KeyBinding {
   struct Setting {
     std::string channel;
@@ -22,16 +22,17 @@ struct KeyBinding {
   std::vector<Setting> settings;
 };
 
-/// The bindings that the parameters of a team give (`KEY: {CHANNEL: VALUE}`), or, if the team is not driven by keyboard
-/// or has none, the usual ones for the robot's channels: the arrows drive two tracks or wheels (channels that end in
-/// `/left/velocity` and `/right/velocity`), pairs of letters move each other channel up and down. Throws
+/// Returns the key bindings of a team: those of its parameters (`KEY: {CHANNEL: VALUE}`), or default ones if it has
+/// none or is not driven by keyboard. By default, the arrows drive two tracks or wheels (channels that end in
+/// `/left/velocity` and `/right/velocity`), and pairs of letters raise and lower each other channel. Throws
 /// ParameterError.
 std::vector<KeyBinding> key_bindings(const Start& start);
 
-/// The keys that a person has pressed. Any thread.
+/// The keys that a person has pressed. Any thread may call it.
 class Keyboard {
  public:
-  /// A key of a binding; the space bar ("space") lets all go, "+" and "-" change the share of each value that is used.
+  /// Processes a key. It is a key of a binding, the space bar ("space"), which releases all keys, or "+" or "-", which
+  /// change the fraction of each value that is used.
   void press(const std::string& key);
 
   struct State {
@@ -40,7 +41,7 @@ class Keyboard {
   };
   State state() const;
 
-  /// For display: what the robots can do, and the simulated time.
+  /// The bindings and the simulated time, for display.
   void set_bindings(std::vector<KeyBinding> bindings);
   std::vector<KeyBinding> bindings() const;
   void set_time(std::chrono::nanoseconds time);
@@ -53,9 +54,9 @@ class Keyboard {
   std::chrono::nanoseconds time_{0};
 };
 
-/// Controllers that obey `keyboard`, which must outlive them.
+/// Returns controllers that follow `keyboard`, which must outlive them.
 ControllerKind keyboard_controllers(Keyboard& keyboard);
-/// One whose keys nobody presses, to check an experiment with.
+/// Returns a controller whose keys are never pressed, to check an experiment with.
 OwnedController keyboard_controller_without_keys();
 
 }  // namespace cohort::tool

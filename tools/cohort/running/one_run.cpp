@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "server/run/run_recorder.hpp"
 #include "tools/cohort/cli/exit_codes.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/cli/picture_file.hpp"
+#include "tools/cohort/running/run_recording.hpp"
 #include "tools/cohort/running/summary_file.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
 #include "tools/drawing/plot.hpp"
@@ -24,9 +25,13 @@ void OneRun::begin(const description::Experiment& experiment, const Simulation& 
   experiment_ = &experiment;
   simulation_ = &simulation;
   const bool own_controllers = command_.controllers != Controllers::external && !has_keyboard(experiment);
-  terminal_.emplace(log_, Terminal::Options{.quiet = command_.quiet, .own_controllers = own_controllers});
+  if (!terminal_)  // it remembers what it has told
+    terminal_.emplace(log_, Terminal::Options{.quiet = command_.quiet || is_of_several_,
+                                              .shows_progress = !command_.is_part,
+                                              .own_controllers = own_controllers});
   if (!outputs_.plot.empty()) trace_.emplace(experiment.world, simulation, outputs_.viewpoint);
-  if (!experiment.prints.empty()) table_.emplace(experiment, simulation, outputs_.csv.empty() && !command_.quiet);
+  if (!experiment.prints.empty())
+    table_.emplace(experiment, simulation, outputs_.csv.empty() && !command_.quiet && !is_of_several_);
   if (outputs_.recording.empty()) return;
   if (!recorder_) recorders_ = {&recorder_.emplace(outputs_.recording, experiment)};
   recorder_->begin(experiment, simulation, beginning);
@@ -44,7 +49,11 @@ session::RunListener OneRun::listener() {
             if (table_) table_->boundary();
           },
       .unrecorded = [&] { return recorder_ ? recorder_->error() : std::nullopt; },
-      .stopped = [&] { watchdog_.reset(); },
+      .stopped =
+          [&] {
+            watchdog_.reset();
+            if (recorder_) recorder_->flush();
+          },
   };
   session::add_recorders(listener, recorders_);
   return listener;
@@ -52,8 +61,8 @@ session::RunListener OneRun::listener() {
 
 int OneRun::finish(RunResult result, double cpu_seconds) {
   using enum RunResult::End;
-  terminal_->summary(*experiment_, result, cpu_seconds);
   const bool was_recorded = !recorder_ || close_recording(result);
+  terminal_->summary(*experiment_, result, cpu_seconds, table_ && table_->is_on_stdout() ? stderr : stdout);
   const bool is_complete = write_files(result, cpu_seconds);
   const bool ended_for_that = result.end == failed && recorder_ && result.error == recorder_->error();
   if (!was_recorded && (ended_for_that || (command_.record_or_stop && result.end == finished))) return exit_unrecorded;
@@ -79,27 +88,31 @@ bool OneRun::write_files(const RunResult& result, double cpu_seconds) {
   if (trace_)
     written &= try_to([&] {
       const PlotCaption caption = {experiment_->name, result.sim_time, result.state_hash};
-      write_file("the plot", outputs_.plot, draw_plot(trace_->finish(), caption));
+      write_picture(outputs_.plot, draw_plot(trace_->finish(), caption));
     });
-  if (!outputs_.csv.empty())
+  if (command_.record.makes_rosbag2 && recorder_ && !recorder_->error())
+    written &= try_to([&] { write_rosbag2_metadata(outputs_.recording); });
+  if (!outputs_.csv.empty() && (table_ || !is_of_several_))
     written &= try_to([&] { write_file("the table", outputs_.csv, table_ ? table_->text() : std::string()); });
   return written;
 }
 
-// A disk may say only now that it is full: then the summary has an event of that too.
+// Returns true if the recording is complete. Adds an event for an error that appeared when the file was closed.
 bool OneRun::close_recording(RunResult& result) {
   recorder_->finish(word_of(result.end), result.end == RunResult::End::finished ? result.stop_reason : result.error);
   if (const std::uint64_t dropped = recorder_->dropped(); dropped > 0)
     log_.warning(
-        fmt::format("{} poses and observations are not in {}: its disk was too slow. Commands and events are all "
-                    "there; --record-poses and --record-observations ask for fewer",
+        fmt::format("{} poses and observations are missing from {}, because its disk was too slow. All commands and "
+                    "events are recorded; '--record-poses' and '--record-observations' reduce the rate",
                     dropped, outputs_.recording.string()),
         {{"dropped", dropped}});
   const std::optional<std::string> error = recorder_->error();
   if (!error) return true;
-  log_.error("the recording ended before its run: " + *error);
-  if (std::ranges::none_of(result.events, [](const auto& event) { return event.kind == "unrecorded"; }))
+  if (result.unrecorded.empty()) {
+    result.unrecorded = *error;
     result.events.push_back({.tick = result.ticks, .kind = "unrecorded", .text = *error, .last_tick = result.ticks});
+    terminal_->event(result.events.back());
+  }
   return false;
 }
 

@@ -15,20 +15,20 @@
 
 namespace cohort::tool {
 
-/// One experiment's run, with all that people see of it.
+/// One run of an experiment, with all its output.
 class OneRun {
  public:
-  /// `command`, `log` and `stop`, whether the process was asked to end, must outlive this.
+  /// `stop`: whether the process was asked to end. `command`, `log` and `stop` must outlive this.
   OneRun(const RunCommand& command, Outputs outputs, Log& log, const std::atomic<bool>& stop);
 
-  /// Before it runs, and again if another world takes the place of the one before: then only the recording goes on.
-  /// Both must live until the next call, or until this is gone.
+  /// Call this before the run, and again if another world replaces the previous one: then only the recording continues.
+  /// Experiment and simulation must live until the next call, or until this is destroyed.
   void begin(const description::Experiment& experiment, const Simulation& simulation, recording::Beginning beginning);
 
-  /// Of what has begun.
+  /// Returns the listener of the run that has begun.
   session::RunListener listener();
 
-  /// Prints and writes what was asked for, and closes the recording. The exit code.
+  /// Prints and writes the requested outputs, and closes the recording. Returns the exit code.
   int finish(session::RunResult result, double cpu_seconds);
 
  private:
@@ -39,6 +39,7 @@ class OneRun {
   Outputs outputs_;
   Log& log_;
   const std::atomic<bool>& stop_;
+  const bool is_of_several_ = command_.is_part || !command_.seeds.empty();  // the results are in a table
   const description::Experiment* experiment_ = nullptr;
   const Simulation* simulation_ = nullptr;
   std::optional<Watchdog> watchdog_;  // while it runs
@@ -46,7 +47,7 @@ class OneRun {
   std::optional<TraceRecorder> trace_;
   std::optional<PrintedTable> table_;
   std::optional<recording::Recorder> recorder_;
-  std::vector<recording::Recorder*> recorders_;  // it or none
+  std::vector<recording::Recorder*> recorders_;  // `recorder_`, or empty
 };
 
 }  // namespace cohort::tool

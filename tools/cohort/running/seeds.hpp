@@ -8,7 +8,7 @@ namespace cohort::tool {
 
 inline constexpr std::size_t most_seeds = 100'000;
 
-/// `1..30`, `7`, or several of these with commas between them: in their order, each as often as it is written. Throws
+/// Parses seeds: `1..30`, `7`, or several of these separated by commas. Keeps order and repetitions. Throws
 /// std::invalid_argument that says what was expected.
 std::vector<std::uint64_t> parse_seeds(const std::string& text);
 

@@ -13,19 +13,20 @@
 #include <thread>
 #include <utility>
 
+#include "server/description/select_robots.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/running/controller_processes.hpp"
 
 namespace cohort::tool {
 namespace {
 
-// Domains that a run picks from for itself and the controllers that it starts.
+// Domains among which a run chooses its own, for controllers that it starts itself.
 constexpr std::uint32_t first_own_domain = 1;
 constexpr std::uint32_t own_domain_count = 59;
-// The server has writers for each client of a domain, and announces all of them to all: matching takes time with the
-// square of their number.
+// The server has writers for each client of a domain and announces all of them to all clients: matching time grows with
+// the square of their number.
 constexpr std::size_t processes_per_domain = 64;
-// Two for each process that is started here: its end, and what it prints.
+// Two files for each process that is started here: one for its end, one for its output.
 constexpr std::size_t files_per_process = 2;
 constexpr std::size_t files_besides = 200;
 
@@ -34,7 +35,7 @@ std::size_t process_count(const RunCommand& command, const description::Experime
   return command.controllers == Controllers::per_robot ? experiment.world.robots.size() : experiment.teams.size();
 }
 
-// How many more may come to be started for robots that events bring.
+// Returns how many more processes may be started for robots that events add.
 std::size_t later_process_count(const RunCommand& command, const description::Experiment& experiment) {
   std::size_t count = 0;
   if (command.controllers == Controllers::external) return count;
@@ -43,7 +44,7 @@ std::size_t later_process_count(const RunCommand& command, const description::Ex
   return count;
 }
 
-// Without security one for all.
+// Returns the doors of the command; without security, one open door.
 std::vector<std::optional<wire::Identity>> doors_of(const RunCommand& command) {
   if (command.secure.empty()) return {std::nullopt};
   std::vector<std::optional<wire::Identity>> doors;
@@ -51,7 +52,7 @@ std::vector<std::optional<wire::Identity>> doors_of(const RunCommand& command) {
   return doors;
 }
 
-// All of its doors or none.
+// Opens all doors of a domain or none.
 void open_domain(std::uint32_t domain, const RunCommand& command,
                  const std::vector<std::optional<wire::Identity>>& doors,
                  std::vector<wire::Participant>& participants) {
@@ -61,8 +62,8 @@ void open_domain(std::uint32_t domain, const RunCommand& command,
   std::ranges::move(opened, std::back_inserter(participants));
 }
 
-// Outsiders need to know the domains: those given, or 0. Nobody but our own children needs to know ours: they are any
-// free ones, so that several runs on one machine do not meet.
+// Clients that are started elsewhere must know the domains: those given, or 0. Otherwise only child processes use the
+// domains: they are any free ones, so that several runs on one machine do not meet.
 void open_domains(const RunCommand& command, bool has_outsiders, std::size_t processes,
                   std::vector<std::uint32_t>& domains, std::vector<wire::Participant>& participants) {
   const std::vector<std::optional<wire::Identity>> doors = doors_of(command);
@@ -81,12 +82,12 @@ void open_domains(const RunCommand& command, bool has_outsiders, std::size_t pro
     } catch (const wire::DomainTaken&) {
       if (i + 1 == own_domain_count && domains.empty()) throw;
     } catch (const wire::WireError& error) {
-      throw wire::WireError(std::string(error.what()) + ". --controllers inprocess needs no network");
+      throw wire::WireError(std::string(error.what()) + ". '--controllers inprocess' needs no network");
     }
   }
 }
 
-// As many open files as so many processes need.
+// Raises the limit of open files to the number that these processes need.
 void raise_file_limit(std::size_t processes, Log& log) {
   const rlim_t needed = files_besides + files_per_process * processes;
   rlimit limit{};
@@ -94,10 +95,9 @@ void raise_file_limit(std::size_t processes, Log& log) {
   const rlim_t wanted = limit.rlim_max == RLIM_INFINITY ? needed : std::min<rlim_t>(needed, limit.rlim_max);
   limit.rlim_cur = wanted;
   if (setrlimit(RLIMIT_NOFILE, &limit) != 0 || wanted < needed)
-    log.warning(
-        fmt::format("{} need {} open files, and {} are allowed: 'ulimit -Hn {}' in the shell that starts this, as "
-                    "root, allows more",
-                    counted(processes, "process"), needed, limit.rlim_cur, needed));
+    log.warning(fmt::format(
+        "{} need {} open files, but only {} are allowed; as root, run 'ulimit -Hn {}' in the shell that starts Cohort",
+        counted(processes, "process"), needed, limit.rlim_cur, needed));
 }
 
 std::string domains_text(const std::vector<std::uint32_t>& domains) {
@@ -105,7 +105,7 @@ std::string domains_text(const std::vector<std::uint32_t>& domains) {
   return fmt::format("domains {}", fmt::join(domains, ", "));
 }
 
-// As a shell takes it.
+// Returns the command line of this process, quoted for a shell.
 std::string own_command_line() {
   std::ifstream words("/proc/self/cmdline", std::ios::binary);
   std::string line = "cohort";
@@ -121,7 +121,7 @@ std::string own_command_line() {
   return line;
 }
 
-// Whether an event of the experiment has brought the object, by its name.
+// Returns whether an event of the experiment has added the object, judged by its name.
 bool is_spawned(const std::string& name, const description::Experiment& experiment) {
   return std::ranges::any_of(experiment.spawners, [&](const description::Spawner& spawner) {
     const std::string start = spawner.name + "_";
@@ -129,7 +129,8 @@ bool is_spawned(const std::string& name, const description::Experiment& experime
   });
 }
 
-// Of the view: one that looks, and if it may do more, one that controls, and one that drives what people are to drive.
+// Adds the identities of the view: one that observes and, if the view may control, one that controls and one that
+// drives the robots of people.
 void add_identities_of_view(const RunCommand& command, const description::Experiment& experiment,
                             std::vector<std::string>& arguments) {
   const auto add = [&](const char* option, const std::filesystem::path& identity) {
@@ -156,8 +157,8 @@ Serving::Serving(const RunCommand& command, const description::Experiment& exper
   server_.emplace(participants_);
   if (command.secure.empty() && !command.network.starts_with("127.") && command.network != "localhost")
     log.warning(fmt::format(
-        "whoever reaches {} can drive robots, control this run and end it: there is no security. 'cohort security "
-        "init DIR' makes identities for --secure DIR; without them, only use a network of your own",
+        "no security: anyone who can reach {} can drive robots, control this run and end it. 'cohort security init "
+        "DIR' creates identities for '--secure DIR'; without them, use a private network only",
         command.network));
   const std::string serving =
       fmt::format("serving {} on {}, {}{}", counted(experiment.world.robots.size(), "robot"), command.network,
@@ -173,8 +174,34 @@ Serving::~Serving() = default;
 
 void Serving::start_controllers(const description::Experiment& experiment,
                                 const std::vector<TeamController>& controllers) {
-  if (command_.controllers == Controllers::external) return;
-  controllers_ = &controllers;
+  std::vector<Children::Command> processes;
+  if (command_.ros2)
+    processes.push_back(ros2_bridge_process(experiment,
+                                            description::select_robots(experiment.world, experiment.ros2.robots),
+                                            command_.network, domains_.front(), command_.secure));
+  if (command_.controllers != Controllers::external) {
+    controllers_ = &controllers;
+    tell_of_keyboard(experiment);
+    std::ranges::move(
+        controller_processes(without_ros2(experiment), controllers, command_.controllers == Controllers::per_robot,
+                             domains_, command_.secure, log_),
+        std::back_inserter(processes));
+  }
+  if (!processes.empty())
+    children_ = std::make_unique<Children>(std::move(processes), listener_of_controllers(*server_, log_));
+}
+
+// Returns the experiment without the robots that ROS 2 nodes drive.
+description::Experiment Serving::without_ros2(const description::Experiment& experiment) const {
+  description::Experiment others = experiment;
+  if (!command_.ros2) return others;
+  const std::vector<std::uint32_t> theirs = description::select_robots(experiment.world, experiment.ros2.robots);
+  for (description::Team& team : others.teams)
+    std::erase_if(team.robots, [&](std::uint32_t robot) { return std::ranges::binary_search(theirs, robot); });
+  return others;
+}
+
+void Serving::tell_of_keyboard(const description::Experiment& experiment) {
   for (const description::Team& team : experiment.teams)
     if (team.controller == keyboard_controller)
       log_.notice(fmt::format(
@@ -183,10 +210,6 @@ void Serving::start_controllers(const description::Experiment& experiment,
                                                   : "",
           selectors_of(team.robots), domains_.front(),
           command_.secure.empty() ? "" : " --secure " + identity_for(experiment, team, command_.secure).string()));
-  const bool per_robot = command_.controllers == Controllers::per_robot;
-  children_ = std::make_unique<Children>(
-      controller_processes(experiment, controllers, per_robot, domains_, command_.secure, log_),
-      listener_of_controllers(*server_, log_));
 }
 
 void Serving::start_view(const description::Experiment& experiment, const std::filesystem::path& recording) {
@@ -199,6 +222,7 @@ void Serving::start_view(const description::Experiment& experiment, const std::f
                     std::to_string(domains_.front())};
   view.arguments.insert(view.arguments.end(), {"--while-watched", "--again", own_command_line()});
   if (!recording.empty()) view.arguments.insert(view.arguments.end(), {"--written", recording.string()});
+  if (command_.view_port) view.arguments.insert(view.arguments.end(), {"--port", std::to_string(*command_.view_port)});
   if (command_.view_opens) view.arguments.emplace_back("--open");
   if (command_.view_opens && !command_.paused) view.arguments.emplace_back("--play-when-seen");
   if (command_.view_controls) view.arguments.push_back("--control");
@@ -218,12 +242,12 @@ void Serving::let_look(const std::atomic<bool>& stop) {
   std::optional<std::chrono::steady_clock::time_point> say_at = std::chrono::steady_clock::now() + before_saying;
   for (; has_view_ && !stop; std::this_thread::sleep_for(interval)) {
     if (!say_at || std::chrono::steady_clock::now() < *say_at) continue;
-    log_.notice("the run has ended, and its view stays until its pages are closed, or Ctrl-C");
+    log_.notice("the run has ended; the view remains until its pages are closed, or until Ctrl-C");
     say_at.reset();
   }
 }
 
-// Starts processes for robots that have come, ascending ids.
+// Starts processes for added robots, given by ascending ids.
 void Serving::drive(const description::Experiment& experiment, const std::vector<std::uint32_t>& robots) {
   if (controllers_ == nullptr || robots.empty()) return;
   description::Experiment theirs = experiment;
@@ -244,7 +268,8 @@ session::RunResult Serving::run(const description::Experiment& experiment, Simul
       if (is_spawned(simulation.robot_name(robot), experiment)) robots.push_back(robot);
     return robots;
   };
-  // What events bring is there as soon as a step is done. Those who spawn a robot later say themselves who drives it.
+  // Objects that events add exist when a step is done. A client that adds a robot later decides itself how it is
+  // driven.
   std::uint32_t known = simulation.robot_count();
   session::RunListener with_newcomers = listener;
   with_newcomers.boundary = [&] {
@@ -263,7 +288,7 @@ session::RunResult Serving::run(const description::Experiment& experiment, Simul
   session::RunResult result = server_->run(experiment, simulation, options, with_newcomers, stop);
   for (const auto& each : newcomers_) each->stop_restarting();
   if (result.next || (!is_last && result.end == session::RunResult::End::finished)) {
-    newcomers_.clear();  // the next world has none of their robots, or `drive` starts processes for them
+    newcomers_.clear();  // the next world has none of their robots; `drive` starts processes for new ones
     return result;
   }
   if (view_) view_->stop_restarting();

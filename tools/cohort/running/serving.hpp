@@ -15,29 +15,31 @@
 
 namespace cohort::tool {
 
-/// Serves experiments over DDS, one after the other, and answers for the controllers' processes that it starts itself.
+/// Serves experiments over DDS, one after the other, and manages the controller processes that it starts.
 class Serving {
  public:
-  /// Opens the domains. `experiment` is the first. Throws wire::WireError.
+  /// Opens the domains. `experiment` is the first one. Throws wire::WireError.
   Serving(const RunCommand& command, const description::Experiment& experiment, Log& log);
   ~Serving();
 
-  /// Starts the processes of the experiment's teams, unless they are started by somebody else; `run` starts those of
-  /// the robots that events bring. `experiment` must outlive this call only, `controllers` must outlive this.
+  /// Starts the processes of the experiment's teams, unless controllers are started elsewhere; `run` starts those of
+  /// robots that events add. `experiment` must outlive this call only, `controllers` must outlive this.
   void start_controllers(const description::Experiment& experiment, const std::vector<TeamController>& controllers);
 
-  /// Starts a process that shows the runs in a browser (`cohort view`); that it cannot is a warning. `recording` is
-  /// what the last one writes; empty: nothing.
+  /// Starts a process that shows the runs in a browser (`cohort view`); a failure is only a warning. `recording` is the
+  /// file that the last run writes; empty: none.
   void start_view(const description::Experiment& experiment, const std::filesystem::path& recording);
-  /// Waits while somebody looks at what has ended, unless asked to `stop`.
+  /// Waits while viewers of an ended run are connected, unless `stop` is set.
   void let_look(const std::atomic<bool>& stop);
 
-  /// `is_last`: controllers may leave afterwards.
+  /// `is_last`: controllers may leave after this run.
   session::RunResult run(const description::Experiment& experiment, Simulation& simulation,
                          const session::RunOptions& options, const session::RunListener& listener,
                          const std::atomic<bool>& stop, bool is_last);
 
  private:
+  void tell_of_keyboard(const description::Experiment& experiment);
+  description::Experiment without_ros2(const description::Experiment& experiment) const;
   void drive(const description::Experiment& experiment, const std::vector<std::uint32_t>& robots);
 
   const RunCommand& command_;
@@ -45,9 +47,9 @@ class Serving {
   std::vector<std::uint32_t> domains_;
   std::vector<wire::Participant> participants_;
   std::optional<session::Server> server_;
-  const std::vector<TeamController>* controllers_ = nullptr;  // null: somebody else starts them
+  const std::vector<TeamController>* controllers_ = nullptr;  // null: started elsewhere
   std::unique_ptr<Children> children_;
-  std::vector<std::unique_ptr<Children>> newcomers_;  // of one run
+  std::vector<std::unique_ptr<Children>> newcomers_;  // processes for added robots of the present run
   std::atomic<bool> has_view_{false};
   std::unique_ptr<Children> view_;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "server/simulation/build_identity.hpp"
@@ -52,8 +53,10 @@ void write_summary(const std::filesystem::path& file, const description::Experim
       {"barrier_us", quantiles(result.barrier)},
       {"late", result.late},
       {"resent", result.resent},
+      {"repeated", result.repeated},
       {"misses", misses},
       {"lateness_us", quantiles(result.lateness)},
+      {"late_ticks", result.late_ticks},
       {"events", events},
       {"stop_reason", result.stop_reason},
       {"touches",
@@ -62,6 +65,25 @@ void write_summary(const std::filesystem::path& file, const description::Experim
         {"robots", result.touches.robots}}},
   };
   write_file("the summary", file, json_text(summary, 2) + "\n");
+}
+
+SeedRow read_seed_row(std::uint64_t run, const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  const nlohmann::json summary = nlohmann::json::parse(stream);
+  const nlohmann::json& touches = summary.at("touches");
+  return {.run = run,
+          .experiment = summary.at("experiment"),
+          .seed = summary.at("seed"),
+          .ticks = summary.at("ticks"),
+          .sim_time = seconds(std::chrono::nanoseconds(summary.at("sim_time_ns"))),
+          .wall = summary.at("wall_s"),
+          .cpu = summary.at("cpu_s"),
+          .robot_ticks = touches.at("robot_ticks"),
+          .obstacles = touches.at("obstacles"),
+          .robots = touches.at("robots"),
+          .late = summary.at("late"),
+          .stop_reason = summary.at("stop_reason"),
+          .state_hash = summary.at("state_hash")};
 }
 
 }  // namespace cohort::tool

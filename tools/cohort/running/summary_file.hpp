@@ -3,11 +3,15 @@
 #include <filesystem>
 
 #include "server/run/run.hpp"
+#include "tools/cohort/running/seed_table.hpp"
 
 namespace cohort::tool {
 
-/// Writes the summary as JSON; docs/cli.md lists its keys. Throws std::runtime_error that says why it cannot.
+/// Writes the summary as JSON; docs/cli.md lists its keys. Throws std::runtime_error with the reason if it cannot.
 void write_summary(const std::filesystem::path& file, const description::Experiment& experiment,
                    const session::RunResult& result, double cpu_seconds);
+
+/// Reads a summary of the run with this number. Throws std::exception if the file is no summary.
+SeedRow read_seed_row(std::uint64_t run, const std::filesystem::path& file);
 
 }  // namespace cohort::tool

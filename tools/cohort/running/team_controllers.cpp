@@ -49,7 +49,7 @@ std::optional<Problem> try_controller(const Experiment& experiment, const Team& 
 
 bool is_plugin(const Team& team) { return team.controller != keyboard_controller && !team.controller.empty(); }
 
-// Calls `use` with each team whose controller is a plugin, and with the plugin's name or path. Collects what it throws.
+// Calls `use` with each team whose controller is a plugin, and with the plugin's name or path. Collects the exceptions.
 template <class Use>
 void for_plugins(const Experiment& experiment, const Use& use) {
   std::vector<Problem> problems;

@@ -11,9 +11,9 @@
 
 namespace cohort::tool {
 
-/// What drives a team.
+/// The controller of a team.
 struct TeamController {
-  std::optional<LoadedPlugin> plugin;  ///< none: people, by `cohort teleop`, or nobody
+  std::optional<LoadedPlugin> plugin;  ///< none: people, by `cohort teleop`, or no controller
 
   bool is_started() const { return plugin.has_value(); }
   ControllerKind kind() const;
@@ -21,16 +21,16 @@ struct TeamController {
 
 bool has_keyboard(const description::Experiment& experiment);
 
-/// Checks that the plugins of an experiment are there and can be loaded, without loading them. Throws
+/// Checks that the plugins of an experiment exist and can be loaded, without loading them. Throws
 /// description::InputError.
 void check_controllers(const description::Experiment& experiment);
 
-/// Loads the controllers of the experiment's teams. Returns them in their order. One that is named by a relative path
-/// is looked for beside the experiment. Throws description::InputError.
+/// Loads the controllers of the experiment's teams, and returns them in the same order. A relative path is looked up
+/// beside the experiment. Throws description::InputError.
 std::vector<TeamController> load_controllers(const description::Experiment& experiment);
 
-/// Starts a controller of each team for one robot of each kind that the team has, and throws it away: so mistakes in
-/// parameters and channels are found before anything runs. Throws description::InputError.
+/// Starts and discards a controller of each team for one robot of each kind in the team. This finds errors in
+/// parameters and channels before the run. Throws description::InputError.
 void try_controllers(const description::Experiment& experiment, const Simulation& simulation,
                      const std::vector<TeamController>& controllers);
 

@@ -4,27 +4,31 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 
 #include "tools/cohort/cli/log.hpp"
 
 namespace cohort::tool {
 
-/// Ends the process where it stands when it has been asked to end and a tick does not: a controller in it that loops,
-/// or a world that takes its time. Says so, with exit code 1; what was recorded before is in its file.
+/// Watches the ticks of a run from a thread of its own. Warns of a controller in this process that has not returned for
+/// 10 s. Ends the process with exit code 1 if it was asked to end and its tick still takes 10 s, because a controller
+/// loops or a step takes too long. The data recorded before are in the file.
 class Watchdog {
  public:
-  /// `stop`: whether the process was asked to end. Both must outlive this.
+  /// `stop`: whether the process was asked to end. `stop` and `log` must outlive this.
   Watchdog(const std::atomic<bool>& stop, Log& log);
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
   ~Watchdog();
 
-  /// At each boundary.
+  /// Notes the tick; called at each boundary.
   void reached(std::uint64_t tick) { tick_ = tick; }
 
  private:
   void watch();
+  [[noreturn]] void end_process(std::uint64_t tick, const std::optional<std::string>& call);
 
   const std::atomic<bool>& stop_;
   Log& log_;

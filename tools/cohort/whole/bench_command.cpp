@@ -18,12 +18,12 @@ struct BenchCommand {
   enum class What { scenes, thesis, lockstep, client };
   What what = What::scenes;
   bench::Options scenes{};
-  bench::ThesisOptions thesis{};          ///< the thesis's tables
-  bench::LockstepOptions lockstep{};      ///< the barrier
-  std::vector<std::string> placements{};  ///< of it; empty: all
-  bench::BenchClient client{};            ///< one of its processes
+  bench::ThesisOptions thesis{};          ///< tables of the thesis
+  bench::LockstepOptions lockstep{};      ///< measurement of the barrier
+  std::vector<std::string> placements{};  ///< placements of `lockstep`; empty: all
+  bench::BenchClient client{};            ///< options of a client process
   std::filesystem::path json{};           ///< file to write; empty: none
-  std::filesystem::path svg{};            ///< the same: lockstep's graph
+  std::filesystem::path svg{};            ///< graph of `lockstep`; empty: none
 };
 
 int measure_scenes(const BenchCommand& command, Log& log, const bench::Surroundings& surroundings) {
@@ -99,7 +99,7 @@ void add_scenes_options(CommandLine line, BenchCommand& command) {
       .comma_separated()
       .check(one_of(bench::engine_names()))
       .type_name("NAME[,NAME...]");
-  line.add_option("--robots", options.robots, "How many robots, one run for each number (default: some for each scene)")
+  line.add_option("--robots", options.robots, "Numbers of robots, one run for each (default: depends on the scene)")
       .comma_separated()
       .check(whole_number(1, 100'000))
       .type_name("N[,N...]");
@@ -107,42 +107,42 @@ void add_scenes_options(CommandLine line, BenchCommand& command) {
       .check(number_above_zero(1e6))
       .capture_default_str()
       .type_name("S");
-  line.add_option("--repetitions", options.repetitions, "Repetitions, the engines in turns")
+  line.add_option("--repetitions", options.repetitions, "Repetitions; engines alternate")
       .check(whole_number(1, 1000))
       .capture_default_str()
       .type_name("N");
-  line.add_option("--threads", options.threads, "Run Cohort with this many threads too, in turns with one")
+  line.add_option("--threads", options.threads, "Also run Cohort with this many threads, alternating with one thread")
       .check(whole_number(1, 1024))
       .capture_default_str()
       .type_name("N");
-  line.add_option("--seed", options.seed, "Seed of places and commands")
+  line.add_option("--seed", options.seed, "Seed for poses and commands")
       .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       .capture_default_str()
       .type_name("N");
   line.add_option("--json", command.json, "Write the results to this file as JSON").type_name("FILE");
   line.footer(
-      "Scenes: crowd (in a walled square), free (apart), crowd_wheels (Cohort too has wheels as bodies),\n"
-      "crowd_planar (Cohort in the plane only), chain (connected robots), rays, build (time and memory),\n"
-      "accuracy (against closed forms).\n"
-      "Engines: cohort (bodies of Bullet), cohort-matrix (the same with 'dynamics: cohort'), bullet (Bullet's own\n"
+      "Scenes of robots: crowd (in a walled square), free (without contacts between robots), crowd_wheels (Cohort\n"
+      "also has wheels as bodies), crowd_planar (Cohort in the plane only) and chain (connected robots).\n"
+      "Other scenes: rays, build (time and memory) and accuracy (compared with closed-form solutions).\n"
+      "Engines: cohort (Bullet's bodies), cohort-matrix (the same with 'dynamics: cohort'), bullet (Bullet's own\n"
       "world), ode-worldstep, ode-quickstep, mujoco and enki.\n"
-      "All engines get the same robots, places, commands and step, in this process, in turns. They differ in what\n"
-      "they can express: the others have wheels where Cohort has tracks; MuJoCo's motors lose torque with speed;\n"
-      "Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"
+      "All engines simulate the same robots, poses, commands and steps in this process, alternating. Their models\n"
+      "differ: the others have wheels where Cohort has tracks. The torque of MuJoCo's motors decreases with speed.\n"
+      "Enki is planar, without turrets, joints or torque limits. docs/bench.md describes scenes and engines.\n"
       "Example: cohort bench --scene crowd --robots 128,1000 --json results.json");
 }
 
 void add_thesis_options(CommandLine line, BenchCommand& command) {
   bench::ThesisOptions& options = command.thesis;
-  line.add_option("--seconds", options.seconds, "Simulated seconds of each cell")
+  line.add_option("--seconds", options.seconds, "Simulated seconds per cell")
       .check(number_above_zero(1e6))
       .capture_default_str()
       .type_name("S");
-  line.add_option("--budget", options.budget, "CPU seconds that a cell may take; the rest is extrapolated")
+  line.add_option("--budget", options.budget, "Limit of CPU seconds per cell; longer runs are extrapolated")
       .check(number_above_zero(1e6))
       .capture_default_str()
       .type_name("S");
-  line.add_option("--seed", options.seed, "Seed of places and commands")
+  line.add_option("--seed", options.seed, "Seed for poses and commands")
       .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       .capture_default_str()
       .type_name("N");
@@ -151,56 +151,54 @@ void add_thesis_options(CommandLine line, BenchCommand& command) {
       .check(one_of(bench::thesis_tables()))
       .type_name("NAME[,NAME...]");
   line.add_option("--robots", options.robots,
-                  "How many robots, a row for each number (default: the thesis's, and more)")
+                  "Numbers of robots, one row for each (default: those of the thesis, and larger ones)")
       .comma_separated()
       .check(whole_number(1, 100'000))
       .type_name("N[,N...]");
   line.add_option("--json", command.json, "Write the results to this file as JSON").type_name("FILE");
   line.footer(
-      "Tables 5.1 (random movement) and 5.2 (connected robots): the thesis's own seconds, and beside them Cohort and\n"
-      "ODE, the thesis's engine, run here and now with steps of 10 ms; ODE also with the thesis's 100 ms, and what "
-      "its\n"
-      "robots then do (behaviour). Tables 5.3 (proximity sensors) and 5.4 (light and sound): robots that stand still,\n"
-      "beside rays of ODE. docs/bench.md says all of it.");
+      "Tables 5.1 (random movement) and 5.2 (connected robots): the times of the thesis, compared with Cohort and\n"
+      "ODE, the engine of the thesis. Both run on this machine with steps of 10 ms. ODE also runs with the 100 ms of\n"
+      "the thesis, and the behaviour of its robots is shown. Tables 5.3 (proximity sensors) and 5.4 (light and\n"
+      "sound): robots at rest, compared with rays of ODE. docs/bench.md describes the tables.");
 }
 
 void add_lockstep_options(CommandLine line, BenchCommand& command) {
   bench::LockstepOptions& options = command.lockstep;
   std::vector<std::string> names;
   for (const auto& [name, placement] : bench::placements()) names.push_back(name);
-  line.add_option("--robots", options.robots, "How many robots, a row for each number")
+  line.add_option("--robots", options.robots, "Numbers of robots, one row for each")
       .comma_separated()
       .check(whole_number(1, 10'000))
       .capture_default_str()
       .type_name("N[,N...]");
   line.add_option("--placement", command.placements,
-                  "All robots in one process, in eights, or each in one (default: all three)")
+                  "Controllers per process: all in one, groups of eight, or one each (default: all three)")
       .comma_separated()
       .check(one_of(names))
       .type_name("WHERE[,WHERE...]");
-  line.add_option("--seconds", options.seconds, "Wall time of each repetition, of Cohort and of UDP each")
+  line.add_option("--seconds", options.seconds, "Wall time of each repetition, for Cohort and for UDP, in seconds")
       .check(number_above_zero(1e4))
       .capture_default_str()
       .type_name("S");
-  line.add_option("--repetitions", options.repetitions, "Repetitions, Cohort and UDP in turns")
+  line.add_option("--repetitions", options.repetitions, "Repetitions; Cohort and UDP alternate")
       .check(whole_number(1, 1000))
       .capture_default_str()
       .type_name("N");
   line.add_flag("--own-thread{false}", options.inline_step,
-                "Clients step on a thread of their own, as 'cohort host' does without --inline");
+                "Clients step on a separate thread, as 'cohort host' does without --inline");
   const Option look_ahead =
       line.add_flag("--look-ahead", options.look_ahead,
-                    "Measure a physics and a controller that compute for the same time, with and without a delay");
+                    "Measure physics and controllers that take equal time to compute, with and without a delay");
   line.add_option("--json", command.json, "Write the results to this file as JSON").type_name("FILE");
   line.add_option("--svg", command.svg, "Draw the results to this file as SVG").type_name("FILE").excludes(look_ahead);
   line.footer(
-      "A server and its clients in lockstep over DDS, beside the same bytes between as many processes over raw UDP, "
-      "in\n"
-      "turns. docs/bench.md says all of it.\n"
+      "Compares a server and its clients in lockstep over DDS with the same bytes sent between the same number of\n"
+      "processes over raw UDP, alternating. docs/bench.md describes the measurement.\n"
       "Example: cohort bench lockstep --robots 8,128 --placement eights");
 }
 
-// What `cohort bench lockstep` starts.
+// Adds the options of the client processes that `cohort bench lockstep` starts.
 void add_client_options(CommandLine line, bench::BenchClient& client) {
   line.add_option("--robots", client.robots).comma_separated();
   line.add_option("--domain", client.domain);
@@ -223,8 +221,9 @@ Subcommand add_bench(CommandLine app) {
     sub.callback([command, what] { command->what = what; });
     return sub;
   };
-  add_thesis_options(add("thesis", "Run the tables of the thesis of 2005 again", What::thesis), *command);
-  add_lockstep_options(add("lockstep", "Measure what the barrier costs, beside raw UDP", What::lockstep), *command);
+  add_thesis_options(add("thesis", "Repeat the benchmark tables of the thesis of 2005", What::thesis), *command);
+  add_lockstep_options(
+      add("lockstep", "Measure the cost of the lockstep barrier, compared with raw UDP", What::lockstep), *command);
   CommandLine client = add("client", "", What::client);
   client.hide();
   add_client_options(client, command->client);

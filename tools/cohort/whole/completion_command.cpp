@@ -19,7 +19,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-// For bash and zsh; fish has its own way with a quote.
+// Quotes a word for bash and zsh; fish escapes quotes differently.
 std::string quoted(const std::string& text) { return "'" + replaced(text, "'", R"('\'')") + "'"; }
 std::string quoted_for_fish(const std::string& text) {
   return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'";
@@ -37,13 +37,13 @@ Words paths_below(const CommandTree& tree) {
   return paths;
 }
 
-// What a shell does for a value, in its own words.
+// Commands of a shell that complete a value.
 struct Actions {
   std::string files;
   std::string folders;
   std::function<std::string(const Words&)> words;
 
-  // For a value that nobody can know: nothing.
+  // Returns the command for a value; empty if its values are not known.
   std::string of(const Placeholder& value) const {
     if (value.is_file()) return files;
     if (value.is_folder()) return folders;
@@ -51,7 +51,7 @@ struct Actions {
   }
 };
 
-// The branches of a `case` by command and the word before: those that do the same in one.
+// Returns the branches of a `case` on the command and the previous word, merged where they do the same.
 std::string value_branches(const CommandTree& tree, const Actions& actions) {
   std::map<std::string, Words> patterns;
   for (const CommandTree* command : all_commands(tree))
@@ -64,7 +64,7 @@ std::string value_branches(const CommandTree& tree, const Actions& actions) {
   return text;
 }
 
-// Of the first operand that can be completed; it stands for all of them.
+// Returns the first operand that can be completed, which is used for all operands.
 const Placeholder* operand_of(const CommandTree& command) {
   const auto found = std::ranges::find_if(command.operands, [](const OperandLine& operand) {
     return operand.value.is_file() || operand.value.is_folder() || !operand.value.words.empty();
@@ -72,7 +72,7 @@ const Placeholder* operand_of(const CommandTree& command) {
   return found == command.operands.end() ? nullptr : &found->value;
 }
 
-// What bash and zsh have in common: finding the command that is being written.
+// The common part of bash and zsh: it finds the command that is being typed.
 constexpr const char* find_command = R"(  for ((i = {first}; i < {current}; ++i)); do
     case "$command ${{{words}[i]}}" in
       {paths}) command+=" ${{{words}[i]}}" ;;
@@ -113,7 +113,7 @@ std::string for_bash(const CommandTree& tree) {
   return text + fmt::format("  esac\n}}\ncomplete -F _{0} {0}\n", tree.name);
 }
 
-// What zsh's _describe takes: a word, a colon, and what it is.
+// Returns an entry of zsh's _describe: a word, a colon, and a description.
 std::string described(const std::string& word, const std::string& text) {
   return quoted(replaced(word, ":", "\\:") + ":" + replaced(text, ":", "\\:"));
 }
@@ -147,7 +147,7 @@ std::string for_zsh(const CommandTree& tree) {
     text += "      fi ;;\n";
   }
   text += "  esac\n}\n";
-  // Read by the completion system it is the function's body, which has to do something the first time.
+  // The completion system reads the file as the function's body, which must already complete on the first call.
   return text + fmt::format("if [[ $funcstack[1] == _{0} ]]; then _{0} \"$@\"; else compdef _{0} {0}; fi\n", tree.name);
 }
 

@@ -9,7 +9,7 @@
 namespace cohort::tool {
 namespace {
 
-// As it stands, also where roff would read a command or a typographic mark.
+// Escapes characters that roff would read as a command or a typographic mark.
 std::string plain(const std::string& text) {
   std::string written;
   written.reserve(text.size());
@@ -73,7 +73,7 @@ std::string environment_of(const CommandTree& tree) {
       if (!option.variable.empty()) options[option.variable] = option.names.back();
   std::string text;
   for (const auto& [variable, option] : options)
-    text += fmt::format(".TP\n{}\nStands in for {}.\n", bold(variable), bold(option));
+    text += fmt::format(".TP\n{}\nDefault value of {}.\n", bold(variable), bold(option));
   return text;
 }
 
@@ -92,7 +92,7 @@ std::string man_page(const CommandTree& tree) {
   for (const CommandTree* command : all_commands(tree))
     if (command != &tree) text += section_of(*command);
   return text + ".SH ENVIRONMENT\n" + environment_of(tree) +
-         ".SH SEE ALSO\nThe documents beside this page, in share/doc/cohort: docs/cli.md has all of this at length.\n";
+         ".SH SEE ALSO\nThe documents in share/doc/cohort: docs/cli.md describes the commands in detail.\n";
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "server/recording/recording.hpp"
 #include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/refuse_experiment.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 #include "tools/processes/external_program.hpp"
 #include "tools/view/sources/followed_run.hpp"
@@ -23,22 +24,22 @@ namespace cohort::tool {
 namespace {
 
 struct ViewCommand {
-  std::filesystem::path recording;  ///< what is shown; empty: a server
+  std::filesystem::path recording;  ///< recording to show; empty: show a server
   Connection connection{};
   std::filesystem::path secure_control{};  ///< folder of an identity that may control
-  std::filesystem::path secure_drive{};    ///< and of one that may drive; empty: the one above
+  std::filesystem::path secure_drive{};    ///< folder of an identity that may drive; empty: the one above
   bool may_control = false;
   std::string network = "127.0.0.1";    ///< address of the interface to serve on
-  std::optional<std::uint16_t> port{};  ///< 0: any free one; none: 8080, or any free one where that is taken
-  std::string token{};                  ///< that browsers have to give; empty: one is made where strangers can connect
-  std::vector<std::string> origins{};   ///< of other pages that may connect
-  unsigned threads = 0;                 ///< that replay a recording; 0: one for each core
-  bool opens = false;                   ///< a browser
-  // What a run tells the view that it starts.
+  std::optional<std::uint16_t> port{};  ///< 0: any free port; none: 8080, or any free port if 8080 is in use
+  std::string token{};  ///< token that browsers must send; empty: random unless only this machine can connect
+  std::vector<std::string> origins{};  ///< origins of other pages that may connect
+  unsigned threads = 0;                ///< threads that replay a recording; 0: one for each core
+  bool opens = false;                  ///< open a browser
+  // Options that a run passes to the view that it starts.
   bool plays_when_seen = false;
-  bool while_watched = false;       ///< ends when the server has ended and nobody looks any more
+  bool while_watched = false;       ///< end when the server has ended and no viewer is connected
   std::filesystem::path written{};  ///< recording that the server writes
-  std::string again{};              ///< what to type to run it again
+  std::string again{};              ///< command line that repeats the run
 };
 
 constexpr std::uint16_t usual_port = 8080;
@@ -56,8 +57,9 @@ view::PageFiles page_or_warning(Log& log) {
   view::PageFiles page = view::read_page(installed_page_folder());
   if (page.empty())
     log.warning(
-        "the page was not built, so that only other viewers can connect: it needs node 18 and npm ('tools/"
-        "install-packages tools/packages-node.txt'), then 'cmake --build build/release --target view_page'");
+        "the browser page was not built, so only other viewers can connect. To build it, install node 18 and npm "
+        "('tools/install-packages tools/packages-node.txt'), then run 'cmake --build build/release --target "
+        "view_page'");
   return page;
 }
 
@@ -70,14 +72,14 @@ std::string say_where(const ViewCommand& command, const view::WebOptions& option
   return address;
 }
 
-// The browser is the user's: in a session of its own it stays when this ends, and it is not waited for.
+// The browser runs in its own session, so that it survives this process, which does not wait for it.
 void open_browser(const std::string& address, Log& log) {
   const std::string script = "command -v xdg-open > /dev/null && { setsid xdg-open \"$0\" > /dev/null 2>&1 & }";
   if (run_program({"sh", "-c", script, address}, "/").exit_code != 0)
-    log.warning("no browser was opened, since there is no xdg-open here: open " + address + " yourself");
+    log.warning("cannot open a browser, because xdg-open is not installed: open " + address + " yourself");
 }
 
-// `is_over`, which is asked now and then: nobody needs it any more.
+// `is_over` is polled, and returns whether the view is no longer needed.
 void serve_until(view::WebServer& server, view::Source& source, const std::atomic<bool>& stop,
                  const std::function<bool()>& is_over) {
   std::jthread watch([&](const std::stop_token& has_ended) {
@@ -88,7 +90,7 @@ void serve_until(view::WebServer& server, view::Source& source, const std::atomi
   server.run(source);
 }
 
-// Whether nobody has looked for a while: a page that is loaded again is gone only for a moment.
+// Detects that no viewer has been connected for a while; reloading a page interrupts its connection only briefly.
 class Desertion {
  public:
   explicit Desertion(const view::Topics& topics) : topics_(topics) {}
@@ -104,7 +106,7 @@ class Desertion {
   std::optional<std::chrono::steady_clock::time_point> seen_at_;
 };
 
-// `make_source` makes what publishes to its topics.
+// `make_source` creates the source that publishes to the server's topics.
 template <class MakeSource>
 int serve(const ViewCommand& command, const std::string& name, Log& log, const std::atomic<bool>& stop,
           MakeSource make_source, const std::function<bool()>& has_ended = {}) {
@@ -128,6 +130,7 @@ unsigned threads_of(const ViewCommand& command) {
 }
 
 int view_recording(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
+  refuse_experiment(command.recording, "--view");
   const recording::Recording recording(command.recording);
   if (!recording.damage().empty()) log.warning(recording.damage());
   return serve(command, recording.file().filename().string(), log, stop, [&](view::Topics& topics) {
@@ -162,40 +165,44 @@ Subcommand add_view(CommandLine app) {
   const auto command = std::make_shared<ViewCommand>();
   CommandLine line = app.add_subcommand(in_whole::view.name, in_whole::view.text);
   const Option recording =
-      line.add_option("RECORDING", command->recording, "Recording (MCAP) to show, instead of a server").type_name("");
+      line.add_option("RECORDING", command->recording, "Recording (MCAP) to show instead of a server").type_name("");
   add_server_option(line, command->connection.server);
-  line.add_flag("--control", command->may_control, "Let whoever looks control the server").excludes(recording);
-  line.add_option("--secure-control", command->secure_control, "Folder of an identity that may control, for --control")
+  line.add_flag("--control", command->may_control, "Allow viewers to control the server").excludes(recording);
+  line.add_option("--secure-control", command->secure_control,
+                  "With --control: folder of an identity that may control the run")
       .type_name("DIR");
   line.add_option("--secure-drive", command->secure_drive,
-                  "Folder of the identity that drives robots from the page (default: that of --secure-control)")
+                  "Folder of the identity that drives robots from the page (default: the folder of --secure-control)")
       .type_name("DIR");
-  line.add_flag("--open", command->opens, "Open it in a browser");
+  line.add_flag("--open", command->opens, "Open the page in a browser");
   line.add_flag("--play-when-seen", command->plays_when_seen,
-                "Let a run that begins paused go on as soon as somebody looks");
-  line.add_flag("--while-watched", command->while_watched, "End when the server has ended and nobody looks any more");
-  line.add_option("--written", command->written, "Recording that the server writes, to show when it has ended")
+                "Resume a run that starts paused when the first viewer connects");
+  line.add_flag("--while-watched", command->while_watched, "Exit when the server has ended and no viewer is connected");
+  line.add_option("--written", command->written, "Recording that the server writes, shown when the server has ended")
       .excludes(recording)
       .type_name("FILE");
-  line.add_option("--again", command->again, "What to type to run it again, for who looks when it has ended")
+  line.add_option("--again", command->again, "Command line that repeats the run, shown to viewers when it has ended")
       .type_name("TEXT");
-  line.add_option("--port", command->port, "Where browsers find it (default: 8080, or any free one if that is taken)")
+  line.add_option("--port", command->port,
+                  "TCP port to serve browsers on (default: 8080, or a free port if 8080 is in use)")
       .check(whole_number(0, std::numeric_limits<std::uint16_t>::max()))
       .type_name("N");
-  line.add_option("--network", command->network, "Address of the interface to serve browsers on")
+  line.add_option("--network", command->network, "Address of the network interface to serve browsers on")
       .capture_default_str()
       .type_name("ADDRESS");
   line.add_option("--token", command->token,
-                  "What browsers have to give (default: none on the loopback, or a random one)")
+                  "Token that browsers must send (default: none on the loopback interface, otherwise a random token)")
       .type_name("TEXT");
-  line.add_option("--origin", command->origins, "Another page that may connect, such as https://app.foxglove.dev")
+  line.add_option("--origin", command->origins,
+                  "Origins of other pages that may connect, such as https://app.foxglove.dev")
       .comma_separated()
       .type_name("URL[,URL...]");
-  line.add_option("--threads", command->threads, "Threads that replay a recording (default: the cores)")
+  line.add_option("--threads", command->threads, "Threads that replay a recording (default: one per core)")
       .check(whole_number(1, 1024))
       .type_name("N");
   add_domain_option(line, command->connection.domains, domain_of_server);
-  add_secure_option(line, command->connection.secure, "Folder of the observers' identity (default: $COHORT_SECURE)");
+  add_secure_option(line, command->connection.secure,
+                    "Folder of the identity of an observer (default: $COHORT_SECURE)");
   line.footer("Example: cohort view run.mcap");
   return {line, [command](Log& log, const std::atomic<bool>& stop) {
             return command->recording.empty() ? view_server(*command, log, stop) : view_recording(*command, log, stop);

@@ -10,7 +10,7 @@ class ObedientController final : public Controller {
   ObedientController(HeldCommand& command, std::function<void()> begun) : held_(command), begun_(std::move(begun)) {}
 
   void start(const Start& start) override {
-    // They are for whatever else drives this team.
+    // The parameters are for the other controllers of this team.
     for (const Parameter& parameter : start.parameters.all()) start.parameters.has(parameter.name);
     channels_.clear();
     channels_.reserve(start.command_channels.size());
@@ -27,7 +27,7 @@ class ObedientController final : public Controller {
       for (std::size_t i = 0; i < channel.size; ++i) command.set(channel, *next++, i);
   }
 
-  void save(StateWriter&) const override {}  // what is held is the page's
+  void save(StateWriter&) const override {}  // the page holds the command
 
  private:
   HeldCommand& held_;
@@ -85,7 +85,7 @@ std::string Driver::drive() {
     const std::lock_guard lock(mutex_);
     switch (end) {
       case ClientEnd::finished: return "the run is over";
-      case ClientEnd::interrupted: return told_.empty() ? robot + " is let go" : told_;
+      case ClientEnd::interrupted: return told_.empty() ? robot + " is released" : told_;
       case ClientEnd::refused:
       case ClientEnd::superseded:
       case ClientEnd::failed:
@@ -105,8 +105,8 @@ void Driver::tell(Severity severity, const std::string& text) {
   if (has_begun_) return;
   leaves_ = true;
   if (severity == Severity::warning)
-    told_ = options_.robots.front() + " was not given (" + text +
-            "). Whoever has it may be silent since the run stands still";
+    told_ = options_.robots.front() + " could not be claimed (" + text +
+            "). Its present controller may be silent because the run is not advancing";
 }
 
 void Driver::answer(const Answer& answer) {

@@ -28,7 +28,7 @@ void Drivers::drive(const ViewRequest& request, std::function<void(const Answer&
     }
     if (found == driven_.end()) {
       if (!is_claim)
-        told = {false, "this page does not drive '" + request.name + "': 'drive' without numbers takes it"};
+        told = {false, "this page does not drive '" + request.name + "': claim it by 'drive' without numbers"};
       else if (!is_name(request.name))
         told = {false, "'drive' needs the whole name of one robot, such as explorers/sbot_7"};
       else if (driven_.size() + leaving_.size() >= most)
@@ -54,7 +54,7 @@ Answer Drivers::tell(const ViewRequest& request, Driven& driven) {
       return {false, "another page drives " + request.name};
     driven.visitor = request.visitor;
   }
-  if (!driver.has_begun()) return {false, "it is still asked for"};
+  if (!driver.has_begun()) return {false, "the robot is still being claimed"};
   try {
     driver.command().give(request.numbers, now);
   } catch (const std::invalid_argument& error) {

@@ -35,7 +35,7 @@ class Drivers {
   /// Without numbers claims the robot that `request` names, or keeps it at its neutral values; otherwise tells it
   /// these. Answered at once, but for a claim.
   void drive(const ViewRequest& request, std::function<void(const Answer&)> answer);
-  /// Lets it go.
+  /// Releases it.
   Answer release(const ViewRequest& request);
   /// Lets all go that this visitor drives.
   void leave(std::uint64_t visitor);

@@ -18,10 +18,10 @@ void HeldCommand::begin(const std::vector<ChannelInfo>& channels) {
 void HeldCommand::give(std::vector<double> values, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
   if (!values.empty() && values.size() != count_)
-    throw std::invalid_argument("its command has " + std::to_string(count_) + " values, not " +
+    throw std::invalid_argument("the robot's command has " + std::to_string(count_) + " values, not " +
                                 std::to_string(values.size()));
   if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
-    throw std::invalid_argument("a command has finite numbers only");
+    throw std::invalid_argument("expected finite numbers in a command");
   values_ = std::move(values);
   given_at_ = now;
 }

@@ -9,14 +9,14 @@
 
 namespace cohort::view {
 
-/// What a robot is told that a person drives: the newest values that came, as long as they are fresh. Any thread.
+/// The command of a robot that a person drives: the newest values, as long as they are fresh. Any thread.
 class HeldCommand {
  public:
   using Clock = std::chrono::steady_clock;
-  /// After such a silence nobody may be there any more, and the robot is at its neutral values.
+  /// After this silence the page may be gone, and the robot gets its neutral values.
   static constexpr std::chrono::milliseconds longest_silence{500};
 
-  /// The robot has these channels from now on. What came before stays if it fits them.
+  /// Sets the robot's channels. Earlier values stay if they fit them.
   void begin(const std::vector<ChannelInfo>& channels);
   /// All values of all channels in their order, or none for the neutral ones. Throws std::invalid_argument, with a
   /// sentence, if they are of another number or not finite.

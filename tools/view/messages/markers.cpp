@@ -20,7 +20,7 @@ void fill_colors(const messages::SceneMesh& mesh, float opacity, Marker& marker)
   marker.colors.reserve(mesh.colors.size());
   for (std::size_t i = 0; i + 2 < mesh.colors.size(); i += 3) {
     const auto part = [&](std::size_t which) { return static_cast<float>(mesh.colors[i + which]) / full; };
-    marker.colors.insert(marker.colors.end(), 3, {part(0), part(1), part(2), opacity});  // of its corners
+    marker.colors.insert(marker.colors.end(), 3, {part(0), part(1), part(2), opacity});  // colours of its corners
   }
 }
 

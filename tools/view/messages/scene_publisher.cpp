@@ -24,7 +24,7 @@ void ScenePublisher::show_as_it_is(messages::Scene scene, std::chrono::nanosecon
 
 void ScenePublisher::show(const messages::SceneFrame& frame, std::chrono::nanoseconds time) {
   publish(Topic::frame, frame, time);
-  // Whoever reads these gets them late rather than everybody paying for them.
+  // Only their readers pay for these, by getting them late.
   if (frame.revision != scene_.revision) return;
   if (is_read(Topic::markers) && std::exchange(revision_of_markers_, scene_.revision) != scene_.revision)
     publish(Topic::markers, markers_of(scene_), time);

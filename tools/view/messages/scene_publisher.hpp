@@ -8,7 +8,7 @@
 
 namespace cohort::view {
 
-/// Publishes what a source shows, as far as somebody reads it. One thread.
+/// Publishes the data of a source on topics that have readers. One thread.
 class ScenePublisher {
  public:
   explicit ScenePublisher(Topics& topics) : topics_(topics) {}
@@ -17,7 +17,7 @@ class ScenePublisher {
   std::uint32_t show(messages::Scene scene, std::chrono::nanoseconds time);
   /// Publishes it with the revision that it has.
   void show_as_it_is(messages::Scene scene, std::chrono::nanoseconds time);
-  /// Of the scene that was shown last.
+  /// Publishes a frame, or signals, of the scene that was shown last.
   void show(const messages::SceneFrame& frame, std::chrono::nanoseconds time);
   void show(const messages::SceneSignals& signals, std::chrono::nanoseconds time);
 

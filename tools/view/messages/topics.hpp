@@ -28,13 +28,13 @@ const std::array<TopicInfo, topic_count>& topic_table();
 
 /// A message as it was published; never changed.
 struct Published {
-  std::uint64_t version = 0;  ///< of its topic, counting up from 1
+  std::uint64_t version = 0;  ///< version of its topic, counted from 1
   std::chrono::nanoseconds time{0};
   recording::Bytes data;  ///< CDR
 };
 
-/// The newest message of each topic, between the source that publishes and the clients that read. What is published
-/// takes the place of what was there, so nothing grows where nobody reads. Any thread.
+/// The newest message of each topic, between the source that publishes and the clients that read. A new message
+/// replaces the previous one, so memory does not grow without readers. Any thread.
 class Topics {
  public:
   /// `published` is called on the publisher's thread after each message.
@@ -44,7 +44,7 @@ class Topics {
   /// Null if there is none yet.
   std::shared_ptr<const Published> newest(Topic topic) const;
 
-  /// Somebody reads it, or does no longer.
+  /// Adds or removes a reader of a topic.
   void add_reader(Topic topic);
   void remove_reader(Topic topic);
   bool is_read(Topic topic) const { return readers_[index_of(topic)] > 0; }

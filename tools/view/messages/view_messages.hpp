@@ -2,7 +2,7 @@
 
 #include "idl/messages/scene_messages.hpp"
 
-/// What viewers are told beside the scene (server/viewing/scene_messages.hpp).
+/// Messages to viewers in addition to the scene (server/viewing/scene_messages.hpp).
 namespace cohort::view {
 
 using messages::field;
@@ -10,7 +10,7 @@ using messages::field;
 /// How what is shown goes on. Times of a recording are its log times, of a server simulated ones.
 struct ViewStatus {
   std::string source;  ///< `recording`, `server`, or `program`, which steps a world of its own
-  std::string name;    ///< of the recording's file, or the experiment
+  std::string name;    ///< name of the recording's file or of the experiment
   bool may_control = false;
   bool can_seek = false;            ///< to times from `seekable_from_ns` to `seekable_to_ns`
   bool loses_what_follows = false;  ///< going back: what comes then is new
@@ -22,14 +22,14 @@ struct ViewStatus {
   std::int64_t end_ns = 0;  ///< at the latest
   std::int64_t seekable_from_ns = 0;
   std::int64_t seekable_to_ns = 0;
-  std::string note{};                  ///< what keeps it from going on; empty if nothing does
+  std::string note{};                  ///< the reason why the run does not advance; empty if it does
   std::vector<std::string> awaited{};  ///< robots
-  /// `waiting` for a server; `gathering`: for controllers, before the first tick; `running`; `ended`; `gone`: the
-  /// server is, without a word.
+  /// `waiting`: for a server. `gathering`: for controllers, before the first tick. `running`. `ended`. `gone`: the
+  /// server has ended without a message.
   std::string phase = "running";
   std::string end{};        ///< how it ended: `finished`, `interrupted`, `failed`, `shut_down`
   std::string end_text{};   ///< why
-  std::string to_type{};    ///< what to type in a shell now: to attach a controller, or to run it again
+  std::string to_type{};    ///< shell command that attaches a controller or runs it again
   std::string recording{};  ///< name of the file that `replay` shows in its place
   static constexpr const char* type = "cohort_msgs/msg/ViewStatus";
   static constexpr auto fields = std::tuple(
@@ -47,12 +47,12 @@ struct ViewStatus {
 
 /// Something that happened, perhaps more than once.
 struct ViewEvent {
-  std::int64_t time_ns = 0;  ///< of the first time
+  std::int64_t time_ns = 0;  ///< first occurrence
   std::uint64_t tick = 0;
   std::string kind;  ///< a word
   std::string text;
   std::uint64_t count = 1;
-  std::int64_t last_ns = 0;  ///< of the last time
+  std::int64_t last_ns = 0;  ///< last occurrence
   static constexpr const char* type = "cohort_msgs/msg/ViewEvent";
   static constexpr auto fields = std::tuple(field("time_ns", &ViewEvent::time_ns), field("tick", &ViewEvent::tick),
                                             field("kind", &ViewEvent::kind), field("text", &ViewEvent::text),

@@ -4,7 +4,7 @@ import { copyFileSync, mkdirSync } from "node:fs";
 import { build } from "esbuild";
 
 const folder = process.argv[2];
-if (!folder) throw new Error("name the folder that the page goes to");
+if (!folder) throw new Error("usage: build.mjs FOLDER: the folder for the built page");
 
 const { status } = spawnSync(process.execPath, ["node_modules/typescript/bin/tsc", "--noEmit"], { stdio: "inherit" });
 if (status !== 0) process.exit(1);

@@ -13,14 +13,14 @@ using wire::SimulationState;
 
 wire::Vector3 vector_in(const ViewRequest& asked) {
   if (asked.numbers.size() < 2 || asked.numbers.size() > 3)
-    throw std::invalid_argument("'" + asked.operation + "' needs x, y and perhaps z");
+    throw std::invalid_argument("'" + asked.operation + "' expects x, y and optionally z");
   return {asked.numbers[0], asked.numbers[1], asked.numbers.size() > 2 ? asked.numbers[2] : 0.0};
 }
 
 // Upright, with its heading about the vertical.
 wire::Pose pose_in(const ViewRequest& asked) {
   if (asked.numbers.size() < 2 || asked.numbers.size() > 4)
-    throw std::invalid_argument("'" + asked.operation + "' needs x, y, perhaps z, and perhaps a heading");
+    throw std::invalid_argument("'" + asked.operation + "' expects x, y, optionally z, and optionally a heading");
   std::array<double, 4> numbers{};
   std::ranges::copy(asked.numbers, numbers.begin());
   wire::Pose pose;
@@ -44,13 +44,13 @@ Operation reset(const ViewRequest&) { return wire::ResetSimulation{}; }
 Operation step(const ViewRequest& asked) {
   constexpr double most = 1e9;
   if (!(asked.number >= 1.0 && asked.number <= most))
-    throw std::invalid_argument("a running world steps ahead, by one tick or more");
+    throw std::invalid_argument("expected a step of one tick or more");
   return wire::StepSimulation{static_cast<std::uint64_t>(asked.number)};
 }
 
 Operation speed(const ViewRequest& asked) {
   if (!(asked.number >= 0.0) || !std::isfinite(asked.number))
-    throw std::invalid_argument("a speed is above 0, or 0 for as fast as it goes");
+    throw std::invalid_argument("expected a speed above 0, or 0 for as fast as possible");
   return wire::SetSpeed{asked.number};
 }
 
@@ -88,6 +88,7 @@ constexpr std::array view_operations = {
     ViewOperation{"move", move},
     ViewOperation{"light", light},
     ViewOperation{"push", push},
+    ViewOperation{"shutdown", to_state<SimulationState::quitting>},
 };
 
 }  // namespace
@@ -95,8 +96,7 @@ constexpr std::array view_operations = {
 Operation operation_of(const ViewRequest& asked) {
   const auto* const found =
       std::ranges::find_if(view_operations, [&](const ViewOperation& each) { return asked.operation == each.name; });
-  if (found == view_operations.end())
-    throw std::invalid_argument("'" + asked.operation + "' is nothing that a server can do");
+  if (found == view_operations.end()) throw std::invalid_argument("'" + asked.operation + "': unknown operation");
   return found->operation(asked);
 }
 

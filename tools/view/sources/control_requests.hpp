@@ -5,7 +5,8 @@
 
 namespace cohort::view {
 
-/// What a server is asked for a viewer. Throws std::invalid_argument, with a sentence, if what it asks makes no sense.
+/// Translates requests of viewers into operations of a server. Throws std::invalid_argument, with a sentence, if what
+/// it asks makes no sense.
 wire::Operation operation_of(const ViewRequest& asked);
 
 }  // namespace cohort::view

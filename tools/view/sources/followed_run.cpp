@@ -41,7 +41,7 @@ bool FollowedRun::has_ended() const {
 
 Answer FollowedRun::replay() {
   if (replayed_) return {true, "the recording is shown"};
-  if (file_.empty()) return {false, "nothing was recorded: 'cohort run --record FILE' does"};
+  if (file_.empty()) return {false, "nothing was recorded: use 'cohort run --record FILE'"};
   if (!live_->has_ended()) return {false, "the run has not ended yet"};
   try {
     recording_.emplace(file_);
@@ -51,8 +51,7 @@ Answer FollowedRun::replay() {
     replayed_ = std::move(replayed);
   } catch (const std::exception& error) {
     recording_.reset();
-    return {false,
-            std::string("the recording cannot be shown, perhaps since it is still being written: ") + error.what()};
+    return {false, std::string("the recording cannot be shown; it may still be being written: ") + error.what()};
   }
   return {true, "shows " + file_.filename().string()};
 }

@@ -22,7 +22,7 @@ bool LiveHistory::take(const wire::Reply& reply, std::chrono::nanoseconds step) 
   return is_another_run || !history.events.empty();
 }
 
-// What the run has gone back behind has not happened.
+// Events after the time to which the run has gone back are dropped.
 void LiveHistory::begin_run(std::uint32_t run, std::uint64_t begin_tick) {
   run_ = run;
   revision_ = 0;

@@ -9,7 +9,7 @@
 
 namespace cohort::view {
 
-/// What has happened in a server's runs, put together from what it tells of them piece by piece. Not thread-safe.
+/// The history of a server's runs, put together from its messages piece by piece. Not thread-safe.
 class LiveHistory {
  public:
   /// The question that brings what is not known yet.
@@ -20,7 +20,7 @@ class LiveHistory {
 
   /// The newest events, in the order of their last time.
   const ViewEvents& events() const { return events_; }
-  /// Whether the run can go back, and to which times.
+  /// The times to which the run can go back, if any.
   bool can_go_back() const { return keep_interval_ > 0; }
   std::chrono::nanoseconds first_kept() const { return first_kept_; }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "server/viewing/check_scene.hpp"
 #include "tools/view/sources/control_requests.hpp"
 
@@ -20,7 +21,7 @@ constexpr auto for_a_reply = 5s;
 constexpr auto status_interval = 250ms;
 constexpr auto newcomer_interval = 100ms;
 constexpr std::size_t most_requests = 64;
-constexpr const char* no_server = "there is no server that can be controlled";
+constexpr const char* no_server = "no server responds to control requests";
 
 recording::Bytes copied(std::span<const std::uint8_t> bytes) {
   const auto view = std::as_bytes(bytes);
@@ -33,11 +34,16 @@ std::optional<wire::Identity> identity_in(const std::string& folder) {
 
 std::chrono::nanoseconds time_of(double seconds) {
   constexpr double longest_run = 9e9;  // [s]; beyond, nanoseconds are no 64 bits
-  if (!(std::abs(seconds) <= longest_run)) throw std::invalid_argument("a time is in seconds, from 0 on");
+  if (!(std::abs(seconds) <= longest_run)) throw std::invalid_argument("expected a time in seconds, 0 or more");
   return std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
 }
 
-const Answer no_answer{false, "the server has not answered within 5 s; it may still be done"};
+// Where the time bar ends: at `now` if the run has no end.
+std::int64_t end_of(const wire::SimulationStatus& run, std::int64_t now) {
+  return run.duration_ns >= parsing::without_end.count() ? now : run.duration_ns;
+}
+
+const Answer no_answer{false, "the server has not answered within 5 s; it may still carry out the request"};
 
 }  // namespace
 
@@ -97,8 +103,7 @@ void LiveSource::show_what_arrives() {
       show(arrived);
     } catch (const messages::CdrError& error) {
       ViewStatus status = status_without_run();
-      status.note =
-          std::string("what the server shows cannot be read, perhaps since it is of another version: ") + error.what();
+      status.note = std::string("the server's data cannot be read; its version may differ: ") + error.what();
       show_status(status);
     }
   }
@@ -140,7 +145,7 @@ void LiveSource::begin() {
   has_ended_ = false;
 }
 
-// What was shown last stays.
+// The last picture remains.
 void LiveSource::end(End how) {
   {
     const std::lock_guard lock(mutex_);
@@ -173,7 +178,7 @@ void LiveSource::watch(const std::vector<std::uint32_t>& robots) {
 }
 
 void LiveSource::ask(const ViewRequest& request, std::function<void(const Answer&)> answer) {
-  if (!options_.may_control) return answer({false, "this view may only look: 'cohort view --control' may do more"});
+  if (!options_.may_control) return answer({false, "this view is read-only: start it by 'cohort view --control'"});
   if (request.operation == "drive") return drive(request, std::move(answer));
   if (request.operation == "release") return answer(drivers_.release(request));
   {
@@ -184,12 +189,12 @@ void LiveSource::ask(const ViewRequest& request, std::function<void(const Answer
       return;
     }
   }
-  answer({false, "the server has not yet done what was asked for before"});
+  answer({false, "too many requests are pending at the server"});
 }
 
 void LiveSource::drive(const ViewRequest& request, std::function<void(const Answer&)> answer) {
   if (!options_.secure.empty() && options_.secure_drive.empty())
-    return answer({false, "this server knows who drives: 'cohort view --secure-drive DIR' names an identity that may"});
+    return answer({false, "driving this server needs an identity: start the view by 'cohort view --secure-drive DIR'"});
   if (!has_server_) return answer({false, no_server});
   drivers_.drive(request, std::move(answer));
 }
@@ -252,7 +257,7 @@ Answer LiveSource::done(ControlClient& client, const ViewRequest& asked) {
 }
 
 Answer LiveSource::gone_back(ControlClient& client, std::chrono::nanoseconds time) {
-  if (time > run_time_) throw std::invalid_argument("the run has not come to that time yet");
+  if (time > run_time_) throw std::invalid_argument("the run has not reached that time yet");
   const auto reply = client.ask(wire::GoBack{time.count()}, for_a_reply, is_stopping_);
   if (!reply) return no_answer;
   if (reply->result != ResultCode::ok || reply->state != SimulationState::paused || run_.step_ns <= 0)
@@ -297,7 +302,7 @@ ViewStatus LiveSource::status_without_run() {
   if (had_run_) {
     status.name = run_.experiment;
     status.time_ns = time_.count();
-    status.end_ns = run_.duration_ns;
+    status.end_ns = end_of(run_, time_.count());
     if (!has_server_) status.phase = "gone";
   }
   if (end_) {
@@ -330,7 +335,7 @@ void LiveSource::ask_status(ControlClient& client) {
     status.speed = run.speed;
     status.real_time_factor = run.real_time_factor;
     status.time_ns = reply->time_ns;
-    status.end_ns = run.duration_ns;
+    status.end_ns = end_of(run, reply->time_ns);
     status.can_seek = options_.may_control && history_.can_go_back();
     status.loses_what_follows = true;
     status.seekable_from_ns = history_.first_kept().count();
@@ -343,7 +348,7 @@ void LiveSource::ask_status(ControlClient& client) {
     run_ = run;
     had_run_ = true;
   } else if (status.phase == "waiting") {
-    status.note = reply ? "there is no run" : "the server does not answer";
+    status.note = reply ? "the server has no run" : "the server does not answer";
   }
   show_status(status);
 }

@@ -25,15 +25,15 @@ struct LiveOptions {
   std::string secure_control{};  ///< folder of an identity that may control
   std::string secure_drive{};    ///< and of one that may drive robots
   bool may_control = false;
-  bool plays_when_seen = false;  ///< a run that begins paused goes on as soon as somebody looks
-  std::string again{};           ///< what to type to run it again, for who looks when it has ended
+  bool plays_when_seen = false;  ///< a run that begins paused starts as soon as a visitor looks
+  std::string again{};           ///< shell command that runs it again, shown after the end
   std::string recording{};       ///< name of the file that it writes; empty: none
 };
 
 /// Shows a running server, as any observer may. Requests, if it may control: `play`, `pause`, `step`, `speed`, `reset`,
 /// `spawn`, `remove`, `move`, `light` and `push`; the server says whether they are done. Where it keeps snapshots also
 /// `seek` and steps back: to the last snapshot before, and if the run is paused on from there to the very tick. And
-/// `drive` and `release`, by which whoever looks is the controller of a robot (Drivers).
+/// `drive` and `release`, by which the page's user becomes the controller of a robot (Drivers).
 class LiveSource final : public Source {
  public:
   /// Does not wait for the server. `topics` must outlive this. Throws wire::WireError if its address or the identity
@@ -54,7 +54,7 @@ class LiveSource final : public Source {
     ViewRequest request;
     std::function<void(const Answer&)> answer;
   };
-  // What came from the server since it was looked at last. Under the lock.
+  // Data from the server since the last look. Under the lock.
   struct Arrived {
     std::optional<Bytes> scene{};
     Bytes frame{}, signals{}, contacts{}, robots{};
@@ -98,7 +98,7 @@ class LiveSource final : public Source {
   Arrived arrived_;
   std::vector<std::uint32_t> watched_;
   std::chrono::nanoseconds time_{0};  // simulated
-  std::optional<End> end_;            // of the last run, if there will be no further one
+  std::optional<End> end_;            // end of the last run, if no other run follows
   wire::SimulationStatus run_;        // as the server said it last; had_run_ if it has
   bool had_run_ = false;
 
@@ -109,13 +109,13 @@ class LiveSource final : public Source {
   wire::Participant participant_;
   wire::Reader<wire::SceneDescription> descriptions_;
   wire::Reader<wire::SceneUpdate> updates_;
-  // Of the thread that shows: what only some clients read, and how many had come when they got it.
+  // For the thread that shows: topics that only some clients read, and how many clients had come when they got them.
   Bytes contacts_;
   Bytes robots_;
   std::uint64_t arrivals_ = 0;
-  std::uint32_t revision_ = 0;  // of the scene that is shown, and how many links it has
+  std::uint32_t revision_ = 0;  // the shown scene's, and how many links it has
   std::size_t links_ = 0;
-  // Of the thread that serves requests: what the server said last.
+  // For the thread that serves requests: the last messages of the server.
   LiveHistory history_;
   bool has_played_ = false;
   std::chrono::nanoseconds run_time_{0};

@@ -65,7 +65,7 @@ Answer RecordingSource::take(const ViewRequest& request) {
   }
   if (request.operation == "step") {
     constexpr double most_steps = 1e6;
-    if (!(std::abs(request.number) <= most_steps)) return {false, "a step is of at most a million ticks"};
+    if (!(std::abs(request.number) <= most_steps)) return {false, "a step has at most a million ticks"};
     wanted_.is_playing = false;
     constexpr auto most_waiting = static_cast<std::int64_t>(most_steps);
     wanted_.steps =
@@ -74,20 +74,20 @@ Answer RecordingSource::take(const ViewRequest& request) {
   }
   if (request.operation == "speed") {
     if (!(request.number >= 0.0 && request.number <= greatest_speed))
-      return {false, "a speed is from 0, which is as fast as it goes, to a million"};
+      return {false, "expected a speed from 0 (as fast as possible) to a million"};
     wanted_.speed = request.number;
-    return done(request.number > 0.0 ? fmt::format("at {:g} times real time", request.number) : "as fast as it goes");
+    return done(request.number > 0.0 ? fmt::format("at {:g} times real time", request.number) : "as fast as possible");
   }
   if (request.operation == "seek") {
     if (!(request.number >= 0.0 && request.number <= longest_recording))
-      return {false, "a time is in seconds, from 0 on"};
+      return {false, "expected a time in seconds, 0 or more"};
     wanted_.seek = nanoseconds_of(request.number);
     ++interruptions_;
     wanted_.steps = 0;
     return done(fmt::format("at {:.3f} s", request.number));
   }
-  return {false, fmt::format("'{}' is nothing that a recording can do: it can play, pause, step, seek and change its "
-                             "speed",
+  return {false, fmt::format("'{}': unknown operation; a recording offers play, pause, step, seek "
+                             "and speed",
                              request.operation)};
 }
 
@@ -192,7 +192,7 @@ void RecordingSource::play(const Wanted& wanted) {
       wanted.speed > 0.0 ? pace_->time + nanoseconds_of(elapsed * wanted.speed) : Nanoseconds::max();
   while (log_time_ < target && Clock::now() - begin < frame_interval && !has_newer_request())
     if (!advance()) break;
-  // What could not be kept up with is not made up for.
+  // Lost time is not caught up.
   if (wanted.speed > 0.0 && log_time_ < target) pace_ = {Clock::now(), log_time_, wanted.speed};
   constexpr double smoothing = 0.05;
   const double wall = Seconds(begin - std::exchange(measured_at_, begin)).count();

@@ -30,7 +30,7 @@ class RecordingSource final : public Source {
   using Clock = std::chrono::steady_clock;
   using Nanoseconds = std::chrono::nanoseconds;
 
-  // What was asked for and not yet done. Under the lock.
+  // Pending requests. Under the lock.
   struct Wanted {
     bool is_playing = false;
     bool plays_again = false;  // from the beginning, if it is at the end
@@ -64,10 +64,10 @@ class RecordingSource final : public Source {
   std::condition_variable changed_;
   Wanted wanted_;
   std::atomic<std::uint64_t> requests_{0};
-  std::atomic<std::uint64_t> interruptions_{0};  // of them those that end what is under way
+  std::atomic<std::uint64_t> interruptions_{0};  // number of requests that end the present action
   std::atomic<bool> is_stopping_{false};
 
-  // Of the thread.
+  // State of the thread.
   std::uint64_t requests_taken_ = 0;
   std::uint64_t interruptions_taken_ = 0;
   std::optional<viewing::SceneMaker> maker_;
@@ -75,7 +75,7 @@ class RecordingSource final : public Source {
   bool is_at_end_ = false;
   std::string problem_;
   Nanoseconds log_time_{0};
-  Nanoseconds step_{0};  // of the last world that could be built; the replay may have none
+  Nanoseconds step_{0};  // step size of the last world that could be built; a replay may have none
   std::uint64_t state_hash_ = 0;
   std::uint32_t run_ = 0;
   Nanoseconds end_{0};

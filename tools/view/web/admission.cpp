@@ -39,12 +39,12 @@ bool is_own_host(const Admission& admission, std::string_view host) {
 }
 
 std::optional<std::string> refusal(const Admission& admission, const Visitor& visitor) {
-  if (!is_own_host(admission, visitor.host)) return "this server is only for browsers of its own machine";
+  if (!is_own_host(admission, visitor.host)) return "this server accepts only browsers on its own machine";
   if (visitor.origin && *visitor.origin != "http://" + visitor.host &&
       std::ranges::find(admission.origins, *visitor.origin) == admission.origins.end())
-    return "pages from " + *visitor.origin + " may not connect: cohort view --origin lets them";
+    return "pages from " + *visitor.origin + " may not connect: 'cohort view --origin' allows an origin";
   if (!admission.token.empty() && !is_same_secret(token_in(visitor.target), admission.token))
-    return "the token is missing or wrong: it is in the address that cohort view has printed";
+    return "the token is missing or wrong: use the address that 'cohort view' has printed";
   return std::nullopt;
 }
 

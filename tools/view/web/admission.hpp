@@ -7,18 +7,18 @@
 
 namespace cohort::view {
 
-/// What a browser says when it wants a WebSocket.
+/// Headers of a browser's request for a WebSocket.
 struct Visitor {
   std::string host;                   ///< the header Host: the page's own address as the browser knows it
   std::optional<std::string> origin;  ///< the header Origin: of the page that asks; programs send none
-  std::string target;                 ///< of the request, with its query
+  std::string target;                 ///< target of the request, with its query
 };
 
-/// Who may connect.
+/// Conditions for a connection.
 struct Admission {
-  bool is_loopback = true;             ///< nobody from another machine gets here
+  bool is_loopback = true;             ///< other machines cannot connect
   std::string token{};                 ///< empty: none is needed
-  std::vector<std::string> origins{};  ///< of other pages that may
+  std::vector<std::string> origins{};  ///< origins of other pages that may connect
 };
 
 /// On the loopback a host has to be one of this machine's own names: otherwise a page of a stranger, whose name

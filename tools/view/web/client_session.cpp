@@ -15,7 +15,7 @@ Topic topic_of(std::uint32_t channel) { return static_cast<Topic>(channel); }
 ViewRequest read_request(const std::string& payload) {
   constexpr std::size_t longest_list = 64;
   const Json json = Json::parse(payload, nullptr, false);
-  if (!json.is_object()) throw protocol::ProtocolError("a request is a JSON object");
+  if (!json.is_object()) throw protocol::ProtocolError("expected a request as a JSON object");
   ViewRequest request;
   for (const auto& [key, value] : json.items()) {
     if (key == "operation" && value.is_string()) {
@@ -79,11 +79,11 @@ void ClientSession::take_binary(std::span<const std::byte> bytes) {
 void ClientSession::take(const protocol::Subscribe& subscribe) {
   for (const protocol::Subscription& each : subscribe.subscriptions) {
     if (each.channel >= topic_count) {
-      complain("there is no channel " + std::to_string(each.channel));
+      complain("no channel " + std::to_string(each.channel));
     } else if (subscriptions_.size() >= most_subscriptions) {
       complain("a client has at most " + std::to_string(most_subscriptions) + " subscriptions");
     } else if (!subscriptions_.try_emplace(each.id, Slot{each.channel}).second) {
-      complain("there is a subscription " + std::to_string(each.id) + " already");
+      complain("duplicate subscription " + std::to_string(each.id));
     } else {
       topics_.add_reader(topic_of(each.channel));
     }
@@ -94,7 +94,7 @@ void ClientSession::take(const protocol::Unsubscribe& unsubscribe) {
   for (const std::uint32_t id : unsubscribe.ids) {
     const auto found = subscriptions_.find(id);
     if (found == subscriptions_.end()) {
-      complain("there is no subscription " + std::to_string(id));
+      complain("no subscription " + std::to_string(id));
       continue;
     }
     topics_.remove_reader(topic_of(found->second.channel));
@@ -108,7 +108,7 @@ void ClientSession::take(const protocol::NotOffered& refused) {
 
 void ClientSession::take(const protocol::ServiceCall& call) {
   if (call.service != protocol::control_service || call.encoding != "json") {
-    reply(Text{protocol::service_failure(call, "there is no such service: there is /cohort/control, in json")});
+    reply(Text{protocol::service_failure(call, "unknown service: expected /cohort/control, in json")});
     return;
   }
   try {

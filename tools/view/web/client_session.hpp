@@ -33,14 +33,14 @@ class ClientSession {
   using Outgoing = std::variant<Text, recording::Bytes, Data>;
 
   struct Callbacks {
-    /// Somebody asks for something; `respond` of this session answers.
+    /// Handles a request of the client; `respond` of this session answers.
     std::function<void(const protocol::ServiceCall&, const ViewRequest&)> ask;
     std::function<void()> watched_changed;
   };
   ClientSession(Topics& topics, const std::string& name, const std::string& session, Callbacks callbacks);
   ~ClientSession();
 
-  /// What is no message of the protocol is answered with a status.
+  /// Invalid messages are answered with a status.
   void take_text(std::string_view text);
   void take_binary(std::span<const std::byte> bytes);
   void respond(const protocol::ServiceCall& call, const Answer& answer);

@@ -25,7 +25,7 @@ void append(recording::Bytes& to, Number number) {
   to.insert(to.end(), bytes.begin(), bytes.end());
 }
 
-// Whatever names and texts are in it.
+// Names and texts may contain any bytes.
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 void append_text(recording::Bytes& to, std::string_view text) {
@@ -35,13 +35,13 @@ void append_text(recording::Bytes& to, std::string_view text) {
 
 std::uint32_t number_of(const Json& json, const char* what) {
   if (!json.is_number_unsigned() || json.get<std::uint64_t>() > 0xffffffffu)
-    throw ProtocolError(std::string(what) + " is no number from 0 to 4294967295");
+    throw ProtocolError(std::string(what) + " is not a number from 0 to 4294967295");
   return json.get<std::uint32_t>();
 }
 
 const Json& list_of(const Json& message, const char* name) {
   const auto found = message.find(name);
-  if (found == message.end() || !found->is_array()) throw ProtocolError(std::string(name) + " is no list");
+  if (found == message.end() || !found->is_array()) throw ProtocolError(std::string(name) + " is not a list");
   if (found->size() > most_subscriptions) throw ProtocolError(std::string(name) + " is too long");
   return *found;
 }

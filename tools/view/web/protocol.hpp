@@ -19,7 +19,7 @@ namespace cohort::view::protocol {
 
 inline constexpr const char* subprotocol = "foxglove.websocket.v1";
 
-/// What a client sent is no message of the protocol; the text is for whoever wrote the client.
+/// A client's message does not conform to the protocol; the text is for the author of the client.
 class ProtocolError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

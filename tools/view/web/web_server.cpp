@@ -53,7 +53,7 @@ Visitor visitor_of(const Request& request) {
 
 }  // namespace
 
-// What connections share.
+// State shared by connections.
 class WebServer::State {
  public:
   State(WebOptions asked, PageFiles files, Topics& published_topics)
@@ -91,7 +91,7 @@ class WebServer::State {
   Source* source = nullptr;
   asio::io_context context{1};  // with it go the connections, which need all that is above
   tcp::acceptor acceptor;
-  asio::steady_timer pause{context};  // of accepting
+  asio::steady_timer pause{context};  // pause between attempts to accept
 };
 
 // One that has become a WebSocket. Alive while something is under way on it.
@@ -226,17 +226,17 @@ class WebServer::State::Page : public std::enable_shared_from_this<Page> {
     if (websocket::is_upgrade(request)) {
       if (const auto why = refusal(state_.admission, visitor)) return send(request, http::status::forbidden, *why);
       if (state_.clients.size() >= most_viewers)
-        return send(request, http::status::service_unavailable, "so many look on already that there is no room");
+        return send(request, http::status::service_unavailable, "too many viewers are connected");
       stream_.expires_never();
       std::make_shared<WebSocket>(state_, stream_.release_socket())->accept(request);
       return;
     }
     if (!is_own_host(state_.admission, visitor.host))
-      return send(request, http::status::forbidden, "this server is only for browsers of its own machine");
+      return send(request, http::status::forbidden, "this server accepts only browsers on its own machine");
     if (request.method() != http::verb::get && request.method() != http::verb::head)
       return send(request, http::status::method_not_allowed, "only GET and HEAD");
     const auto found = state_.page.find(visitor.target.substr(0, visitor.target.find('?')));
-    if (found == state_.page.end()) return send(request, http::status::not_found, "there is nothing here");
+    if (found == state_.page.end()) return send(request, http::status::not_found, "not found");
     send(request, http::status::ok, found->second.content, found->second.type);
   }
 
@@ -305,8 +305,8 @@ void WebServer::State::accept() {
   });
 }
 
-// Whoever comes gets in. Of the addresses that hold most connections, the one that was used longest ago is closed, so
-// that who opens many only closes its own. WebSockets stay.
+// Makes room for a new connection. Among those of the address that holds most connections, it closes the one that was
+// used longest ago, so that a client that opens many closes only its own. WebSockets stay.
 void WebServer::State::give_way() {
   std::map<asio::ip::address, std::size_t> held;
   for (const Page* const page : pages) ++held[page->address()];

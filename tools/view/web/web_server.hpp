@@ -25,11 +25,11 @@ using PageFiles = std::map<std::string, PageFile>;
 PageFiles read_page(const std::filesystem::path& folder);
 
 struct WebOptions {
-  std::string name;                    ///< of what is shown, for other viewers
-  std::string address = "127.0.0.1";   ///< of the interface
+  std::string name;                    ///< name of the source, for other viewers
+  std::string address = "127.0.0.1";   ///< address of the interface
   std::uint16_t port = 8080;           ///< 0: any free one
   std::string token{};                 ///< that a client has to give; empty: none
-  std::vector<std::string> origins{};  ///< of other pages that may connect, such as `https://app.foxglove.dev`
+  std::vector<std::string> origins{};  ///< origins of other pages that may connect, such as `https://app.foxglove.dev`
   bool or_any_free_port = false;       ///< where `port` is taken
   /// Pages that may show this one in a frame, as a content security policy names them.
   std::string frame_ancestors = "'none'";
@@ -46,7 +46,7 @@ class WebServer {
   std::uint16_t port() const;
   /// Tells clients that there is something new. Any thread.
   void published();
-  /// Until `stop`. What clients ask for goes to `source`.
+  /// Runs until `stop`. Passes requests of clients to `source`.
   void run(Source& source);
   /// Any thread.
   void stop();

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes rough_terrain.png, a height map of 65 x 65 pixels of 16 bits: hills of several sizes, none steeper than an
-s-bot can climb when it is 4 m wide and 0.25 m high, and flat at the edges. The same every time."""
+"""Writes rough_terrain.png, a height map of 65 x 65 pixels of 16 bits: hills of several sizes, flat at the edges. If it
+is 4 m wide and 0.25 m high, an s-bot can climb all of them. The output is the same every time."""
 
 import math
 import pathlib

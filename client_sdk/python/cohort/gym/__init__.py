@@ -1,4 +1,4 @@
-"""Learning environments on Cohort: for Gymnasium (`VectorEnv`, `Env`) and PettingZoo (`parallel_env`).
+"""Learning environments: for Gymnasium (`VectorEnv`, `Env`) and PettingZoo (`parallel_env`).
 
     import cohort, cohort.gym
 
@@ -9,7 +9,7 @@
     envs = cohort.gym.VectorEnv("obstacle_avoidance", num_envs=256, reward=reward, horizon=500,
                                 observe=["proximity/*/reading"], act=["treel/*/velocity"])
 
-Needs the package gymnasium, and `parallel_env` the package pettingzoo too.
+Requires the package gymnasium; `parallel_env` also requires pettingzoo.
 """
 
 from cohort.gym.environments import Env, VectorEnv

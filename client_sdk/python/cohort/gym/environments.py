@@ -15,23 +15,24 @@ def _box(bounds, shape, dtype):
 class VectorEnv(gymnasium.vector.VectorEnv):
     """Many worlds of one experiment as a `gymnasium.vector.VectorEnv`. Worlds are stepped in C++.
 
-    One agent observes and commands all chosen robots of a world: observations are [env, robots * values], actions too.
+    One agent observes and commands all chosen robots of a world. Observations and actions are [env, robots * values].
     Spaces have the bounds of the channels. The same seeds give the same trajectories for any number of threads and
     environments. The first episode of environment i after `reset(seed=s)` is that of the experiment with seed s + i.
 
     Args:
-        experiment: an `Experiment`, or what `Experiment.read` takes.
-        num_envs: how many worlds.
+        experiment: an `Experiment`, or an argument of `Experiment.read`.
+        num_envs: number of worlds.
         reward: called after each step with a `State`; returns an array [env].
-        done: called after each step with a `State`; returns an array [env] of bool: the episode terminates. It
-            also does if a stop condition of the experiment holds, or the state of a robot breaks.
-        horizon: steps after which an episode is truncated. It also is at the end of the experiment's duration.
+        done: called after each step with a `State`; returns an array [env] of bool, True to terminate the episode. An
+            episode also terminates if a stop condition of the experiment holds, or if a robot has an invalid state.
+        horizon: number of steps after which an episode is truncated. It is also truncated at the end of the
+            experiment's duration.
         observe, act: patterns of channels, such as `["proximity/*/reading"]`; by default all.
-        robots: names of robots, or patterns, with ids in a row; by default all. The others keep neutral commands.
-        ticks_per_step: ticks of the world in each step.
-        threads: that step the worlds.
-        autoreset_mode: of `gymnasium.vector.AutoresetMode`.
-        dtype: of observations and actions.
+        robots: names or patterns of robots with consecutive ids; by default all. Other robots keep neutral commands.
+        ticks_per_step: ticks of the world per step.
+        threads: number of threads that step the worlds.
+        autoreset_mode: a `gymnasium.vector.AutoresetMode`.
+        dtype: type of observations and actions.
     """
 
     def __init__(
@@ -81,11 +82,12 @@ class VectorEnv(gymnasium.vector.VectorEnv):
         self._is_seeded = False
 
     def reset(self, *, seed=None, options=None):
-        """Begins the next episodes.
+        """Starts the next episodes.
 
         Args:
-            seed: environment i gets seed + i; or a list with a seed for each. By default episodes go on to new seeds.
-            options: `{"reset_mask": array [env] of bool}` resets these environments alone.
+            seed: environment i gets seed + i; or a list with one seed per environment. By default, seeds continue from
+                those of the last episodes.
+            options: `{"reset_mask": array [env] of bool}` resets only these environments.
         """
         which = numpy.ones(self.num_envs, dtype=bool)
         if options is not None and "reset_mask" in options:
@@ -106,7 +108,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):
             raise TypeError(f"options['reset_mask'] is a {type(mask).__name__}, expected a numpy array of bool")
         if mask.shape != (self.num_envs,) or not mask.any():
             raise ValueError(
-                f"options['reset_mask'] has the shape {mask.shape}, expected {(self.num_envs,)} with at least one True"
+                f"options['reset_mask'] has shape {mask.shape}, expected {(self.num_envs,)} with at least one True"
             )
         return mask
 
@@ -118,10 +120,10 @@ class VectorEnv(gymnasium.vector.VectorEnv):
         self._is_seeded = True
 
     def step(self, actions):
-        """Steps all environments with actions [env, robots * values], which are brought into their bounds."""
+        """Steps all environments with actions [env, robots * values], which are clamped to their bounds."""
         actions = numpy.asarray(actions)
         if actions.shape != self.action_space.shape:
-            raise ValueError(f"actions have the shape {actions.shape}, expected {self.action_space.shape}")
+            raise ValueError(f"actions has shape {actions.shape}, expected {self.action_space.shape}")
         actions = actions.reshape(self._action_shape)
         next_step = self._autoreset_mode == AutoresetMode.NEXT_STEP
         begins = self._to_reset if next_step and self._to_reset.any() else None
@@ -152,7 +154,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):
 class Env(gymnasium.Env):
     """One world as a `gymnasium.Env`: one agent observes and commands all chosen robots.
 
-    Arguments are those of `VectorEnv`.
+    Its arguments are those of `VectorEnv`.
     """
 
     metadata = {"render_modes": []}
@@ -163,7 +165,7 @@ class Env(gymnasium.Env):
         self.action_space = self._envs.single_action_space
 
     def reset(self, *, seed=None, options=None):
-        """Begins the next episode, of the experiment with this seed if one is given."""
+        """Starts the next episode, with the given seed of the experiment if there is one."""
         super().reset(seed=seed)
         observations, _ = self._envs.reset(seed=seed)
         return observations[0], {}

@@ -7,10 +7,10 @@ from cohort.gym.worlds import Worlds
 
 
 def parallel_env(experiment, *, done=None, **arguments):
-    """Returns one world as a `pettingzoo.ParallelEnv`: each robot is an agent, by its scoped name.
+    """Returns one world as a `pettingzoo.ParallelEnv`: each robot is an agent with its scoped name.
 
-    Arguments as of `VectorEnv`, but for `num_envs` and `autoreset_mode`. `reward` and `done` return an array [1, robot]
-    or [robot], or one value for all.
+    Arguments are those of `VectorEnv`, except `num_envs` and `autoreset_mode`. `reward` and `done` return an array [1,
+    robot] or [robot], or one value for all.
     """
     import pettingzoo
 
@@ -48,7 +48,7 @@ def parallel_env(experiment, *, done=None, **arguments):
         def step(self, actions):
             missing = set(self.agents) - set(actions)
             if missing:
-                raise ValueError(f"there is no action of {sorted(missing)[0]}, expected one of each of {self.agents}")
+                raise ValueError(f"no action given for {sorted(missing)[0]}, expected one for each of {self.agents}")
             together = numpy.stack([actions[agent] for agent in self.possible_agents])[None]
             rewards, terminations, truncations = self._worlds.step(together)
             agents = self.agents
@@ -56,7 +56,7 @@ def parallel_env(experiment, *, done=None, **arguments):
             ends = numpy.full(len(agents), bool(terminations[0]))
             if self._done is not None:
                 ends |= self._per_robot(self._done(self._worlds.state), "done").astype(bool)
-            # All leave together: a world goes on with all of its robots.
+            # All agents end together, because a world continues with all of its robots.
             ends[:] = ends.any()
             observations = self._by_agent(self._worlds.observations()[0])
             terminated = dict(zip(agents, map(bool, ends)))
@@ -76,7 +76,7 @@ def parallel_env(experiment, *, done=None, **arguments):
             robots = len(self.possible_agents)
             if values.size not in (1, robots):
                 raise ValueError(
-                    f"{name}(state) gave an array {values.shape}, expected a value for each of {robots} robots"
+                    f"{name}(state) returned shape {values.shape}, expected one value for each of {robots} robots"
                 )
             return numpy.broadcast_to(values.ravel(), robots)
 

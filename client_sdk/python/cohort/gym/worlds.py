@@ -1,4 +1,4 @@
-"""What the environments have in common: worlds, what is observed and commanded of them, rewards, seeds."""
+"""Common parts of the environments: worlds, observed and commanded channels, rewards, seeds."""
 
 import numpy
 
@@ -7,14 +7,14 @@ from cohort.experiment import Experiment
 
 
 class State:
-    """What rewards and ends of episodes are computed from: all worlds after a step.
+    """The argument of `reward` and `done`: all worlds after a step.
 
     Attributes:
-        observations: [env, robot, value], all channels, whatever the environment observes; read-only.
-        commands: [env, robot, value], what was commanded in the step.
+        observations: [env, robot, value], all channels, also those that the environment does not observe; read-only.
+        commands: [env, robot, value], the commands of the step.
         poses: [env, robot, 7], x y z [m] and quaternion w x y z in the world frame; read-only.
-        last_poses: [env, robot, 7], those before the step.
-        steps: [env], steps in the episode so far, this one included.
+        last_poses: [env, robot, 7], poses before the step.
+        steps: [env], steps in the episode so far, including this one.
         seconds: simulated time of a step [s].
     """
 
@@ -22,7 +22,7 @@ class State:
         self._observation_channels = batch.observation_channels(rows.start)
         self._command_channels = batch.command_channels(rows.start)
         self._places = {}
-        # Views, which show what is new after each step.
+        # Views, which show the new values after each step.
         self.observations = batch.observations[:, rows]
         self.commands = batch.commands[:, rows]
         self.poses = batch.poses[:, rows]
@@ -31,14 +31,14 @@ class State:
         self.seconds = seconds
 
     def __getitem__(self, pattern):
-        """Returns what the channels observe that match a pattern, an array [env, robot, value]."""
+        """Returns the observations of the channels that match a pattern, an array [env, robot, value]."""
         places = self._places.get(pattern)
         if places is None:
             places = self._places[pattern] = self._observation_channels.indices(pattern)
         return self.observations[:, :, places]
 
     def commands_of(self, pattern):
-        """Returns what was commanded to the channels that match, an array [env, robot, value]."""
+        """Returns the commands of the channels that match a pattern, an array [env, robot, value]."""
         places = self._places.get((pattern,))
         if places is None:
             places = self._places[(pattern,)] = self._command_channels.indices(pattern)
@@ -46,21 +46,23 @@ class State:
 
 
 def _places(channels, patterns):
-    """Returns the places of the values of all channels that match one of the patterns, a slice if they are in a row."""
+    """Returns the indices of the values of all channels that match one of the patterns; a slice if they are
+    consecutive.
+    """
     numbers = numpy.arange(channels.size)
     if patterns is not None:
         if isinstance(patterns, str):
             patterns = [patterns]
         numbers = numpy.concatenate([numbers[channels.indices(pattern)].ravel() for pattern in patterns])
     if len(numbers) == 0:
-        raise ValueError("the environment needs at least one channel to observe and one to command")
+        raise ValueError("`observe` and `act` must each match at least one channel")
     if (numpy.diff(numbers) == 1).all():
         return slice(int(numbers[0]), int(numbers[-1]) + 1)
     return numbers
 
 
 def _seeds_of_episode(seeds, episodes):
-    """Returns seeds that differ for each episode; those of episode 0 are `seeds`. SplitMix64 (Steele et al., 2014)."""
+    """Returns distinct seeds for each episode; those of episode 0 are `seeds`. SplitMix64 (Steele et al., 2014)."""
     with numpy.errstate(over="ignore"):
         mixed = seeds + episodes * numpy.uint64(0x9E3779B97F4A7C15)
         mixed = (mixed ^ (mixed >> numpy.uint64(30))) * numpy.uint64(0xBF58476D1CE4E5B9)
@@ -70,7 +72,7 @@ def _seeds_of_episode(seeds, episodes):
 
 
 class Worlds:
-    """A batch of worlds as environments see it. Robots that take part have the same channels."""
+    """A batch of worlds for environments. All participating robots have the same channels."""
 
     def __init__(
         self,
@@ -88,7 +90,7 @@ class Worlds:
         dtype=numpy.float32,
     ):
         if not isinstance(experiment, Experiment):
-            # Episodes end by `done` and `horizon`; a time that the experiment has ends one too.
+            # `done` and `horizon` end episodes; so does the duration of the experiment.
             experiment = Experiment.read(experiment)
         if ticks_per_step < 1 or (horizon is not None and horizon < 1):
             raise ValueError(
@@ -99,12 +101,12 @@ class Worlds:
         self.names = [self.batch.robots[robot] for robot in self.robots]
         if self.robots != list(range(self.robots[0], self.robots[-1] + 1)):
             raise ValueError(
-                f"the robots {self.names} have other robots between them; choose some whose ids are in a row"
+                f"the ids of the robots {self.names} are not consecutive; choose robots with consecutive ids"
             )
         rows = slice(self.robots[0], self.robots[-1] + 1)
         if len({self.batch.robot_model(robot) for robot in self.robots}) != 1:
             raise ValueError(
-                "robots of several models have different channels: choose those of one model with `robots`"
+                "robots of different models have different channels; select the robots of one model with `robots`"
             )
         observed, commanded = (
             self.batch.observation_channels(self.robots[0]),
@@ -146,16 +148,16 @@ class Worlds:
             )
         ]
         if not found:
-            raise ValueError(f"there is no robot '{pattern}', expected some of {self.batch.robots}")
+            raise ValueError(f"no robot matches '{pattern}', expected some of {self.batch.robots}")
         return found
 
     def seed(self, seeds, which):
-        """Gives worlds seeds for their next episodes, the first of which has the seed itself."""
+        """Sets the seeds of worlds; the next episode uses the seed itself."""
         self._seeds[which] = seeds[which]
         self._episodes[which] = 0
 
     def reset(self, which):
-        """Begins the next episode of these worlds, an array [env] of bool."""
+        """Starts the next episode of these worlds, an array [env] of bool."""
         self.batch.reset(_seeds_of_episode(self._seeds, self._episodes), which)
         self._episodes[which] += numpy.uint64(1)
         self.state.steps[which] = 0
@@ -164,7 +166,7 @@ class Worlds:
     def step(self, actions, which=None):
         """Steps worlds with actions [env, robot, value].
 
-        Returns rewards, terminations and truncations. The state is that after the step.
+        Returns rewards, terminations and truncations. `state` is then that after the step.
         """
         lower, upper = self.command_bounds
         if not numpy.isfinite(actions).all():
@@ -187,7 +189,7 @@ class Worlds:
     def _per_env(self, values, name):
         values = numpy.asarray(values)
         if values.shape != (self.batch.worlds,):
-            raise ValueError(f"{name}(state) gave an array {values.shape}, expected {(self.batch.worlds,)}")
+            raise ValueError(f"{name}(state) returned shape {values.shape}, expected {(self.batch.worlds,)}")
         return values
 
     def rewards_per_env(self, rewards):
@@ -198,5 +200,5 @@ class Worlds:
         return rewards
 
     def observations(self):
-        """Returns what is observed of all worlds, a new array [env, robot, value]."""
+        """Returns the observed channels of all worlds, a new array [env, robot, value]."""
         return self.state.observations[:, :, self._observation_places].astype(self.dtype)

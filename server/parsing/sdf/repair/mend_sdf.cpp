@@ -66,17 +66,18 @@ void SdfMender::mend_model(XmlNode& model, const std::string& path) {
   give_link(model, path);
 }
 
-// `world` is what joints call the world. A link of this name that is not solid stands for it.
+// Joints refer to the world by the name `world`. A link of this name that is not solid is treated as the world.
 void SdfMender::take_world_link(XmlNode& model, const std::string& path) {
   const auto is_it = [](const XmlNode& child) { return child.name == "link" && value_of(child, "name") == "world"; };
   const auto link = std::ranges::find_if(model.children, is_it);
   if (link == model.children.end()) return;
   if (link->child("collision") == nullptr) {
-    tell_of(*link, path + "/link[world]", "a link called 'world' without collisions is taken for the world itself");
+    tell_of(*link, path + "/link[world]", "a link called 'world' without collisions is treated as the world");
     model.children.erase(link);
     return;
   }
-  tell_of(*link, path + "/link[world]", "'world' is the world itself; this link is called 'world_link'");
+  tell_of(*link, path + "/link[world]",
+          "the name 'world' is reserved for the world; this link is renamed to 'world_link'");
   set_attribute(*link, "name", "world_link");
   for (XmlNode& joint : model.children)
     if (joint.name == "joint")
@@ -84,8 +85,8 @@ void SdfMender::take_world_link(XmlNode& model, const std::string& path) {
         if ((end.name == "parent" || end.name == "child") && end.text == "world") end.text = "world_link";
 }
 
-// A root without mass is how Bullet says that the world holds it. What hangs on a joint and has none weighs what its
-// shapes do, once they are read (read_link.cpp).
+// In Bullet, a root link without mass is fixed to the world. Other links without mass get the mass of their shapes when
+// those are read (read_link.cpp).
 void SdfMender::mend_masses(XmlNode& model, const std::string& path) {
   std::set<std::string> children;
   for (const XmlNode& joint : model.children)
@@ -106,7 +107,7 @@ void SdfMender::mend_masses(XmlNode& model, const std::string& path) {
     XmlNode inertia = element_at(link, "inertia");
     for (const char* const moment : {"ixx", "iyy", "izz"}) inertia.children.push_back(element_at(link, moment, "1"));
     inertial->children = {element_at(link, "mass", "1"), std::move(inertia)};
-    tell_of(link, path + "/" + step_of(link), "a root without mass is held by the world");
+    tell_of(link, path + "/" + step_of(link), "a root link without mass is fixed to the world");
     XmlNode& joint = held.emplace_back(element_at(link, "joint"));
     joint.attributes = {{"name", name + "_to_world"}, {"type", "fixed"}};
     joint.children = {element_at(link, "parent", "world"), element_at(link, "child", name)};
@@ -114,7 +115,7 @@ void SdfMender::mend_masses(XmlNode& model, const std::string& path) {
   if (first != nullptr)
     tell_of(*first, path,
             "links without mass: " + weightless +
-                "; each has that of its collisions at 1000 kg/m^3, or else of its visuals, or else 1 g");
+                "; each gets the mass of its collisions at 1000 kg/m^3, or else of its visuals, or else 1 g");
   std::ranges::move(held, std::back_inserter(model.children));
 }
 
@@ -123,7 +124,7 @@ void SdfMender::give_link(XmlNode& model, const std::string& path) {
     return child.name == "link" || child.name == "model" || child.name == "include";
   };
   if (std::ranges::any_of(model.children, holds_any)) return;
-  tell_of(model, path, "has no links: there is nothing of it that moves or is met");
+  tell_of(model, path, "has no links and therefore no effect");
   XmlNode link = element_at(model, "link");
   set_attribute(link, "name", "link");
   std::erase_if(model.children, [](const XmlNode& child) { return child.name == "static"; });
@@ -134,7 +135,8 @@ void SdfMender::give_link(XmlNode& model, const std::string& path) {
 bool SdfMender::knows_sensor(const XmlNode& sensor, const std::string& path) {
   const std::string type = value_of(sensor, "type");
   if (sdf::Sensor().SetType(type)) return true;
-  tell_of(sensor, path + "/" + step_of(sensor), "there is no sensor of type '" + type + "' here; it is ignored");
+  tell_of(sensor, path + "/" + step_of(sensor),
+          "the sensor type '" + type + "' is not supported; the sensor is ignored");
   return false;
 }
 
@@ -142,12 +144,12 @@ void SdfMender::mend_link(XmlNode& link, const std::string& path) {
   std::erase_if(link.children,
                 [&](const XmlNode& child) { return child.name == "sensor" && !knows_sensor(child, path); });
   for (const char* const kind : {"collision", "sensor"}) number_apart(link, kind, path);
-  for (XmlNode& sensor : link.children)  // a camera sees nothing here, whatever is said of it
+  for (XmlNode& sensor : link.children)  // cameras never see it
     if (XmlNode* const camera = sensor.name == "sensor" ? child_of(sensor, "camera") : nullptr)
       camera->children.clear();
 }
 
-// Parts of a link that have one name.
+// Renames parts of a link that have the same name.
 void SdfMender::number_apart(XmlNode& link, std::string_view kind, const std::string& path) {
   std::set<std::string> names;
   for (XmlNode& part : link.children) {
@@ -156,16 +158,16 @@ void SdfMender::number_apart(XmlNode& link, std::string_view kind, const std::st
     std::string other = name + "_1";
     for (int number = 2; !names.insert(other).second; ++number) other = name + "_" + std::to_string(number);
     tell_of(part, path + "/" + step_of(part),
-            "another " + part.name + " of the link has this name; it is called '" + other + "'");
+            "another " + part.name + " of the link has this name; this one is renamed to '" + other + "'");
     set_attribute(part, "name", other);
   }
 }
 
-// SDF's own default is z. The two axes of a joint are not the same.
+// The default axis of SDF is z. The two axes of a joint must differ.
 void SdfMender::mend_joint(XmlNode& joint, const std::string& path) {
   const std::string type = value_of(joint, "type");
   if (value_of(joint, "name") == "world") {
-    tell_of(joint, path, "'world' is the world itself; this joint is called 'world_joint'");
+    tell_of(joint, path, "the name 'world' is reserved for the world; this joint is renamed to 'world_joint'");
     set_attribute(joint, "name", "world_joint");
   }
   if (type == "fixed" || type == "ball") return;
@@ -181,7 +183,7 @@ void SdfMender::mend_joint(XmlNode& joint, const std::string& path) {
   }
 }
 
-// ODE takes a negative one for any friction that it takes. SDF knows none.
+// A negative coefficient means unlimited friction in ODE. SDF does not define it.
 void SdfMender::mend_friction(XmlNode& friction, const std::string& path) {
   XmlNode* const ode = child_of(friction, "ode");
   if (ode == nullptr) return;
@@ -189,7 +191,8 @@ void SdfMender::mend_friction(XmlNode& friction, const std::string& path) {
     if (coefficient.name != "mu" && coefficient.name != "mu2") continue;
     const auto value = parse_real(coefficient.text);
     if (!value || !(*value < 0.0)) continue;
-    tell_of(coefficient, path + "/ode/" + coefficient.name, "expected a coefficient >= 0; it holds whatever pulls");
+    tell_of(coefficient, path + "/ode/" + coefficient.name,
+            "expected a coefficient >= 0; friction without limit is used");
     coefficient.text = "1000";
   }
 }

@@ -8,9 +8,8 @@
 
 namespace cohort::parsing {
 
-/// Makes of a file of SDF that was not written for Cohort one that libsdformat reads, where it would stop at what other
-/// readers take: names that are given twice or are reserved, links without mass, axes without direction, sensors that
-/// it does not know. Each is told in `warnings`.
+/// Repairs an SDF file from another source that other programs accept but libsdformat rejects: duplicate or reserved
+/// names, links without mass, axes without direction, unknown sensors. Adds each change to `warnings`.
 void mend_sdf(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings);
 
 }  // namespace cohort::parsing

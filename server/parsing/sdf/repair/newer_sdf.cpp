@@ -47,7 +47,7 @@ XmlNode density_from(const XmlNode& where, const std::string& text) {
   return element_at(where, prefixed("density"), text);
 }
 
-// `auto`: from the shapes and their densities, which our <cohort:density> says.
+// `auto`: inertia from the shapes and their densities, as <cohort:density>.
 void OlderSdf::change_link(XmlNode& link) {
   const XmlNode* const inertial = link.child("inertial");
   const bool is_auto =
@@ -71,7 +71,7 @@ void OlderSdf::change_link(XmlNode& link) {
   link.children.push_back(std::move(ours));
 }
 
-// SDF's position is multiplier * (leader - reference) + offset.
+// The position in SDF is multiplier * (leader - reference) + offset.
 void OlderSdf::change_joint(XmlNode& joint) {
   std::optional<XmlNode> follows;
   for (XmlNode& axis : joint.children) {
@@ -98,16 +98,16 @@ void OlderSdf::change_geometry(XmlNode& geometry, const std::string& path) {
   cone->name = "cylinder";
   if (XmlNode* const radius = child_of(*cone, "radius"))
     if (const auto value = parse_real(radius->text)) radius->text = shortest_text(*value / std::sqrt(3.0));
-  warn(*cone, path + "/cone", "a cone is taken for the cylinder of its length and volume");
+  warn(*cone, path + "/cone", "a cone is replaced by a cylinder of the same length and volume");
 }
 
-// The object and its link that `arm::hand::palm` is.
+// Returns the object and its link for a name such as `arm::hand::palm`.
 std::pair<std::string, std::string> object_and_link(const std::string& name) {
   const std::size_t end = name.find("::");
   return {name.substr(0, end), end == std::string::npos ? "" : name.substr(end + 2)};
 }
 
-// A fixed one holds two objects together.
+// A fixed joint connects two objects.
 void OlderSdf::change_world(XmlNode& world, const std::string& path) {
   std::vector<XmlNode> ours;
   std::erase_if(world.children, [&](const XmlNode& joint) {
@@ -118,7 +118,7 @@ void OlderSdf::change_world(XmlNode& world, const std::string& path) {
                        parent->text != "world" && child->text != "world";
     if (!holds) {
       warn(joint, path + "/" + step_of(joint),
-           "a joint between objects of a world is supported if it is fixed and is between two models; it is ignored");
+           "a joint between objects of a world must be fixed and must connect two models; it is ignored");
       return true;
     }
     XmlNode& held = ours.emplace_back(element_at(joint, prefixed("breakable_joint")));

@@ -8,8 +8,8 @@
 
 namespace cohort::parsing {
 
-/// Makes of a file of SDF 1.10 to 1.12 one of the newest version that libsdformat reads: inertia by density, joints
-/// that follow others and joints in a world become elements of ours. What has no counterpart goes to `warnings`.
+/// Converts a file of SDF 1.10 to 1.12 to the newest version that libsdformat reads. Inertia by density, joints that
+/// follow others and joints in a world become `cohort:` elements. Other new features go to `warnings`.
 void make_older(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings);
 
 }  // namespace cohort::parsing

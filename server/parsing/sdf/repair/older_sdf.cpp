@@ -13,24 +13,24 @@
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
-// In a header that libsdformat does not install: its files by name, `1.7/1_6.convert` among them.
+// Declared in a header that libsdformat does not install: its embedded files by name, such as `1.7/1_6.convert`.
 namespace sdf {
 inline namespace SDF_VERSION_NAMESPACE {
 const std::map<std::string, std::string>& GetEmbeddedSdf();
 }
 }  // namespace sdf
 
-// Each rule does what libsdformat's Converter does. Names with '::', which it makes models of, are joined before.
+// Each rule works like the Converter of libsdformat. Names with '::', which it converts to models, are joined before.
 namespace cohort::parsing {
 namespace {
 
-/// How one version becomes a later one.
+/// The conversion of one version to a later one.
 struct Conversion {
   std::string to;
   XmlNode rules;  ///< <convert>, which holds <rename>, <move>, … and a <convert> for each child that has rules
 };
 
-// By the version that it is from.
+// Returns the conversions by the version from which they convert.
 std::map<std::string, Conversion> read_conversions() {
   constexpr std::string_view ending = ".convert";
   std::map<std::string, Conversion> conversions;
@@ -57,14 +57,14 @@ Path parts_of(const std::string& text, const std::string& between) {
   return parts;
 }
 
-// The element that the path but its last part leads to; nullptr if there is none.
+// Returns the element at the path without its last part; nullptr if there is none.
 XmlNode* around_last(XmlNode& node, const Path& path) {
   XmlNode* at = &node;
   for (std::size_t i = 0; i + 1 < path.size() && at != nullptr; ++i) at = child_of(*at, path[i]);
   return at;
 }
 
-// The same, and makes what is missing. The first `count` parts are elements.
+// Returns the same, and adds missing elements. The first `count` parts are elements.
 XmlNode& make_path(XmlNode& node, const Path& path, std::size_t count) {
   XmlNode* at = &node;
   for (std::size_t i = 0; i < count; ++i) {
@@ -91,7 +91,7 @@ void remove_child(XmlNode& node, const XmlNode* child) {
   node.children.erase(node.children.begin() + (child - node.children.data()));
 }
 
-/// What a <from> or a <to> of a rule names.
+/// The target of a <from> or a <to> of a rule.
 struct End {
   std::string element;
   std::string attribute;
@@ -104,7 +104,7 @@ struct End {
   }
 };
 
-// A value gets another name, in the place where it stands; it is all that is kept of an element.
+// Renames a value in place; of an element, only the value is kept.
 void rename(XmlNode& node, const XmlNode& rule) {
   const End from(rule, "from");
   const End to(rule, "to");
@@ -126,7 +126,7 @@ void rename(XmlNode& node, const XmlNode& rule) {
   node.children.push_back(std::move(renamed));
 }
 
-// Paths have '::' between their parts. An element that is moved keeps what it holds.
+// Moves an element with its content. Paths have '::' between their parts.
 void move(XmlNode& node, const XmlNode& rule, bool copies) {
   const End from(rule, "from");
   const End to(rule, "to");
@@ -152,7 +152,7 @@ void move(XmlNode& node, const XmlNode& rule, bool copies) {
     XmlNode copy = *moved;
     copy.name = target.back();
     if (!copies) remove_child(source_around, moved);
-    // What was around the target may have moved in memory with what was removed.
+    // The removal may have moved the parent of the target in memory.
     make_path(node, target, target.size() - 1).children.push_back(std::move(copy));
     return;
   }
@@ -162,7 +162,7 @@ void move(XmlNode& node, const XmlNode& rule, bool copies) {
   if (!copies) remove_child(source_around, moved);
 }
 
-// One of some values becomes another one somewhere else. Paths have '/' between their parts.
+// Maps one of several values to another value at another path. Paths have '/' between their parts.
 void map(XmlNode& node, const XmlNode& rule) {
   const XmlNode& from = *rule.child("from");
   const XmlNode& to = *rule.child("to");
@@ -172,7 +172,7 @@ void map(XmlNode& node, const XmlNode& rule) {
   if (around == nullptr) return;
   const auto value = source.back().starts_with('@') ? attribute_of(around, source.back().substr(1))
                                                     : text_of(around->child(source.back()));
-  // Where there are fewer values to map to, the last one is for all the rest.
+  // If there are fewer target values, the last one is used for all remaining ones.
   std::optional<std::string> mapped;
   for (std::size_t i = 0; i < from.children.size() && value; ++i)
     if (from.children[i].text == *value) mapped = to.children[std::min(i, to.children.size() - 1)].text;
@@ -229,7 +229,7 @@ void convert(XmlNode& node, const XmlNode& rules) {
   }
 }
 
-// In an <include> the attribute may be found in files of any older version; its name up to SDF 1.6.
+// In an <include>, files of any older version may have the attribute; its name is that up to SDF 1.6.
 void rename_frames_of_includes(XmlNode& node) {
   for (XmlNode& child : node.children) {
     if (child.name == "world" || child.name == "model") rename_frames_of_includes(child);

@@ -4,7 +4,7 @@
 
 namespace cohort::parsing {
 
-/// Changes an <sdf> element of an older version to libsdformat's own, by the rules that libsdformat has for that.
+/// Converts an <sdf> element of an older version to that of libsdformat, by the rules of libsdformat.
 void convert_older(XmlNode& sdf);
 
 }  // namespace cohort::parsing

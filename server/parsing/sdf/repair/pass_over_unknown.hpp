@@ -7,8 +7,8 @@
 
 namespace cohort::parsing {
 
-/// Takes out of a file of SDFormat's newest version the elements and attributes that SDFormat does not know, as other
-/// readers pass over them. What has a prefix, and what stands where anything may, stays.
+/// Removes unknown elements and attributes from a file of the newest version of SDFormat, which other programs ignore
+/// too. Elements with a prefix, and those in elements with free content, stay.
 void pass_over_unknown(XmlNode& tree, std::vector<Problem>& warnings);
 
 }  // namespace cohort::parsing

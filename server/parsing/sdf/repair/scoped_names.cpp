@@ -18,7 +18,7 @@ std::string joined(std::string name) {
   return name;
 }
 
-/// The scoped names in one model, and what is changed for them.
+/// The scoped names of one model, and their replacements.
 class ScopedNames {
  public:
   ScopedNames(const std::filesystem::path& file, UnknownNames& told) : file_(file), told_(told) {}
@@ -37,11 +37,11 @@ class ScopedNames {
 void ScopedNames::collect(const XmlNode& node, const std::string& path) {
   if (node.name == "plugin" || node.name.find(':') != std::string::npos) return;
   if (const std::string name = name_of(node); name.find(between) != std::string::npos && names_.insert(name).second)
-    told_.add({file_, node.line, path, ""}, "a name cannot have '::' in it; '.' stands in its place");
+    told_.add({file_, node.line, path, ""}, "a name cannot contain '::'; it is replaced by '.'");
   for (const XmlNode& child : node.children) collect(child, path + "/" + step_of(child));
 }
 
-// A name, or a name and what is inside of it.
+// Replaces a name, also at the front of a longer scoped name.
 void ScopedNames::join(std::string& text) const {
   if (text.find(between) == std::string::npos) return;
   for (std::size_t end = text.size(); end != std::string::npos && end > 0; end = text.rfind(between, end - 1)) {

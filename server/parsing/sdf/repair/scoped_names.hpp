@@ -8,10 +8,10 @@
 
 namespace cohort::parsing {
 
-/// Writes '.' for each '::' in the names of a file, and wherever the same model refers to them. Up to SDF 1.7 such
-/// names are those of a nested model whose parts stand in the outer one. libsdformat would nest them again, and stops
-/// the process where a joint, a frame or a pose refers to what is outside of the nested model. As parts of the outer
-/// model they are called the same here, and refer to what they like. The first place is told if `warnings` is given.
+/// Replaces '::' by '.' in the names of a file, and in references from the same model. Up to SDF 1.7 such names belong
+/// to a nested model whose parts are in the outer one. The conversion by libsdformat would nest them again. It aborts
+/// where a joint, a frame or a pose refers to something outside of the nested model. As parts of the outer model with
+/// the new names, they can refer to anything. Reports the first position if `warnings` is given.
 void join_scoped_names(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>* warnings);
 
 }  // namespace cohort::parsing

@@ -15,7 +15,7 @@ const ElementSchema& schema_of_visuals() {
   return schema;
 }
 
-// Poses may be written in several ways, by their attributes: libsdformat is to say.
+// Poses can be written in several ways, depending on their attributes, so libsdformat checks them.
 bool can_be_read(const XmlNode& node, const ElementSchema& schema) {
   if (node.name != "pose" && !node.text.empty() && !schema.can_have(node.text)) return false;
   return std::ranges::all_of(node.children,

@@ -4,8 +4,8 @@
 
 namespace cohort::parsing {
 
-/// Leaves of what is only seen what is shown here, and takes out what cannot be read, so that it never stops a file
-/// that was not written for Cohort. Of SDFormat's newest version.
+/// Removes visual elements that are not shown or cannot be read, so that they never prevent reading a file from another
+/// source. For the newest version of SDFormat.
 void keep_what_is_shown(XmlNode& tree);
 
 }  // namespace cohort::parsing

@@ -14,7 +14,7 @@
 namespace cohort::parsing {
 namespace {
 
-constexpr int most_levels = 100;  // of models in models too
+constexpr int most_levels = 100;  // including nested models
 
 bool refers_to_frame(const std::string& element, const std::string& attribute) {
   static const std::set<std::pair<std::string, std::string>> known = {{"frame", "attached_to"},
@@ -25,7 +25,7 @@ bool refers_to_frame(const std::string& element, const std::string& attribute) {
   return known.contains({element, attribute});
 }
 
-// White space in a text is one space, as libsdformat has it.
+// Replaces white space in a text by single spaces, like libsdformat.
 std::string with_single_spaces(const std::string& text) {
   std::string joined;
   for (const std::string_view word : words(text)) (joined += joined.empty() ? "" : " ") += word;
@@ -47,7 +47,7 @@ class TreeReader {
   TreeReader(ElementBuilder& builder, std::vector<const XmlNode*>& nodes, sdf::Errors& errors)
       : builder_(builder), nodes_(nodes), errors_(errors) {}
 
-  /// Reads a node into an element of this definition that holds nothing.
+  /// Reads a node into an empty element of this definition.
   bool read(const XmlNode& node, const sdf::ElementPtr& element, const sdf::ElementPtr& definition);
   int line_of(const XmlNode& node) {
     nodes_.push_back(&node);
@@ -115,7 +115,7 @@ bool read_value(const XmlNode& node, const sdf::ElementPtr& element) {
   return value->Reparse() && value->SetFromString("");
 }
 
-// A model in a model is defined by the outer one. libsdformat forgets the version that it was written in.
+// A nested model has the definition of the outer one. libsdformat does not keep the version in which it was written.
 bool TreeReader::read_child(const XmlNode& child, const sdf::ElementPtr& parent, const sdf::ElementPtr& of_child,
                             const sdf::ElementPtr& of_parent) {
   const bool is_nested = !of_child->ReferenceSDF().empty();
@@ -133,7 +133,7 @@ bool TreeReader::read_child(const XmlNode& child, const sdf::ElementPtr& parent,
   return true;
 }
 
-// What SDF does not know: its values are texts.
+// Copies an element that is unknown to SDF, with values as text.
 void TreeReader::copy_unknown(const XmlNode& node, const sdf::ElementPtr& parent) {
   const auto element = std::make_shared<sdf::Element>();
   element->SetParent(parent);
@@ -145,7 +145,7 @@ void TreeReader::copy_unknown(const XmlNode& node, const sdf::ElementPtr& parent
   parent->InsertElement(element);
 }
 
-// Only a joint has to say all: of anything else that is absent, there are defaults.
+// Only a joint has required elements without defaults.
 bool TreeReader::add_required(const sdf::ElementPtr& element) {
   for (unsigned i = 0; i < element->GetElementDescriptionCount(); ++i) {
     const sdf::ElementPtr definition = element->GetElementDescription(i);
@@ -198,7 +198,7 @@ bool has_scoped_name(const XmlNode& node) {
   return value_of(node, "name").find("::") != std::string::npos || std::ranges::any_of(node.children, has_scoped_name);
 }
 
-// With attributes and value, but no definitions of children.
+// Copies attributes and value, but no definitions of children.
 sdf::ElementPtr bare_copy(const sdf::ElementPtr& definition) {
   sdf::ElementPtr copy = std::make_shared<sdf::Element>();
   copy->SetName(definition->GetName());

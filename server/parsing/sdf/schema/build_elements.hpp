@@ -12,19 +12,19 @@
 
 namespace cohort::parsing {
 
-/// Makes libsdformat's elements of trees. It does what libsdformat's reader does with a text, in the same order and
-/// with the same errors. One thing differs: there, each element gets its own copy of the definitions of all that it
-/// could hold, which takes a thousand times the memory of the text. Here, elements share those definitions, which
-/// nobody changes.
+/// Makes elements of libsdformat from trees. It works like the reader of libsdformat, in the same order and with the
+/// same errors, with one difference. There, each element gets its own copy of the definitions of all possible children,
+/// which takes a thousand times the memory of the text. Here, elements share those definitions, which are never
+/// changed.
 class ElementBuilder {
  public:
-  /// Returns the elements of `tree`, which is SDF of libsdformat's own version without includes and was written in
-  /// `version`. Returns null if an element cannot be read. The line number of an element, and of an error, is the place
-  /// of its node in `nodes`, from 1 on.
+  /// Returns the elements of `tree`, which has the SDF version of libsdformat and no includes, and was written in
+  /// `version`. Returns null if an element cannot be read. The line number of an element, and of an error, is the index
+  /// of its node in `nodes`, from 1.
   sdf::SDFPtr build(const XmlNode& tree, const std::string& version, const std::filesystem::path& file,
                     std::vector<const XmlNode*>& nodes, sdf::Errors& errors);
 
-  /// Returns a new element of this definition that holds nothing.
+  /// Returns a new empty element of this definition.
   sdf::ElementPtr element_of(const sdf::ElementPtr& definition);
 
  private:

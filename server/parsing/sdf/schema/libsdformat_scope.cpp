@@ -11,7 +11,7 @@ std::mutex& libsdformat_mutex() {
   return mutex;
 }
 
-// libsdformat keeps a log of its own in the home folder, and says so on standard error where there is none.
+// libsdformat writes a log in the home folder, and prints to standard error if there is none.
 sdf::Console& console() {
   static const sdf::ConsolePtr made = [] {
     std::streambuf* const before = std::cerr.rdbuf(nullptr);
@@ -26,7 +26,7 @@ sdf::Console& console() {
 
 LibsdformatScope::LibsdformatScope() : lock_(libsdformat_mutex()), saved_(sdf::ParserConfig::GlobalConfig()) {
   config() = sdf::ParserConfig();
-  // A misspelt element or attribute would otherwise be left out with a line on the console.
+  // Otherwise a misspelt element or attribute would be ignored with a line on the console.
   config().SetWarningsPolicy(sdf::EnforcementPolicy::ERR);
   config().SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::ERR);
   config().SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);

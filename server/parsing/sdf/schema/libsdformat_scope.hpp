@@ -10,8 +10,8 @@
 
 namespace cohort::parsing {
 
-/// Makes libsdformat read by our rules and print nothing. Its settings are global to the process, so only one world is
-/// read at a time.
+/// Makes libsdformat use the rules of Cohort and print nothing. Its settings are global to the process, so only one
+/// world is read at a time.
 class LibsdformatScope {
  public:
   LibsdformatScope();
@@ -26,8 +26,9 @@ class LibsdformatScope {
   sdf::ParserConfig saved_;
 };
 
-/// Calls what uses libsdformat, and returns why it ended, or nothing if it did what it should. What libsdformat throws
-/// where an assertion fails is no std::exception. Want of memory is nothing that a file is to blame for: it is thrown.
+/// Calls code that uses libsdformat, and returns the reason of a failure, or nothing. On a failed assertion,
+/// libsdformat throws something that is no std::exception. Out-of-memory exceptions are passed on, since the file is
+/// not their cause.
 template <class Call>
 std::optional<std::string> libsdformat_failure(Call&& call) {
   try {

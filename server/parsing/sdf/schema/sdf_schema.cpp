@@ -45,7 +45,7 @@ ElementSchema ElementSchema::child(const std::string& name) const {
     if (extension_ != nullptr) schema.key_ = find_key(*extension_, schema.name_);
     schema.unknown_extension_ = schema.extension_ == nullptr && schema.key_ == nullptr;
   } else if (element_ && !element_->GetCopyChildren()) {
-    // The schema of a model in a model is that of the model.
+    // The schema of a nested model is that of the model.
     const bool is_same = name == name_ && element_->HasElementDescription(name);
     schema.element_ = is_same ? element_ : element_->GetElementDescription(name);
   }
@@ -73,7 +73,7 @@ bool ElementSchema::knows_attribute(const std::string& name) const {
 }
 
 bool ElementSchema::is_single() const {
-  // What SDF says of these where they are included is lost in libsdformat: any number.
+  // For these included elements, libsdformat does not keep the number that SDF allows.
   if (name_ == "sensor" || name_ == "projector") return false;
   return element_ && (element_->GetRequired() == "0" || element_->GetRequired() == "1");
 }

@@ -10,36 +10,37 @@
 
 namespace cohort::parsing {
 
-/// What SDFormat's own schema, or the table of extensions, says an element may hold. A value; cheap to copy. Of what
-/// neither knows (below <plugin>, or with the prefix of another simulator) it is `free`: anything goes.
+/// The allowed content of an element, from the schema of SDFormat or the table of extensions. A value; cheap to copy.
+/// For elements that neither knows (below <plugin>, or with the prefix of another simulator) it is `free`: anything is
+/// allowed.
 class ElementSchema {
  public:
-  /// Of <sdf>.
+  /// Returns the schema of <sdf>.
   static ElementSchema root();
 
-  /// Of a child; `free` if it is not known here.
+  /// Returns the schema of a child; `free` if it is not known here.
   ElementSchema child(const std::string& name) const;
 
   bool is_free() const { return !element_ && extension_ == nullptr && key_ == nullptr; }
-  /// An extension, a part of one, or an unknown element with its prefix.
+  /// Returns whether this is an extension, a part of one, or an unknown element with its prefix.
   bool is_extension() const { return extension_ != nullptr || key_ != nullptr || unknown_extension_; }
-  /// Children of any name may stand in it.
+  /// Returns whether children of any name are allowed.
   bool takes_anything() const;
   bool has_child(const std::string& name) const;
   bool has_attribute(const std::string& name) const;
-  /// The same of what SDF itself says, in less time; of anything else it is true.
+  /// Returns the same for elements of SDF itself, in less time; true for all others.
   bool knows_child(const std::string& name) const;
   bool knows_attribute(const std::string& name) const;
-  /// SDF has it at most once in its parent.
+  /// Returns whether SDF allows it at most once in its parent.
   bool is_single() const;
   bool has_value() const;
-  /// Whether SDF can have this text as its value. Only what depends on no attribute is looked at.
+  /// Returns whether SDF allows this text as its value. Checks only what does not depend on attributes.
   bool can_have(const std::string& text) const;
   std::string default_text() const;
-  /// Its value is several numbers.
+  /// Returns whether its value is several numbers.
   bool is_vector() const;
 
-  /// Those that it may have, extensions with their prefix.
+  /// Returns the names of the allowed children, extensions with their prefix.
   std::vector<std::string> children() const;
   std::vector<std::string> attributes() const;
 
@@ -51,7 +52,7 @@ class ElementSchema {
   bool unknown_extension_ = false;
 };
 
-/// SDFormat's description of <sdf>. It is shared, and nobody changes it.
+/// Returns the description of <sdf> in SDFormat. It is shared and must not be changed.
 const sdf::ElementPtr& sdf_definition();
 
 }  // namespace cohort::parsing

@@ -19,8 +19,8 @@ struct Entry {
   YamlPtr value;
 };
 
-// Elements whose name may be left out: it is then that of the element, with a number from the second on, and
-// `default` of a world.
+// Returns whether the name of an element may be omitted. It is then that of the element, with a number from the second
+// on, and `default` for a world.
 bool may_lack_name(std::string_view element) {
   return element == "world" || element == "link" || element == "collision" || element == "visual";
 }
@@ -30,14 +30,14 @@ bool is_list_of_scalars(const YamlNode& node) {
          std::all_of(node.items.begin(), node.items.end(), [](const YamlPtr& item) { return item->is_scalar(); });
 }
 
-// The numbers of one vector, not vectors that are each a text.
+// Returns whether a list has the numbers of one vector, rather than vectors as texts.
 bool is_vector(const YamlNode& node) {
   return is_list_of_scalars(node) && std::all_of(node.items.begin(), node.items.end(), [](const YamlPtr& item) {
            return item->text.find(' ') == std::string::npos;
          });
 }
 
-// YAML's infinity is not SDF's.
+// Infinity is spelled differently in YAML and SDF.
 std::string scalar_text(const YamlNode& node) {
   std::string text = node.text;
   std::transform(text.begin(), text.end(), text.begin(),
@@ -63,7 +63,7 @@ class Converter {
   void problem(int line, const std::string& element, std::string message) {
     problems_.push_back({file_, line, element, std::move(message)});
   }
-  /// The keys of a map, each once; those that `<<` merges into it last.
+  /// Returns the keys of a map, each once; those that `<<` merges into it come last.
   std::vector<Entry> entries(const YamlNode& map, const std::string& path);
   void merge(const YamlNode& from, int line, const std::string& path, std::set<std::string>& seen,
              std::vector<Entry>& found);
@@ -76,7 +76,7 @@ class Converter {
                  const std::string& path);
   void add_in_order(XmlNode& node, const Entry& entry, const ElementSchema& schema, const std::string& path);
   void set_value(XmlNode& node, const Entry& entry, const std::string& path);
-  /// The key as it was probably meant, or empty; what is wrong with it is said.
+  /// Returns the key as it was probably meant, or an empty text; reports problems.
   std::string known_key(const Entry& entry, const std::vector<Entry>& all, const ElementSchema& schema,
                         const std::string& path);
   void check_top(const XmlNode& sdf);
@@ -89,7 +89,7 @@ std::string extended(const std::string& path, const std::string& step) {
   return path.empty() ? step : path + "/" + step;
 }
 
-// `model[NAME]`, as the element will be called once it is read.
+// Returns `model[NAME]`, with the name of the element after reading.
 std::string step_to(const std::string& element, const YamlNode& value) {
   if (element == "world" || !value.is_map()) return element;
   for (const auto& [key, name] : value.pairs)
@@ -117,7 +117,7 @@ std::vector<Entry> Converter::entries(const YamlNode& map, const std::string& pa
     if (!key->is_scalar())
       problem(key->line, path, "expected the name of an element as a key, not " + shown(*key));
     else if (!seen.insert(key->text).second)
-      problem(key->line, extended(path, key->text), "the key is given twice; several of them are a list, '- …'");
+      problem(key->line, extended(path, key->text), "the key is given twice; write several values as a list, '- …'");
     else
       found.push_back({key->text, key->line, value});
   }
@@ -140,7 +140,7 @@ void Converter::fill(XmlNode& node, const YamlNode& value, const ElementSchema& 
       if (is_list_of_scalars(value))
         node.text = joined(value);
       else
-        problem(value.line, path, "a list in a list; expected values");
+        problem(value.line, path, "unexpected list in a list; expected values");
   }
 }
 
@@ -162,7 +162,7 @@ std::string Converter::known_key(const Entry& entry, const std::vector<Entry>& a
     problem(entry.line, path, "'" + key + "' cannot be the name of an element");
     return {};
   }
-  // Those of cohort: are checked later, in whatever kind of file they stand.
+  // `cohort:` keys are checked later, in files of any kind.
   if (schema.takes_anything() || schema.is_extension() || has_reserved_mark || key.find(':') != std::string::npos)
     return key;
   std::vector<std::string> known = schema.attributes();
@@ -170,7 +170,7 @@ std::string Converter::known_key(const Entry& entry, const std::vector<Entry>& a
   if (schema.has_value()) known.emplace_back("value");
   if (key == "elements" || std::find(known.begin(), known.end(), key) != known.end()) return key;
   problem(entry.line, extended(path, key), "unknown key" + suggestion(key, known));
-  // A slip of one letter is read as what was meant, so that one mistake is one message.
+  // A typing error of one letter is corrected, so that one mistake gives one message.
   const auto meant = nearest(key, known);
   if (!meant || edit_distance(key, *meant) > 1 ||
       std::any_of(all.begin(), all.end(), [&](const Entry& other) { return other.key == *meant; }))
@@ -229,7 +229,8 @@ void Converter::add_children(XmlNode& node, const Entry& entry, const ElementSch
   }
   for (const YamlPtr& item : value.items) {
     if (item->is_list() && !child.is_vector())
-      problem(item->line, extended(path, name), "a list in a list; expected the content of one <" + name + ">");
+      problem(item->line, extended(path, name),
+              "unexpected list in a list; expected the content of one <" + name + ">");
     else
       add_child(node, name, item->line, *item, child, path);
   }
@@ -254,7 +255,7 @@ void Converter::check_top(const XmlNode& sdf) {
   const std::string* const version = sdf.attribute("version");
   if (version != nullptr && *version != sdf::SDF::Version())
     problem(sdf.line, "sdf",
-            "expected the version " + sdf::SDF::Version() + ", which YAML is read as, not '" + *version + "'");
+            "expected the version " + sdf::SDF::Version() + ", the only one for YAML, not '" + *version + "'");
 }
 
 XmlNode Converter::convert(const YamlNode& document) {
@@ -267,7 +268,8 @@ XmlNode Converter::convert(const YamlNode& document) {
       if (key->is_scalar() && key->text == "sdf") {
         sdf.line = key->line;
         content = value.get();
-        if (document.pairs.size() > 1) problem(document.line, "", "beside 'sdf:' nothing else stands at the top");
+        if (document.pairs.size() > 1)
+          problem(document.line, "", "no other key is allowed beside 'sdf:' at the top level");
       }
   if (content->is_map())
     fill(sdf, *content, ElementSchema::root(), "");

@@ -16,7 +16,7 @@ void UnknownNames::add(const Problem& place, const std::string& message) {
 void UnknownNames::tell(std::vector<Problem>& warnings) const {
   for (const auto& [first, count] : told_) {
     warnings.push_back(first);
-    if (count > 1) warnings.back().message += "; it stands " + std::to_string(count) + " times in this file";
+    if (count > 1) warnings.back().message += "; it occurs " + std::to_string(count) + " times in this file";
   }
 }
 

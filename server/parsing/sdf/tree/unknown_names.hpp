@@ -8,14 +8,14 @@
 
 namespace cohort::parsing {
 
-/// Words of other people's files that mean nothing here. Each is told once, with its first place and how often it
-/// stands there.
+/// Unknown names in files from other sources. Each is reported once, with its first position and the number of
+/// occurrences.
 class UnknownNames {
  public:
-  /// `place` has no message; `message` tells one word from another.
+  /// `place` has no message; `message` identifies the name.
   void add(const Problem& place, const std::string& message);
 
-  /// In the order of their first places.
+  /// Adds the warnings in the order of their first positions.
   void tell(std::vector<Problem>& warnings) const;
 
  private:

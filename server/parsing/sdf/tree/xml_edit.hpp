@@ -6,13 +6,13 @@
 
 #include "server/parsing/files/xml_outline.hpp"
 
-/// Changing a tree of XML that was read.
+/// Functions that change a tree of XML.
 namespace cohort::parsing {
 
-/// nullptr if there is none.
+/// Returns the child of this name; nullptr if there is none.
 inline XmlNode* child_of(XmlNode& parent, std::string_view name) { return const_cast<XmlNode*>(parent.child(name)); }
 
-/// Empty if there is none.
+/// Returns the value of the attribute; empty if there is none.
 inline std::string value_of(const XmlNode& node, std::string_view attribute) {
   const std::string* const value = node.attribute(attribute);
   return value != nullptr ? *value : "";
@@ -27,21 +27,21 @@ inline void set_attribute(XmlNode& node, std::string_view name, const std::strin
   node.attributes.emplace_back(name, value);
 }
 
-/// The name of the element, or the one that an <include> gives; empty if there is none.
+/// Returns the name of the element, or the one that an <include> gives; empty if there is none.
 inline std::string name_of(const XmlNode& node) {
   if (const std::string* const name = node.attribute("name")) return *name;
   const XmlNode* const name = node.name == "include" ? node.child("name") : nullptr;
   return name != nullptr ? name->text : "";
 }
 
-/// An element as a step of a path, such as `model[NAME]`. There is one world, whose name does not matter.
+/// Returns an element as a step of a path, such as `model[NAME]`. There is one world, whose name is omitted.
 inline std::string path_step(const std::string& element, const std::string& name) {
   return name.empty() || element == "world" ? element : element + "[" + name + "]";
 }
 
 inline std::string step_of(const XmlNode& node) { return path_step(node.name, name_of(node)); }
 
-/// The content of a model but its name and where it is.
+/// Adds the content of a model except its name and pose.
 inline void add_content(const XmlNode& node, std::string& content, bool is_top = true) {
   content += '<' + node.name;
   for (const auto& [name, value] : node.attributes)
@@ -58,7 +58,7 @@ inline void add_content(const XmlNode& node, std::string& content, bool is_top =
   content += "</>";
 }
 
-/// An element that stands where another one does.
+/// Returns an element with the position of another one.
 inline XmlNode element_at(const XmlNode& where, std::string name, std::string text = "") {
   return {std::move(name), where.line, where.file, {}, std::move(text), {}};
 }

@@ -14,7 +14,7 @@
 namespace cohort::parsing {
 namespace {
 
-// Of <gazebo>: what libsdformat's converter takes for a number.
+// Elements of <gazebo> that the converter of libsdformat reads as numbers.
 constexpr std::string_view gazebo_numbers[] = {"dampingFactor",
                                                "maxVel",
                                                "minDepth",
@@ -57,7 +57,7 @@ class Checker {
   void check_link(const XmlNode& link, const std::string& path);
   void check_joint(const XmlNode& joint, const std::string& path);
   void check_tree(const XmlNode& robot);
-  /// The link that <parent> or <child> names, reported if there is none.
+  /// Reports a missing link that <parent> or <child> names.
   void check_end(const XmlNode& joint, const std::string& path, const char* end);
 
   const std::filesystem::path& file_;
@@ -105,7 +105,7 @@ void Checker::check_top(const XmlNode& node) {
       problem(node, path, "another " + node.name + " has the name '" + *name + "'");
     node.name == "link" ? check_link(node, path) : check_joint(node, path);
   } else if (node.name == "transmission") {
-    warning(node, path, "<transmission> is not supported and is ignored; motors are cohort: elements");
+    warning(node, path, "<transmission> is not supported and is ignored; define motors with cohort: elements");
   } else if (node.name == "gazebo") {
     check_gazebo(node);
   } else if (node.name != "material") {
@@ -190,13 +190,13 @@ void Checker::check_end(const XmlNode& joint, const std::string& path, const cha
   problem(*joint.child(end), path + "/" + end, "the robot has no link '" + link + "'" + suggestion(link, names));
 }
 
-// The converter walks down from the root, for ever if the links are in a loop.
+// The converter descends from the root, without end if the links form a loop.
 void Checker::check_tree(const XmlNode& robot) {
   std::map<std::string, std::string> parent;
   for (const auto& [name, joint] : joints_)
     if (!parent.emplace(end_of(*joint, "child"), end_of(*joint, "parent")).second)
       problem(*joint, step(robot) + "/" + step(*joint),
-              "the link '" + end_of(*joint, "child") + "' is the child of another joint already");
+              "the link '" + end_of(*joint, "child") + "' is already the child of another joint");
   std::string roots;
   std::size_t count = 0;
   for (const auto& [name, node] : links_) {
@@ -204,7 +204,7 @@ void Checker::check_tree(const XmlNode& robot) {
     roots += (count++ == 0 ? "'" : ", '") + name + "'";
   }
   if (count > 1) problem(robot, step(robot), "expected one link without a joint to a parent, not " + roots);
-  // Each walk up ends at a root or at a link that was met before; in this walk, that is a loop.
+  // Each ascent ends at a root or at a visited link; if it was visited in this ascent, there is a loop.
   std::set<std::string> met;
   for (const auto& [name, node] : links_) {
     std::set<std::string> now;

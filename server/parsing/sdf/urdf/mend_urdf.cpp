@@ -44,7 +44,7 @@ class UrdfMender {
 UrdfRest UrdfMender::mend(XmlNode& robot) {
   if (value_of(robot, "name").empty()) {
     set_attribute(robot, "name", file_.stem().string());
-    notes_.warn(robot, "robot", "has no name; it is called '" + file_.stem().string() + "', as its file");
+    notes_.warn(robot, "robot", "has no name; it is named '" + file_.stem().string() + "' after its file");
   }
   take_optional_environment(robot, "robot");
   name_joints_apart(robot, notes_);
@@ -61,7 +61,7 @@ UrdfRest UrdfMender::mend(XmlNode& robot) {
   return std::move(rest_);
 }
 
-// `$(optenv NAME VALUE)` is the value: what runs does not depend on the environment.
+// `$(optenv NAME VALUE)` is replaced by VALUE, so that results do not depend on the environment.
 void UrdfMender::take_optional_environment(XmlNode& node, const std::string& path) {
   constexpr std::string_view opening = "$(optenv ";
   for (auto& [name, value] : node.attributes)
@@ -71,12 +71,12 @@ void UrdfMender::take_optional_environment(XmlNode& node, const std::string& pat
       const std::string inside = value.substr(at + opening.size(), end - at - opening.size());
       const std::size_t space = std::min(inside.find(' '), inside.size());
       value.replace(at, end + 1 - at, trimmed(inside.substr(space)));
-      notes_.pass_over(node, path, "$(optenv …) is what stands in it, whatever the environment says");
+      notes_.pass_over(node, path, "$(optenv …) is replaced by its default value; the environment is not read");
     }
   for (XmlNode& child : node.children) take_optional_environment(child, path + "/" + urdf_step(child));
 }
 
-// A comma between two numbers, or a point after one: others read up to there.
+// Numbers with a comma between them, or a point after one, which other programs read up to that character.
 void UrdfMender::mend_numbers(XmlNode& node, const UrdfForm& form, const std::string& path) {
   for (const UrdfAttribute& attribute : form.attributes) {
     const std::string value = value_of(node, attribute.name);
@@ -94,12 +94,12 @@ void UrdfMender::mend_numbers(XmlNode& node, const UrdfForm& form, const std::st
   }
 }
 
-// Of Bullet: shapes that the converter does not know. What nobody knows is an error: what moves would go through
-// others.
+// Bullet has shapes that the converter does not know. An unknown shape is an error, since a moving model would pass
+// through others.
 void UrdfMender::mend_shape(XmlNode& geometry, const std::string& path,
                             const std::pair<std::string, std::size_t>& place) {
   if (geometry.children.size() > 1)
-    notes_.pass_over(geometry, path, "has more than one shape; only the first counts, as other readers have it");
+    notes_.pass_over(geometry, path, "has more than one shape; only the first is used, as in other URDF readers");
   geometry.children.resize(1, geometry.children.front());
   XmlNode& shape = geometry.children.front();
   const XmlNode bullets = shape;
@@ -123,13 +123,13 @@ void UrdfMender::mend_shape(XmlNode& geometry, const std::string& path,
   mend_mesh(geometry);
 }
 
-// The converter divides by the mass of links that it makes one.
+// The converter divides by the mass of links that it merges.
 bool is_without_mass(const XmlNode& node) {
   const XmlNode* const mass = node.name == "inertial" ? node.child("mass") : nullptr;
   return mass != nullptr && parse_real(value_of(*mass, "value")) == 0.0;
 }
 
-// A box, a sphere or a cylinder that is flat, thin or a point, which others take for one that is not there.
+// Returns whether a box, sphere or cylinder has a size of 0, so that other programs ignore it.
 bool has_no_size(const XmlNode& shape) {
   const UrdfForm* const form = form_of("geometry", shape.name);
   return form != nullptr && std::ranges::any_of(form->attributes, [&](const UrdfAttribute& attribute) {
@@ -152,10 +152,9 @@ void UrdfMender::mend_link(XmlNode& link) {
     if (child.name != "collision") return is_without_mass(child);
     const XmlNode* const geometry = child.child("geometry");
     const bool is_empty = geometry == nullptr || geometry->children.empty();
-    if (is_empty) notes_.pass_over(child, path + "/collision", "a <collision> without a shape, which is ignored");
+    if (is_empty) notes_.pass_over(child, path + "/collision", "<collision> has no shape and is ignored");
     if (is_empty || !has_no_size(geometry->children.front())) return is_empty;
-    notes_.pass_over(geometry->children.front(), path + "/collision/geometry",
-                     "a collision of size 0, which is left out");
+    notes_.pass_over(geometry->children.front(), path + "/collision/geometry", "a collision of size 0 is ignored");
     return true;
   });
   for (XmlNode& child : link.children) {
@@ -173,7 +172,7 @@ void UrdfMender::mend_inertial(XmlNode& inertial, const std::string& path) {
   XmlNode* const mass = child_of(inertial, "mass");
   const std::optional<double> value = mass != nullptr ? parse_real(value_of(*mass, "value")) : std::nullopt;
   if (value && *value > 0.0 && *value < least_mass) {
-    notes_.pass_over(*mass, path + "/mass", "is less than 2 mg, which stands in for it");
+    notes_.pass_over(*mass, path + "/mass", "is less than 2 mg; 2 mg is used instead");
     set_attribute(*mass, "value", shortest_text(least_mass));
   }
   XmlNode* const inertia = child_of(inertial, "inertia");
@@ -181,7 +180,7 @@ void UrdfMender::mend_inertial(XmlNode& inertial, const std::string& path) {
   for (const char* const product : {"ixy", "ixz", "iyz"}) {
     if (inertia->attribute(product) != nullptr) continue;
     set_attribute(*inertia, product, "0");
-    notes_.pass_over(*inertia, path + "/inertia", "has not all products of inertia; those that are missing are 0");
+    notes_.pass_over(*inertia, path + "/inertia", "lacks products of inertia; the missing ones are set to 0");
   }
 }
 
@@ -190,7 +189,7 @@ void UrdfMender::take_unknown(XmlNode& node, const std::string& path) {
   std::erase_if(node.children, [&](const XmlNode& child) {
     const bool is_again = form_of(node.name, child.name) != nullptr && child.name != "collision" &&
                           child.name != "visual" && !met.insert(child.name).second;
-    if (is_again) notes_.pass_over(child, path + "/" + urdf_step(child), "is given twice; only the first counts");
+    if (is_again) notes_.pass_over(child, path + "/" + urdf_step(child), "is given twice; only the first is used");
     return is_again;
   });
   std::erase_if(node.children, [&](const XmlNode& child) {

@@ -9,10 +9,10 @@
 
 namespace cohort::parsing {
 
-/// Makes of a URDF as it is found in the field one that the format allows, where it is plain what is meant: what is
-/// unknown is left out, Bullet's <contact> and <capsule> are put aside, limits that are missing are none, and a root
-/// without mass is held by the world. `problems` has collisions of a shape that is not supported, `warnings` all that
-/// changes how the robot moves.
+/// Repairs a URDF that does not follow the format but whose meaning is clear. Unknown elements are removed, and
+/// <contact> and <capsule> of Bullet are set aside. Missing limits mean no limits, and a root link without mass is
+/// fixed to the world. Adds collisions with unsupported shapes to `problems`, and all changes that affect the motion of
+/// the robot to `warnings`.
 UrdfRest mend_urdf(XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,
                    std::vector<Problem>& warnings);
 

@@ -18,7 +18,7 @@
 namespace cohort::parsing {
 namespace {
 
-/// Takes what the URDF reader would print.
+/// Captures the output of the URDF reader.
 class ConsoleCapture : public console_bridge::OutputHandler {
  public:
   ConsoleCapture() { console_bridge::useOutputHandler(this); }
@@ -35,7 +35,7 @@ class ConsoleCapture : public console_bridge::OutputHandler {
   std::string errors_;
 };
 
-// An <sdf> that takes any children as texts. Their values are read later, when elements are made of the tree.
+// Returns an <sdf> that accepts any children as texts. Their values are read when elements are made from the tree.
 sdf::SDFPtr unchecked_sdf() {
   const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
   const sdf::ElementPtr root = std::make_shared<sdf::Element>();
@@ -46,7 +46,7 @@ sdf::SDFPtr unchecked_sdf() {
   return sdf;
 }
 
-// Which URDF element an SDF element says something of.
+// Returns the name of the URDF element to which an SDF element corresponds.
 std::string urdf_name(const std::string& sdf) {
   constexpr std::pair<std::string_view, std::string_view> names[] = {
       {"pose", "origin"},     {"uri", "mesh"}, {"scale", "mesh"},  {"size", "box"},    {"radius", "geometry"},
@@ -106,14 +106,15 @@ class LineFinder {
   std::map<std::string, const XmlNode*> named_;
 };
 
-// The joint above a link; nullptr for the root.
+// Returns the joint above a link; nullptr for the root.
 const XmlNode* joint_above(const XmlNode& robot, const std::string& link) {
   for (const XmlNode& joint : robot.children)
     if (joint.name == "joint" && *joint.child("child")->attribute("link") == link) return &joint;
   return nullptr;
 }
 
-// The converter makes one of links that a fixed joint connects. It leaves out what it cannot use.
+// Returns whether the converter keeps a link: it merges links that a fixed joint connects, and omits those it cannot
+// use.
 bool is_kept(const XmlNode& robot, const std::string& link, const std::set<std::string>& names) {
   if (names.contains(link)) return true;
   const XmlNode* const joint = joint_above(robot, link);
@@ -123,14 +124,14 @@ bool is_kept(const XmlNode& robot, const std::string& link, const std::set<std::
 
 XmlNode* find_joint(XmlNode& node, const std::string& name) {
   for (XmlNode& child : node.children) {
-    const std::string* const own = child.name == "joint" ? child.attribute("name") : nullptr;  // of a plugin: none
+    const std::string* const own = child.name == "joint" ? child.attribute("name") : nullptr;  // none for a plugin
     if (own != nullptr && *own == name) return &child;
     if (XmlNode* const found = find_joint(child, name)) return found;
   }
   return nullptr;
 }
 
-// libsdformat's converter leaves <mimic> out.
+// The converter of libsdformat omits <mimic>.
 XmlNode extension_of(const XmlNode& mimic) {
   XmlNode extension{prefixed("mimic"), mimic.line, nullptr, {}, "", {}};
   for (const auto& [name, value] : mimic.attributes)
@@ -153,13 +154,13 @@ std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& f
   if (problems.size() > before) return std::nullopt;
 
   const ConsoleCapture console;
-  sdf::ParserConfig tolerant = config;  // what SDF does not know is told of the SDF that comes of it
+  sdf::ParserConfig tolerant = config;  // unknown elements are reported for the resulting SDF
   tolerant.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
   tolerant.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
   sdf::Errors errors;
   const sdf::SDFPtr sdf = unchecked_sdf();
   bool is_read = false;
-  // What <gazebo> holds may stop it, for example.
+  // The content of <gazebo> may stop it, for example.
   std::string why = libsdformat_failure([&] {
                       is_read = sdf::readString(xml_text_of(robot).text, tolerant, sdf, errors);
                     }).value_or("");
@@ -184,11 +185,10 @@ std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& f
     if (link.name != "link" || is_kept(robot, *link.attribute("name"), names)) continue;
     const std::string path = "robot/link[" + *link.attribute("name") + "]";
     if (*link.attribute("name") != "world")
-      problems.push_back(
-          {file, link.line, path, "libsdformat's converter of URDF leaves this link out, with its joint"});
+      problems.push_back({file, link.line, path, "the URDF converter of libsdformat omits this link and its joint"});
     else if (link.child("collision") != nullptr)
       warnings.push_back(
-          {file, link.line, path, "'world' is the world itself; the collisions of this link are ignored"});
+          {file, link.line, path, "the link 'world' is treated as the world; its collisions are ignored"});
   }
   if (problems.size() > before) return std::nullopt;
   return tree;

@@ -10,14 +10,14 @@
 
 namespace cohort::parsing {
 
-/// A URDF <robot> as the <sdf> element that libsdformat makes of it, each element with the line of the URDF element
-/// that it comes from. What is wrong goes to `problems`, with its line, and there is nothing then; what is left out
-/// goes to `warnings`.
+/// Returns the <sdf> element that libsdformat makes of a URDF <robot>, in which each element has the line of its URDF
+/// element. Adds problems, with their lines, to `problems`, and then returns nothing; adds omitted features to
+/// `warnings`.
 std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& file, const sdf::ParserConfig& config,
                                    std::vector<Problem>& problems, std::vector<Problem>& warnings);
 
-/// Checks a URDF <robot> against the format, as far as its converter would be silent or stop: names, references,
-/// numbers, and that the links are one tree.
+/// Checks a URDF <robot> against the format for errors that its converter would ignore or fail on: names, references,
+/// numbers, and that the links form one tree.
 void check_urdf(const XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,
                 std::vector<Problem>& warnings);
 

@@ -16,20 +16,20 @@ struct UrdfAttribute {
   bool positive = false;
 };
 
-/// An element of URDF, where it may stand, and its attributes.
+/// An element of URDF with its parent and its attributes.
 struct UrdfForm {
   std::string_view parent;
   std::string_view name;
   std::vector<UrdfAttribute> attributes{};
 };
 
-/// What the reader of URDF knows of links and joints (http://wiki.ros.org/urdf/XML), but for what is only seen.
+/// Returns the elements of links and joints in URDF (http://wiki.ros.org/urdf/XML), except visual ones.
 const std::vector<UrdfForm>& urdf_forms();
 
-/// Returns the form of an element where it stands; nullptr if the reader does not know it there.
+/// Returns the form of an element in its parent; nullptr if it is unknown there.
 const UrdfForm* form_of(std::string_view parent, std::string_view name);
 
-/// What is wrong with the value of an attribute, or nothing.
+/// Returns the problem of the value of an attribute, or nothing.
 std::optional<std::string> what_is_wrong(const std::string& value, const UrdfAttribute& attribute);
 
 }  // namespace cohort::parsing

@@ -18,7 +18,7 @@ void mend_limit(XmlNode& joint, const std::string& path, UrdfNotes& notes) {
     for (const char* const most : {"effort", "velocity"}) {
       if (limit->attribute(most) != nullptr) continue;
       set_attribute(*limit, most, "0");
-      notes.pass_over(*limit, path + "/limit", std::string("has no '") + most + "', which then has no limit");
+      notes.pass_over(*limit, path + "/limit", std::string("has no '") + most + "'; it is unlimited");
     }
     return;
   }
@@ -29,7 +29,7 @@ void mend_limit(XmlNode& joint, const std::string& path, UrdfNotes& notes) {
     joint.children.push_back(std::move(none));
   }
   if (type == "revolute" || type == "prismatic")
-    notes.pass_over(joint, path, "has no <limit>, which a " + type + " joint needs; it moves without one");
+    notes.pass_over(joint, path, "has no <limit>, which a " + type + " joint requires; the joint is unlimited");
 }
 
 }  // namespace
@@ -44,7 +44,8 @@ void name_joints_apart(XmlNode& robot, UrdfNotes& notes) {
     if (joint.name != "joint" || !taken.contains(name)) continue;
     std::string other = name + "_joint";
     while (taken.contains(other)) other += "_";
-    notes.pass_over(joint, "robot/" + urdf_step(joint), "has the name of a link; it is called after it, with '_joint'");
+    notes.pass_over(joint, "robot/" + urdf_step(joint),
+                    "has the name of a link; the joint is renamed with the suffix '_joint'");
     set_attribute(joint, "name", other);
     renamed.emplace(name, other);
   }
@@ -62,7 +63,7 @@ void mend_joint(XmlNode& joint, UrdfRest& rest, UrdfNotes& notes) {
     set_attribute(joint, "type", "continuous");
   } else if (type == "planar") {
     set_attribute(joint, "type", "floating");
-    notes.warn(joint, path, "a planar joint is not supported; its child is free, as of a floating one");
+    notes.warn(joint, path, "planar joints are not supported; the child moves freely, as with a floating joint");
   }
   if (XmlNode* const properties = child_of(joint, "joint_properties"); properties != nullptr) {
     if (joint.child("dynamics") == nullptr) properties->name = "dynamics";

@@ -6,14 +6,13 @@
 
 namespace cohort::parsing {
 
-/// Gives joints that have the name of a link another one: in SDF, the two are not of one name.
+/// Renames joints that have the name of a link, which SDF does not allow.
 void name_joints_apart(XmlNode& robot, UrdfNotes& notes);
 
-/// Makes a joint of a type that the format allows, with limits: those that are missing are none.
+/// Gives a joint a valid type and limits; missing limits mean no limits.
 void mend_joint(XmlNode& joint, UrdfRest& rest, UrdfNotes& notes);
 
-/// Lets the child of each floating joint go. Of a root without mass nothing is left, otherwise there are two bodies
-/// that are free.
+/// Removes floating joints, which makes their children free bodies. A root without mass is removed too.
 void let_go(XmlNode& robot, UrdfRest& rest);
 
 }  // namespace cohort::parsing

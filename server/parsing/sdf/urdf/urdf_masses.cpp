@@ -26,7 +26,7 @@ std::optional<ignition::math::Vector3d> three_numbers(const std::string& text) {
   return numbers;
 }
 
-// Nothing if it cannot be read, which is told elsewhere.
+// Returns the origin; nothing if it cannot be read, which is reported elsewhere.
 std::optional<ignition::math::Pose3d> origin_of(const XmlNode& joint) {
   const XmlNode* const origin = joint.child("origin");
   if (origin == nullptr) return ignition::math::Pose3d::Zero;
@@ -46,7 +46,7 @@ void set_origin(XmlNode& joint, const ignition::math::Pose3d& X) {
   set_attribute(*origin, "rpy", text_of(X.Rot().Euler()));
 }
 
-// Joints that <gazebo> says are not to be lumped.
+// Returns the joints for which <gazebo> disables lumping.
 std::set<std::string> preserved_joints(const XmlNode& robot) {
   std::set<std::string> preserved;
   for (const XmlNode& gazebo : robot.children) {
@@ -76,7 +76,7 @@ class Masses {
   std::map<std::string, XmlNode*> links_;
   std::map<std::string, XmlNode> above_;           // the joint above a link, as the file has it
   std::set<std::string> lumped_;                   // links that become part of the one above
-  std::multimap<std::string, std::string> parts_;  // of a link: those that become part of it
+  std::multimap<std::string, std::string> parts_;  // links that are merged into each link
 };
 
 Masses::Masses(XmlNode& robot, const std::filesystem::path& file, UrdfRest& rest, std::vector<Problem>& warnings)
@@ -95,7 +95,7 @@ Masses::Masses(XmlNode& robot, const std::filesystem::path& file, UrdfRest& rest
   }
 }
 
-// With what becomes part of it. A loop of joints is told elsewhere.
+// Returns whether a link has mass, including links that are merged into it. A loop of joints is reported elsewhere.
 bool Masses::weighs(const std::string& link) const {
   std::set<std::string> met;
   std::vector<std::string> open{link};
@@ -110,7 +110,7 @@ bool Masses::weighs(const std::string& link) const {
   return false;
 }
 
-// The converter passes over all that hangs on a flange without mass.
+// The converter ignores everything below a flange without mass.
 void Masses::raise_joints() {
   for (XmlNode& joint : robot_.children) {
     XmlNode* const parent = joint.name == "joint" ? child_of(joint, "parent") : nullptr;
@@ -142,7 +142,7 @@ void Masses::give_mass(XmlNode& link) const {
   link.children.push_back(std::move(inertial));
 }
 
-// A root without mass is how URDF says that the world holds it, as Bullet has it. Mass is of no consequence there.
+// In URDF, as in Bullet, a root without mass is fixed to the world. Its mass has no effect then.
 void Masses::give_masses() {
   for (const auto& [name, link] : links_) {
     if (name == "world" || is_lumped(name) || weighs(name)) continue;
@@ -152,7 +152,7 @@ void Masses::give_masses() {
     if (is_root) {
       rest_.held = name;
       warnings_.push_back(
-          {file_, link->line, "robot/link[" + name + "]", "has no mass and is the root: the world holds it"});
+          {file_, link->line, "robot/link[" + name + "]", "is a root link without mass and is fixed to the world"});
     } else if (value_of(joint->second, "type") != "fixed" || urdf_end(joint->second, "parent") != "world") {
       rest_.weightless.insert(name);
     }

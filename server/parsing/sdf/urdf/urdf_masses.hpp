@@ -13,13 +13,13 @@ namespace cohort::parsing {
 /// Returns the link that <parent> or <child> of a joint names; empty if there is none.
 std::string urdf_end(const XmlNode& joint, const char* end);
 
-/// Returns whether a link has mass. What cannot be read counts: it is to be told.
+/// Returns whether a link has mass. An unreadable one counts, so that it is reported.
 bool has_mass(const XmlNode& link);
 
-/// Changes a URDF so that its converter keeps every joint. The converter makes one link of those that fixed joints
-/// connect. It leaves out a link without mass, with its joint and all that hangs on it. Here such a link gets a mass:
-/// the root one that the world holds, any other one a mass for the converter alone (`rest.weightless`). A joint that
-/// hangs on a flange without mass hangs on what holds the flange.
+/// Changes a URDF so that its converter keeps every joint. The converter merges links that fixed joints connect. It
+/// omits a link without mass, with its joint and everything below. Here such a link gets a mass: the root is fixed to
+/// the world, and any other link has a mass only for the converter (`rest.weightless`). Joints on a flange without mass
+/// are attached to the link that carries the flange.
 void keep_links_without_mass(XmlNode& robot, const std::filesystem::path& file, UrdfRest& rest,
                              std::vector<Problem>& warnings);
 

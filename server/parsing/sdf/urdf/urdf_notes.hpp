@@ -10,10 +10,10 @@
 
 namespace cohort::parsing {
 
-/// An element as a step of a path, such as `link[NAME]`.
+/// Returns an element as a step of a path, such as `link[NAME]`.
 inline std::string urdf_step(const XmlNode& node) { return path_step(node.name, value_of(node, "name")); }
 
-/// What is changed in a URDF, for its author. What is told of many elements is told once.
+/// Notes about changes in a URDF, for its author. A note about many elements is reported once.
 class UrdfNotes {
  public:
   UrdfNotes(const std::filesystem::path& file, std::vector<Problem>& warnings) : file_(file), warnings_(warnings) {}

@@ -9,7 +9,7 @@
 namespace cohort::parsing {
 namespace {
 
-// The link and the collision of it that `axle_fixed_joint_lump__wheel_collision_1` stands for.
+// Returns the link, and the index of its collision, for a name such as `axle_fixed_joint_lump__wheel_collision_1`.
 std::pair<std::string, std::size_t> source_of_collision(std::string name) {
   constexpr std::string_view lump = "_fixed_joint_lump__";
   if (const std::size_t at = name.rfind(lump); at != std::string::npos) name.erase(0, at + lump.size());
@@ -21,7 +21,7 @@ std::pair<std::string, std::size_t> source_of_collision(std::string name) {
   return {name.substr(0, end), place.value_or(0)};
 }
 
-// What `into` says already stays.
+// Existing elements of `into` stay.
 void merge_into(XmlNode& into, const XmlNode& from) {
   for (const XmlNode& child : from.children) {
     XmlNode* const own = child_of(into, child.name);

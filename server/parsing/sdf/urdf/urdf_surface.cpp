@@ -11,7 +11,7 @@
 namespace cohort::parsing {
 namespace {
 
-// Puts `text` at a path below `node`.
+// Adds `text` at a path below `node`.
 void put(XmlNode& node, const std::vector<const char*>& path, const std::string& text) {
   XmlNode* at = &node;
   for (const char* const name : path) {

@@ -8,8 +8,8 @@
 
 namespace cohort::parsing {
 
-/// Returns SDF's <surface> for Bullet's <contact>: how the surface of a link rubs, bounces and gives way. Returns
-/// nothing if the element says nothing that is known.
+/// Returns <surface> of SDF for <contact> of Bullet: friction, restitution and stiffness of the surface of a link.
+/// Returns nothing if the element has no known content.
 std::optional<XmlNode> surface_of(const XmlNode& contact, const std::string& path, UrdfNotes& notes);
 
 }  // namespace cohort::parsing

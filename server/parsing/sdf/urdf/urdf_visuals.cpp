@@ -11,7 +11,7 @@
 namespace cohort::parsing {
 namespace {
 
-// A visual that cannot be read would stop the converter.
+// An unreadable visual would stop the converter.
 bool can_be_shown(XmlNode& visual) {
   XmlNode* const geometry = child_of(visual, "geometry");
   if (geometry == nullptr || geometry->children.size() != 1) return false;

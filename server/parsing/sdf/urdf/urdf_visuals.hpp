@@ -7,19 +7,19 @@
 
 namespace cohort::parsing {
 
-/// What a URDF has only to be seen. It never stops a file.
+/// The visual elements of a URDF, whose errors never prevent reading a file.
 class UrdfVisuals {
  public:
-  /// Takes out the materials of a robot that the converter would stop at, and remembers the rest.
+  /// Removes the materials of a robot that would stop the converter, and remembers the others.
   void mend_materials(XmlNode& robot);
-  /// Takes out the visuals of a link that cannot be read.
+  /// Removes the visuals of a link that cannot be read.
   void mend_link(XmlNode& link) const;
 
  private:
   std::set<std::string> materials_;
 };
 
-/// Makes the scale of a mesh, if the geometry is one, three numbers.
+/// Changes the scale of a mesh, if the geometry is one, to three numbers.
 void mend_mesh(XmlNode& geometry);
 
 }  // namespace cohort::parsing

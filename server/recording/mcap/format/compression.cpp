@@ -12,7 +12,7 @@ struct Compressor::Context {
 };
 
 Compressor::Compressor(int level) : context_(std::make_unique<Context>()), level_(level) {
-  if (context_->zstd == nullptr) throw std::runtime_error("there is no memory for zstd");
+  if (context_->zstd == nullptr) throw std::runtime_error("out of memory for zstd");
 }
 
 Compressor::~Compressor() { ZSTD_freeCCtx(context_->zstd); }
@@ -33,7 +33,7 @@ bool is_possible_size(std::uint64_t size, std::uint64_t compressed_size) {
 }
 
 void decompress(ByteView bytes, std::span<std::byte> to) {
-  // In one go into memory of the right size: zstd needs no window of its own then.
+  // Decompresses in one call into memory of the right size, so that zstd needs no window of its own.
   const std::size_t size = ZSTD_decompress(to.data(), to.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(size) != 0) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(size));
   if (size != to.size())

@@ -5,19 +5,19 @@
 
 #include "server/recording/mcap/format/mcap.hpp"
 
-/// zstd, the one compression of chunks that Cohort writes.
+/// zstd, the only compression of chunks that Cohort writes.
 namespace cohort::recording {
 
-/// Compresses; the same bytes give the same bytes. One thread at a time.
+/// A compressor whose output depends only on the input. For one thread at a time.
 class Compressor {
  public:
-  /// `level`: zstd's, 1 to 22.
+  /// `level`: zstd's level, 1 to 22.
   explicit Compressor(int level);
   Compressor(const Compressor&) = delete;
   Compressor& operator=(const Compressor&) = delete;
   ~Compressor();
 
-  /// Appends the compressed `bytes` to `to`. Throws std::runtime_error if there is no memory.
+  /// Appends the compressed `bytes` to `to`. Throws std::runtime_error if it is out of memory.
   void compress(ByteView bytes, Bytes& to);
 
  private:
@@ -26,12 +26,11 @@ class Compressor {
   int level_;
 };
 
-/// Whether `size` bytes can have been compressed to `compressed_size`: zstd's densest block gives 128 KiB for 4 bytes
-/// (RFC 8878, 3.1.1.2.2), and what cannot be compressed grows by little.
+/// Returns true if `size` bytes can be compressed to `compressed_size`. zstd's densest block encodes 128 KiB in 4 bytes
+/// (RFC 8878, 3.1.1.2.2), and incompressible data grows only slightly.
 bool is_possible_size(std::uint64_t size, std::uint64_t compressed_size);
 
-/// Fills `to` with what `bytes` hold. Throws std::runtime_error that says why if they hold something else than exactly
-/// so many bytes.
+/// Decompresses `bytes` into `to`. Throws std::runtime_error with the reason if they do not hold exactly so many bytes.
 void decompress(ByteView bytes, std::span<std::byte> to);
 
 }  // namespace cohort::recording

@@ -15,17 +15,17 @@ namespace cohort::recording {
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<const std::byte>;
 
-/// Nanoseconds since the beginning of the epoch that the file's user knows; in ours, simulated time.
+/// Nanoseconds since an epoch that the file's user knows; in Cohort's files, simulated time.
 using Timestamp = std::chrono::duration<std::uint64_t, std::nano>;
 
 using SchemaId = std::uint16_t;   ///< from 1; 0: no schema
 using ChannelId = std::uint16_t;  ///< unique in a file
 using StringMap = std::map<std::string, std::string>;
 
-/// What a file begins and ends with.
+/// The first and the last bytes of a file.
 inline constexpr std::array<std::uint8_t, 8> mcap_magic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 
-/// The first byte of a record; its length, eight bytes, follows.
+/// The first byte of a record. Its length follows, in eight bytes.
 enum class Opcode : std::uint8_t {
   header = 0x01,
   footer = 0x02,
@@ -44,12 +44,12 @@ enum class Opcode : std::uint8_t {
   data_end = 0x0F,
 };
 
-/// Bytes of opcode and length.
+/// Size of opcode and length [bytes].
 inline constexpr std::size_t record_head_size = 9;
 
 struct Header {
   std::string profile;  ///< such as `ros2`
-  std::string library;  ///< that wrote the file
+  std::string library;  ///< the library that wrote the file
 };
 
 struct Schema {
@@ -78,7 +78,7 @@ struct MessageHead {
   Timestamp publish_time{};
 };
 
-/// A message whose bytes are somebody else's: whoever gives one says how long they live.
+/// A message that does not own its bytes; the function that returns one documents their lifetime.
 struct Message : MessageHead {
   ByteView data;
 };
@@ -96,10 +96,10 @@ struct Metadata {
   StringMap entries;
 };
 
-/// What stands at the beginning of a chunk's record, before its messages.
+/// The beginning of a chunk record, before its messages.
 struct ChunkHead {
-  Timestamp start_time{};  ///< least log time in it; 0 if it has no message
-  Timestamp end_time{};    ///< greatest
+  Timestamp start_time{};  ///< least log time in the chunk; 0 without messages
+  Timestamp end_time{};    ///< greatest log time
   std::uint64_t uncompressed_size = 0;
   std::uint32_t uncompressed_crc = 0;  ///< 0: none
   std::string compression;             ///< `zstd`, `lz4` or empty
@@ -109,7 +109,7 @@ struct ChunkHead {
 struct MessageIndex {
   struct Entry {
     Timestamp log_time{};
-    std::uint64_t offset = 0;  ///< of the message's record in the chunk's uncompressed records
+    std::uint64_t offset = 0;  ///< offset of the message's record in the chunk's uncompressed records
   };
   ChannelId channel = 0;
   std::vector<Entry> entries;
@@ -118,8 +118,8 @@ struct MessageIndex {
 struct ChunkIndex {
   Timestamp start_time{};
   Timestamp end_time{};
-  std::uint64_t offset = 0;  ///< of the chunk's record in the file
-  std::uint64_t length = 0;  ///< of the whole record
+  std::uint64_t offset = 0;  ///< offset of the chunk's record in the file
+  std::uint64_t length = 0;  ///< length of the whole record
   std::map<ChannelId, std::uint64_t> message_index_offsets;
   std::uint64_t message_index_length = 0;
   std::string compression;
@@ -129,7 +129,7 @@ struct ChunkIndex {
 
 struct AttachmentIndex {
   std::uint64_t offset = 0;
-  std::uint64_t length = 0;  ///< of the whole record
+  std::uint64_t length = 0;  ///< length of the whole record
   Timestamp log_time{};
   Timestamp create_time{};
   std::uint64_t data_size = 0;
@@ -139,7 +139,7 @@ struct AttachmentIndex {
 
 struct MetadataIndex {
   std::uint64_t offset = 0;
-  std::uint64_t length = 0;  ///< of the whole record
+  std::uint64_t length = 0;  ///< length of the whole record
   std::string name;
 };
 
@@ -150,8 +150,8 @@ struct Statistics {
   std::uint32_t attachment_count = 0;
   std::uint32_t metadata_count = 0;
   std::uint32_t chunk_count = 0;
-  Timestamp start_time{};  ///< least log time of any message; 0 if there is none
-  Timestamp end_time{};    ///< greatest
+  Timestamp start_time{};  ///< least log time of all messages; 0 if there are none
+  Timestamp end_time{};    ///< greatest log time
   std::map<ChannelId, std::uint64_t> messages_of_channels;
 };
 

@@ -8,7 +8,8 @@
 
 namespace cohort::recording {
 
-/// A recording that cannot be read or written. `what()` is `FILE: byte OFFSET: what was found and what was expected`.
+/// The error of a recording that cannot be read or written. `what()` is `FILE: byte OFFSET: what was found and what was
+/// expected`.
 class McapError : public std::runtime_error {
  public:
   McapError(std::filesystem::path file, std::uint64_t offset, const std::string& problem)
@@ -18,7 +19,7 @@ class McapError : public std::runtime_error {
         problem_(problem) {}
 
   const std::filesystem::path& file() const { return file_; }
-  /// In the file; of what is wrong inside of a chunk, that of the chunk.
+  /// Returns the offset in the file; for an error inside of a chunk, the offset of the chunk.
   std::uint64_t offset() const { return offset_; }
   const std::string& problem() const { return problem_; }
 
@@ -28,7 +29,8 @@ class McapError : public std::runtime_error {
   std::string problem_;
 };
 
-/// A file that cannot be opened, written or replaced: what, where, why, and what to do.
+/// The error of a file that cannot be opened, written or replaced. The message says what failed, where, why, and what
+/// to do.
 class FileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -23,7 +23,7 @@ ByteView bytes_of(std::string_view text) { return std::as_bytes(std::span(text))
 
 void add_size(Bytes& to, std::size_t size) {
   if (size > std::numeric_limits<std::uint32_t>::max())
-    throw std::length_error("a text or list of " + std::to_string(size) + " bytes; MCAP allows less than 4 GiB");
+    throw std::length_error("a text or list has " + std::to_string(size) + " bytes; MCAP allows less than 4 GiB");
   add(to, static_cast<std::uint32_t>(size));
 }
 
@@ -32,14 +32,14 @@ void add(Bytes& to, std::string_view text) {
   add_bytes(to, bytes_of(text));
 }
 
-// What `write` adds, with its length before it.
+// Appends the output of `write`, preceded by its length.
 template <class Size, class Write>
 void add_sized(Bytes& to, const Write& write) {
   const std::size_t at = to.size();
   add(to, Size{});
   write();
   const std::size_t size = to.size() - at - sizeof(Size);
-  if (size > std::numeric_limits<Size>::max()) throw std::length_error("a list of more than 4 GiB");
+  if (size > std::numeric_limits<Size>::max()) throw std::length_error("a list has more than 4 GiB");
   const Size known = static_cast<Size>(size);
   std::memcpy(to.data() + at, &known, sizeof known);
 }

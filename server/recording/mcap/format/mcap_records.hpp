@@ -10,10 +10,10 @@
 #include "server/recording/mcap/format/mcap.hpp"
 #include "server/recording/mcap/format/mcap_error.hpp"
 
-/// Records of MCAP as bytes, and back.
+/// Conversion between MCAP records and bytes.
 namespace cohort::recording {
 
-/// Each appends the whole record, opcode and length first. Throws std::length_error if a text is too long for the
+/// Each function appends a whole record, with opcode and length. Throws std::length_error if a text is too long for the
 /// format.
 void append(Bytes& to, const Header& header);
 void append(Bytes& to, const Schema& schema);
@@ -28,25 +28,26 @@ void append(Bytes& to, const MetadataIndex& index);
 void append(Bytes& to, const Statistics& statistics);
 void append(Bytes& to, const SummaryOffset& offset);
 void append_data_end(Bytes& to, std::uint32_t crc);
-/// The footer's record, with the CRC of `summary_before` and of the footer's own first fields, and the magic.
+/// Appends the footer's record, with the CRC of `summary_before` and of the footer's own first fields, and the magic.
 void append_end(Bytes& to, const Footer& footer, ByteView summary_before);
-/// The record of a chunk up to its (compressed) records, which are `head.compressed_size` bytes and have to follow.
+/// Appends a chunk's record up to its (compressed) records, which are `head.compressed_size` bytes and must follow.
 void append_chunk_head(Bytes& to, const ChunkHead& head);
 void append_magic(Bytes& to);
 
-/// How long the content of a chunk's record is.
+/// Returns the length of the content of a chunk's record.
 std::uint64_t chunk_content_size(const ChunkHead& head);
 
-/// Where bytes come from, for messages about them.
+/// The source of bytes, for error messages.
 struct Place {
   const std::filesystem::path* file = nullptr;
-  std::uint64_t offset = 0;             ///< of the first byte in the file, or of the chunk if they are in one
-  std::optional<std::uint64_t> inside;  ///< of the first byte in the chunk's uncompressed records
+  std::uint64_t offset = 0;             ///< offset of the first byte in the file, or of the chunk that contains it
+  std::optional<std::uint64_t> inside;  ///< offset of the first byte in the chunk's uncompressed records
 
   [[noreturn]] void fail(const std::string& problem) const;
 };
 
-/// Reads numbers and texts, one after the other. Throws McapError if there are too few bytes; `field` is named in it.
+/// A cursor that reads numbers and texts in sequence. Throws McapError, which names `field`, if there are too few
+/// bytes.
 class Cursor {
  public:
   Cursor(ByteView bytes, const Place& place) : bytes_(bytes), place_(&place) {}
@@ -59,10 +60,10 @@ class Cursor {
     return number;
   }
   Timestamp time(const char* field) { return Timestamp(number<std::uint64_t>(field)); }
-  /// After its length.
+  /// Reads a text that is preceded by its length.
   std::string text(const char* field);
   StringMap map(const char* field);
-  /// Of pairs of 16 and 64 bits.
+  /// Reads pairs of 16 and 64 bits.
   std::map<ChannelId, std::uint64_t> numbers_by_channel(const char* field);
   ByteView take(std::uint64_t size, const char* field);
   ByteView rest() { return take(bytes_.size(), ""); }
@@ -73,13 +74,13 @@ class Cursor {
   const Place* place_;
 };
 
-/// A record's opcode, and its length without the `record_head_size` bytes of these two.
+/// A record's opcode and the length of its content, without the `record_head_size` bytes of these two.
 struct RecordHead {
   Opcode opcode{};
   std::uint64_t size = 0;
 };
 
-/// Each reads the content of a record; fields that a later version adds are ignored. Throws McapError.
+/// Each function reads the content of a record. Fields that a later version adds are ignored. Throws McapError.
 RecordHead read_record_head(ByteView bytes, const Place& place);
 Header read_header(ByteView content, const Place& place);
 Footer read_footer(ByteView content, const Place& place);
@@ -89,7 +90,8 @@ Message read_message(ByteView content, const Place& place);
 /// Checks the CRC.
 Attachment read_attachment(ByteView content, const Place& place);
 Metadata read_metadata(ByteView content, const Place& place);
-/// `content` may be cut off after what stands before the records; `size` is the length of the whole content.
+/// Reads the head of a chunk. `content` may be cut off where the records begin; `size` is the length of the whole
+/// content.
 ChunkHead read_chunk_head(ByteView content, std::uint64_t size, const Place& place);
 MessageIndex read_message_index(ByteView content, const Place& place);
 ChunkIndex read_chunk_index(ByteView content, const Place& place);
@@ -97,7 +99,7 @@ AttachmentIndex read_attachment_index(ByteView content, const Place& place);
 MetadataIndex read_metadata_index(ByteView content, const Place& place);
 Statistics read_statistics(ByteView content, const Place& place);
 
-/// The longest that a chunk's content before its records may be with a compression of the registry.
+/// The greatest size of a chunk's content before its records, for the registered compressions.
 inline constexpr std::size_t longest_chunk_head = 8 + 8 + 8 + 4 + 4 + 16 + 8;
 
 }  // namespace cohort::recording

@@ -110,7 +110,7 @@ Attachment read_attachment(ByteView content, const Place& place) {
   const std::size_t before_crc = content.size() - cursor.left();
   const auto crc = cursor.number<std::uint32_t>("crc");
   if (crc != 0 && crc != crc32(content.first(before_crc)))
-    place.fail("the attachment '" + attachment.name + "' is damaged: its CRC is not that of its bytes");
+    place.fail("the attachment '" + attachment.name + "' is damaged: wrong CRC");
   attachment.data.assign(data.begin(), data.end());
   return attachment;
 }

@@ -22,13 +22,13 @@ std::string reason_of(int error) { return std::generic_category().message(error)
 }  // namespace
 
 FileBytes::FileBytes(std::filesystem::path path) : path_(std::move(path)) {
-  // Not blocking, so that a pipe that nobody writes to is refused below.
+  // Opens without blocking, so that a pipe without a writer is refused below.
   descriptor_ = open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) refuse_to_read(path_, reason_of(errno));
   struct stat status {};
   if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
     close(descriptor_);
-    refuse_to_read(path_, "it is no file");
+    refuse_to_read(path_, "it is not a regular file");
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }
@@ -37,7 +37,7 @@ FileBytes::~FileBytes() { close(descriptor_); }
 
 void FileBytes::read(std::uint64_t offset, std::span<std::byte> to) const {
   if (offset > size_ || to.size() > size_ - offset)
-    at(offset).fail("there should be " + std::to_string(to.size()) + " bytes here; the file ends at byte " +
+    at(offset).fail("expected " + std::to_string(to.size()) + " bytes here; the file ends at byte " +
                     std::to_string(size_));
   while (!to.empty()) {
     const ssize_t count = pread(descriptor_, to.data(), to.size(), static_cast<off_t>(offset));
@@ -51,8 +51,7 @@ void FileBytes::read(std::uint64_t offset, std::span<std::byte> to) const {
 
 Bytes FileBytes::read(std::uint64_t offset, std::uint64_t size) const {
   if (offset > size_ || size > size_ - offset)
-    at(offset).fail("there should be " + std::to_string(size) + " bytes here; the file ends at byte " +
-                    std::to_string(size_));
+    at(offset).fail("expected " + std::to_string(size) + " bytes here; the file ends at byte " + std::to_string(size_));
   Bytes bytes(static_cast<std::size_t>(size));
   read(offset, std::span(bytes));
   return bytes;

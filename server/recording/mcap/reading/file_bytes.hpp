@@ -6,10 +6,10 @@
 
 namespace cohort::recording {
 
-/// A file that is read here and there, of the size that it had when it was opened. Any thread.
+/// A file with random access, whose size is that at its opening. For any thread.
 class FileBytes {
  public:
-  /// Throws FileError if it cannot be opened or is no file.
+  /// Throws FileError if it cannot be opened or is not a regular file.
   explicit FileBytes(std::filesystem::path path);
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
@@ -18,11 +18,11 @@ class FileBytes {
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t size() const { return size_; }
   Place at(std::uint64_t offset) const { return {&path_, offset, {}}; }
-  /// Throws McapError if it ends before, or cannot be read.
+  /// Throws McapError if the file ends before, or cannot be read.
   void read(std::uint64_t offset, std::span<std::byte> to) const;
-  /// The same. Checks before it takes memory.
+  /// Does the same, but checks the size before it allocates memory.
   Bytes read(std::uint64_t offset, std::uint64_t size) const;
-  /// CRC of the bytes from `from` to before `to`, both in the file.
+  /// Returns the CRC of the bytes from `from` to before `to`, both in the file.
   std::uint32_t crc(std::uint64_t from, std::uint64_t to) const;
 
  private:
@@ -31,14 +31,14 @@ class FileBytes {
   std::uint64_t size_ = 0;
 };
 
-/// A file read from its beginning to its end in small pieces.
+/// A file that is read from beginning to end in small pieces.
 class FileWindow {
  public:
   explicit FileWindow(const FileBytes& file) : file_(file) {}
 
-  /// Up to `size` bytes, fewer at the end of the file; they live until the next call.
+  /// Returns up to `size` bytes, fewer at the end of the file. They are valid until the next call.
   ByteView peek(std::uint64_t offset, std::size_t size);
-  /// Exactly `size` bytes. Throws McapError.
+  /// Returns exactly `size` bytes. Throws McapError.
   ByteView get(std::uint64_t offset, std::uint64_t size);
 
  private:

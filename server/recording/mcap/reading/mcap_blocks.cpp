@@ -10,17 +10,18 @@ namespace {
 
 void check_sizes(const ChunkHead& head, const ReadLimits& limits, const Place& place) {
   if (head.compression == "lz4")
-    place.fail("the chunk is compressed with lz4, which Cohort does not read; it reads zstd and uncompressed chunks");
+    place.fail(
+        "the chunk is compressed with lz4, which Cohort does not support; it reads zstd and uncompressed chunks");
   if (!head.compression.empty() && head.compression != "zstd")
-    place.fail("the chunk's compression is '" + head.compression + "'; known are 'zstd' and '' (none)");
+    place.fail("the chunk's compression is '" + head.compression + "', expected 'zstd' or '' (none)");
   if (head.uncompressed_size > limits.chunk_size)
     place.fail("the chunk holds " + std::to_string(head.uncompressed_size) + " bytes; at most " +
                std::to_string(limits.chunk_size) + " are read");
   const bool is_possible = head.compression.empty() ? head.uncompressed_size == head.compressed_size
                                                     : is_possible_size(head.uncompressed_size, head.compressed_size);
   if (!is_possible)
-    place.fail("the chunk says that its " + std::to_string(head.compressed_size) + " bytes hold " +
-               std::to_string(head.uncompressed_size) + ", which cannot be");
+    place.fail("invalid chunk: " + std::to_string(head.compressed_size) + " bytes cannot hold " +
+               std::to_string(head.uncompressed_size) + " bytes");
 }
 
 }  // namespace
@@ -37,7 +38,7 @@ Bytes uncompressed(const ChunkHead& head, Bytes records, const ReadLimits& limit
     records = std::move(out);
   }
   if (head.uncompressed_crc != 0 && head.uncompressed_crc != crc32(records))
-    place.fail("the chunk is damaged: its CRC is not that of its bytes");
+    place.fail("the chunk is damaged: wrong CRC");
   return records;
 }
 
@@ -50,7 +51,7 @@ Bytes read_block(const FileBytes& file, const Block& block, const ReadLimits& li
   file.read(block.offset, std::span(first).first(size));
   const RecordHead record = read_record_head(ByteView(first).first(size), place);
   if (record.opcode != Opcode::chunk || record.size != block.length - record_head_size)
-    place.fail("there should be a chunk of " + std::to_string(block.length) + " bytes; there is a record " +
+    place.fail("expected a chunk of " + std::to_string(block.length) + " bytes, found a record of type " +
                std::to_string(static_cast<int>(record.opcode)) + " of " + std::to_string(record.size));
   const ByteView content = ByteView(first).first(size).subspan(record_head_size);
   const ChunkHead head = read_chunk_head(content, record.size, place);
@@ -68,7 +69,7 @@ Place place_in(const FileBytes& file, const Block& block) {
 RecordView record_at(ByteView records, std::uint64_t offset, const Place& place) {
   Place here = place;
   (here.inside ? *here.inside : here.offset) += offset;
-  if (offset > records.size()) here.fail("there should be a record here");
+  if (offset > records.size()) here.fail("expected a record");
   const ByteView rest = records.subspan(static_cast<std::size_t>(offset));
   const RecordHead head = read_record_head(rest, here);
   if (head.size > rest.size() - record_head_size)

@@ -4,7 +4,7 @@
 
 #include "server/recording/mcap/reading/mcap_blocks.hpp"
 
-/// What is in a file, but for messages and attachments themselves.
+/// The contents of a file, without the messages and attachments themselves.
 namespace cohort::recording {
 
 struct Contents {
@@ -25,23 +25,23 @@ struct Damage {
   bool is_chunk = false;
 };
 
-/// What looking through a whole file found.
+/// The result of a scan of a whole file.
 struct Scan {
-  Contents contents;  ///< only what can be read
+  Contents contents;  ///< only the readable part
   std::vector<Damage> damages;
-  std::uint64_t lost_messages = 0;  ///< that are known to be among the damages
-  bool is_closed = false;           ///< it ends as a file should
+  std::uint64_t lost_messages = 0;  ///< known to be in the damaged parts
+  bool is_closed = false;           ///< the file ends as specified
 };
 
-/// Throws McapError if the file does not begin as an MCAP file does.
+/// Throws McapError if the file does not begin like an MCAP file.
 void check_magic(const FileBytes& file);
 
-/// Looks through a whole file, every chunk included; where something cannot be read, it goes on with the next chunk,
-/// attachment or metadata that it finds. Throws McapError if the file does not begin as an MCAP file.
+/// Scans a whole file, including every chunk. After an unreadable part it continues with the next chunk, attachment or
+/// metadata that it finds. Throws McapError if the file does not begin like an MCAP file.
 Scan scan_file(const FileBytes& file, const ReadLimits& limits);
 
-/// What the summary at the end of the file says. Nothing if the file has none. Throws McapError if it is damaged, or if
-/// the file was never closed.
+/// Reads the summary at the end of the file; nothing if the file has none. Throws McapError if it is damaged, or if the
+/// file was not closed.
 std::optional<Contents> read_summary(const FileBytes& file);
 
 }  // namespace cohort::recording

@@ -17,7 +17,7 @@ std::string sentence(const FileBytes& file, const Scan& scan) {
   std::string text = file.path().string() + ": byte " + std::to_string(first.offset) + ": " + first.problem;
   if (scan.damages.size() > 1) text += " (and " + std::to_string(scan.damages.size() - 1) + " more)";
   return text + "; " + std::to_string(scan.contents.statistics.message_count) +
-         " messages can be read; 'cohort recover' makes a whole file of them";
+         " messages can be read; 'cohort recover' writes them to a valid file";
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ McapReader::McapReader(const std::filesystem::path& file, const ReadOptions& opt
         return;
       }
     } catch (const McapError& error) {
-      if (error.offset() == 0) throw;  // no MCAP file at all
+      if (error.offset() == 0) throw;  // not an MCAP file at all
     }
   }
   Scan scan = scan_file(*file_, limits_);
@@ -50,8 +50,8 @@ Bytes McapReader::record(std::uint64_t offset, std::uint64_t length, Opcode opco
   const Bytes bytes = file_->read(offset, length);
   const RecordHead head = read_record_head(bytes, place);
   if (head.opcode != opcode || head.size != length - record_head_size)
-    place.fail("there should be a record " + std::to_string(static_cast<int>(opcode)) + " of " +
-               std::to_string(length) + " bytes; there is a record " + std::to_string(static_cast<int>(head.opcode)));
+    place.fail("expected a record of type " + std::to_string(static_cast<int>(opcode)) + " with " +
+               std::to_string(length) + " bytes, found type " + std::to_string(static_cast<int>(head.opcode)));
   return {bytes.begin() + record_head_size, bytes.end()};
 }
 
@@ -62,7 +62,7 @@ Attachment McapReader::attachment(const AttachmentIndex& index) const {
 Attachment McapReader::attachment(std::string_view name) const {
   const auto found = std::ranges::find(attachments(), name, &AttachmentIndex::name);
   if (found != attachments().end()) return attachment(*found);
-  file_->at(file_->size()).fail("there is no attachment '" + std::string(name) + "' in this file");
+  file_->at(file_->size()).fail("the file has no attachment '" + std::string(name) + "'");
 }
 
 Metadata McapReader::metadata(const MetadataIndex& index) const {

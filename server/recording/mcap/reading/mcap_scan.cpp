@@ -6,15 +6,14 @@
 namespace cohort::recording {
 namespace {
 
-// Walks over the records of a file. What is in a chunk is believed more than what stands outside of chunks, since
-// chunks have CRCs.
+// A scanner of a file's records. Chunks take precedence over data outside of chunks, as they have CRCs.
 class Scanner {
  public:
   Scanner(const FileBytes& file, const ReadLimits& limits) : file_(file), limits_(limits), window_(file) {}
 
   Scan run() {
     check_magic(file_);
-    std::uint64_t before = mcap_magic.size();  // where the last record began
+    std::uint64_t before = mcap_magic.size();  // where the previous record began
     std::uint64_t offset = before;
     while (offset < file_.size() && !is_at_end_) {
       try {
@@ -22,7 +21,7 @@ class Scanner {
         before = offset;
         offset = next;
       } catch (const McapError& error) {
-        // The record before may have had a wrong length: it is looked through too.
+        // The previous record may have had a wrong length, so it is searched too.
         const std::uint64_t found = find_record(std::max(may_look_again() ? before + 1 : offset + 1, trusted_));
         looked_again_ += offset - std::min(found, offset);
         add_damage(offset, std::max(found, offset) - offset, error.problem());
@@ -34,12 +33,12 @@ class Scanner {
   }
 
  private:
-  // So that no file can be made that takes long to look through, with records that overlap.
+  // Limits the time of a scan, which overlapping records could make very long.
   bool may_look_again() const { return looked_again_ <= 8 * file_.size(); }
 
   ByteView small_record(std::uint64_t content, std::uint64_t size, const Place& place) {
     looked_at_ += size;
-    if (looked_at_ > 8 * file_.size()) place.fail("one of too many records that overlap");
+    if (looked_at_ > 8 * file_.size()) place.fail("too many overlapping records");
     return window_.get(content, size);
   }
 
@@ -47,11 +46,12 @@ class Scanner {
     scan_.damages.push_back({offset, length, std::move(problem), is_chunk});
   }
 
-  // Returns where the next record begins. Throws McapError if this one is none, or reaches beyond the file.
+  // Reads a record and returns the offset of the next one. Throws McapError if it is not a record, or extends beyond
+  // the file.
   std::uint64_t read_record(std::uint64_t offset) {
     const Place place = file_.at(offset);
     const ByteView first = window_.peek(offset, record_head_size);
-    if (first.size() < record_head_size) place.fail("the file ends in the midst of a record");
+    if (first.size() < record_head_size) place.fail("the file ends within a record");
     const RecordHead head = read_record_head(first, place);
     const std::uint64_t content = offset + record_head_size;
     if (head.size > file_.size() - content)
@@ -71,14 +71,14 @@ class Scanner {
       case Opcode::metadata: add_metadata(offset, head.size, place); break;
       case Opcode::data_end: end_data(offset, head.size, place); break;
       case Opcode::footer: is_at_end_ = is_end(content + head.size, place); break;
-      case Opcode::chunk_index:  // of the summary, if the end of the data is lost
+      case Opcode::chunk_index:  // a part of the summary, if the end of the data is lost
       case Opcode::attachment_index:
       case Opcode::statistics:
       case Opcode::metadata_index:
       case Opcode::summary_offset: break;
       default:
         if (static_cast<std::uint8_t>(head.opcode) < 0x80)
-          place.fail("there is no record " + std::to_string(static_cast<int>(head.opcode)) + " in MCAP");
+          place.fail("unknown record type " + std::to_string(static_cast<int>(head.opcode)));
     }
     return content + head.size;
   }
@@ -98,7 +98,7 @@ class Scanner {
                       Value value, bool is_in_chunk, const Place& place, const char* what) {
     const auto found = values.find(id);
     if (found != values.end() && !(found->second == value))
-      add_damage(place.offset, 0, what + std::to_string(id) + " is given twice, and not alike");
+      add_damage(place.offset, 0, what + std::to_string(id) + " has two different definitions");
     if (found == values.end() || (is_in_chunk && !sure.contains(id))) values.insert_or_assign(id, std::move(value));
     if (is_in_chunk) sure.insert(id);
   }
@@ -120,7 +120,7 @@ class Scanner {
     constexpr std::uint64_t head = 2 + 4 + 8 + 8;
     constexpr std::uint64_t longest_block = 1U << 20U;
     const Message message = read_message(window_.get(offset + record_head_size, std::min(size, head)), place);
-    if (size > limits_.chunk_size) place.fail("a message of " + std::to_string(size) + " bytes; that is too long");
+    if (size > limits_.chunk_size) place.fail("a message of " + std::to_string(size) + " bytes is too long");
     if (loose_.length > longest_block) end_messages();
     if (loose_counts_.empty()) loose_ = {offset, 0, {}, {}, false, {}};
     count(message, loose_, loose_counts_);
@@ -136,8 +136,8 @@ class Scanner {
     const std::uint64_t content = offset + record_head_size;
     const ChunkHead head = read_chunk_head(window_.peek(content, longest_chunk_head), size, place);
     const std::uint64_t length = record_head_size + size;
-    // From here on it is believed where the chunk ends.
-    if (chunk_content_size(head) != size) place.fail("the chunk's length is not that of its parts");
+    // From here on, the end of the chunk is trusted.
+    if (chunk_content_size(head) != size) place.fail("the chunk's length does not match its fields");
     trusted_ = offset + length;
     is_after_lost_chunk_ = false;
     try {
@@ -170,10 +170,10 @@ class Scanner {
     if (is_after_lost_chunk_) scan_.lost_messages += index.entries.size();
   }
 
-  // Where the lengths in a record fit, it is believed where it ends, even if something in it is wrong.
+  // If the lengths in a record match, its end is trusted, even if its content is wrong.
   template <class Add>
   void add_part(std::uint64_t offset, std::uint64_t size, bool fits, const Place& place, const Add& add) {
-    if (!fits) place.fail("the record's length is not that of its parts");
+    if (!fits) place.fail("the record's length does not match its fields");
     trusted_ = offset + record_head_size + size;
     try {
       add(file_.read(offset + record_head_size, size));
@@ -199,16 +199,16 @@ class Scanner {
   }
 
   void end_data(std::uint64_t offset, std::uint64_t size, const Place& place) {
-    if (size != 4) place.fail("the end of the data takes " + std::to_string(size) + " bytes; it should take 4");
+    if (size != 4) place.fail("the end of the data has " + std::to_string(size) + " bytes, expected 4");
     Cursor cursor(window_.get(offset + record_head_size, size), place);
     const auto crc = cursor.number<std::uint32_t>("data_section_crc");
     if (crc != 0 && scan_.damages.empty() && crc != file_.crc(0, offset))
-      add_damage(0, 0, "the CRC of all data is not that of its bytes, and no chunk is damaged");
+      add_damage(0, 0, "the CRC of all data is wrong, but no chunk is damaged");
     try {
       const std::optional<Contents> summary = read_summary(file_);
       scan_.is_closed = true;
       if (summary) {
-        // What the chunks that can be read don't tell.
+        // Adds definitions that the readable chunks lack.
         scan_.contents.schemas.insert(summary->schemas.begin(), summary->schemas.end());
         scan_.contents.channels.insert(summary->channels.begin(), summary->channels.end());
       }
@@ -218,23 +218,23 @@ class Scanner {
     is_at_end_ = true;
   }
 
-  // Whether a footer that ends there is the file's.
+  // Returns true if a footer that ends there is the file's footer.
   bool is_end(std::uint64_t offset, const Place& place) const {
-    if (offset + mcap_magic.size() != file_.size()) place.fail("a footer, but not at the end of the file");
+    if (offset + mcap_magic.size() != file_.size()) place.fail("found a footer before the end of the file");
     return true;
   }
 
   static constexpr std::uint64_t nowhere = ~std::uint64_t{0};
 
-  // The offset after what stands behind its own length, of `bytes` bytes, at `at` of the content of the record at
-  // `offset`; nowhere if that is beyond the record's `size`.
+  // Returns the offset after a field that is preceded by its own length of `bytes` bytes, at `at` in the content of the
+  // record at `offset`. Returns no offset if that is beyond the record's `size`.
   std::uint64_t end_of_sized(std::uint64_t offset, std::uint64_t size, std::uint64_t at, std::size_t bytes) {
     if (at > size || size - at < bytes) return nowhere;
     std::uint64_t length = 0;
     std::memcpy(&length, window_.get(offset + record_head_size + at, bytes).data(), bytes);
     return length > size - at - bytes ? nowhere : at + bytes + length;
   }
-  // Where in the record's content its parts end, by the lengths in it.
+  // Returns the end of the last field in the record's content, from the lengths in it.
   std::uint64_t end_of_chunk(std::uint64_t offset, std::uint64_t size) {
     return end_of_sized(offset, size, end_of_sized(offset, size, 8 + 8 + 8 + 4, 4), 8);
   }
@@ -247,7 +247,7 @@ class Scanner {
     return end_of_sized(offset, size, end_of_sized(offset, size, 0, 4), 4);
   }
 
-  // Whether the lengths in what may be a record fit each other.
+  // Returns true if the lengths in a possible record match each other.
   bool seems_a_record(std::uint64_t offset) {
     const ByteView first = window_.peek(offset, record_head_size);
     if (first.size() < record_head_size) return false;
@@ -262,15 +262,15 @@ class Scanner {
     }
   }
 
-  // The next place from `offset` on where a chunk, an attachment, metadata or the end of the data seems to begin; the
-  // end of the file if there is none.
+  // Returns the next offset, from `offset` on, at which a chunk, an attachment, metadata or the end of the data seems
+  // to begin. Returns the end of the file if there is none.
   std::uint64_t find_record(std::uint64_t offset) {
     while (offset < file_.size() && !seems_a_record(offset)) ++offset;
     return offset;
   }
 
-  // Programs write messages either into chunks or outside of them: where something is damaged, what stands outside of
-  // chunks is another record with a wrong opcode.
+  // Programs write messages either into chunks or outside of them. In a damaged file with chunks, an apparent message
+  // outside of them is another record with a wrong opcode.
   void forget_loose_messages() {
     std::vector<Block> chunks;
     std::vector<std::map<ChannelId, std::uint64_t>> counts;
@@ -285,8 +285,7 @@ class Scanner {
         damage.length += block.length;
       }
     }
-    if (damage.length > 0)
-      add_damage(damage.offset, damage.length, "messages outside of the chunks, where none are expected");
+    if (damage.length > 0) add_damage(damage.offset, damage.length, "unexpected messages outside of the chunks");
     scan_.contents.blocks = std::move(chunks);
     counts_ = std::move(counts);
   }
@@ -307,9 +306,9 @@ class Scanner {
     }
     for (const auto& [channel, number] : statistics.messages_of_channels) {
       if (contents.channels.contains(channel)) continue;
-      add_damage(file_.size(), 0,
-                 std::to_string(number) + " messages are of channel " + std::to_string(channel) +
-                     ", which is nowhere in what can be read");
+      add_damage(
+          file_.size(), 0,
+          std::to_string(number) + " messages have channel " + std::to_string(channel) + ", whose definition is lost");
       scan_.lost_messages += number;
       statistics.message_count -= number;
     }
@@ -322,7 +321,7 @@ class Scanner {
   void finish() {
     end_messages();
     if (!scan_.is_closed && scan_.damages.empty())
-      add_damage(file_.size(), 0, "the file ends here without a summary: it was never closed");
+      add_damage(file_.size(), 0, "the file ends here without a summary: it was not closed");
     if (!scan_.damages.empty() && scan_.contents.statistics.chunk_count > 0) forget_loose_messages();
     count_messages();
   }
@@ -333,13 +332,13 @@ class Scanner {
   Scan scan_;
   bool is_at_end_ = false;
   bool is_after_lost_chunk_ = false;
-  std::uint64_t looked_again_ = 0;  // bytes, like the next
+  std::uint64_t looked_again_ = 0;  // in bytes, like the next member
   std::uint64_t looked_at_ = 0;
-  std::uint64_t trusted_ = 0;  // up to here it is known where records begin
+  std::uint64_t trusted_ = 0;  // the boundaries of records are known up to here
   std::set<std::uint16_t> sure_schemas_;
   std::set<std::uint16_t> sure_channels_;
-  std::vector<std::map<ChannelId, std::uint64_t>> counts_;  // of messages, for each block
-  Block loose_;                                             // messages outside of chunks, as they come
+  std::vector<std::map<ChannelId, std::uint64_t>> counts_;  // messages of each block
+  Block loose_;                                             // messages outside of chunks, until their block ends
   std::map<ChannelId, std::uint64_t> loose_counts_;
 };
 

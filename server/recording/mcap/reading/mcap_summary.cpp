@@ -17,14 +17,14 @@ struct End {
 
 End read_end(const FileBytes& file) {
   if (file.size() < mcap_magic.size() + end_size)
-    file.at(file.size()).fail("the file ends here, before its footer: it was never closed");
+    file.at(file.size()).fail("the file ends here, before its footer: it was not closed");
   End end;
   end.footer_offset = file.size() - end_size;
   const Bytes bytes = file.read(end.footer_offset, end_size);
   const Place place = file.at(end.footer_offset);
   const RecordHead head = read_record_head(bytes, place);
   if (!is_magic(ByteView(bytes).last(mcap_magic.size())) || head.opcode != Opcode::footer || head.size != footer_size)
-    file.at(file.size()).fail("the file ends here without a footer: it was never closed, or its end is lost");
+    file.at(file.size()).fail("the file ends here without a footer: it was not closed, or its end is lost");
   end.footer = read_footer(ByteView(bytes).subspan(record_head_size, footer_size), place);
   return end;
 }
@@ -34,7 +34,7 @@ void check_summary(const FileBytes& file, const End& end) {
   const Place place = file.at(end.footer_offset);
   if (footer.summary_start < mcap_magic.size() || footer.summary_start > end.footer_offset)
     place.fail("the footer says that the summary begins at byte " + std::to_string(footer.summary_start) +
-               ", which is not in the file before it");
+               ", which is not before the footer");
   const bool has_offsets = footer.summary_offset_start != 0;
   if (has_offsets &&
       (footer.summary_offset_start < footer.summary_start || footer.summary_offset_start > end.footer_offset))
@@ -42,7 +42,7 @@ void check_summary(const FileBytes& file, const End& end) {
                std::to_string(footer.summary_offset_start) + ", which is not in the summary");
   constexpr std::uint64_t before_crc = record_head_size + 8 + 8;
   if (footer.summary_crc != 0 && footer.summary_crc != file.crc(footer.summary_start, end.footer_offset + before_crc))
-    file.at(footer.summary_start).fail("the summary is damaged: its CRC is not that of its bytes");
+    file.at(footer.summary_start).fail("the summary is damaged: wrong CRC");
 }
 
 Block block_of(const ChunkIndex& index, const FileBytes& file, const Place& place) {
@@ -75,8 +75,8 @@ void add(Contents& contents, const RecordHead& head, ByteView content, const Fil
   }
 }
 
-// What the indices name stands in the file before the summary, each for itself: else a small file could hold as much as
-// it says that it does.
+// Checks that the indexed records are in the file, before the summary, and do not overlap; otherwise a small file could
+// claim any amount of data.
 void check_entries(const Contents& contents, const FileBytes& file, std::uint64_t summary_start) {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  // offset and length
   for (const Block& block : contents.blocks) entries.emplace_back(block.offset, block.length);
@@ -88,7 +88,7 @@ void check_entries(const Contents& contents, const FileBytes& file, std::uint64_
     if (offset < free || offset > summary_start || length > summary_start - offset)
       file.at(summary_start)
           .fail("an index says that " + std::to_string(length) + " bytes begin at byte " + std::to_string(offset) +
-                ", which are another's too, or not before the summary");
+                ", which overlaps another range or the summary");
     free = offset + length;
   }
 }
@@ -100,11 +100,11 @@ void check_magic(const FileBytes& file) {
   if (is_magic(bytes)) return;
   const bool is_text =
       std::ranges::all_of(bytes, [](std::byte byte) { return byte < std::byte{0x80} && byte != std::byte{0}; });
-  const std::string found = bytes.empty() ? "the file is empty"
-                            : is_text     ? "the file is a text. If it is an experiment, 'cohort run " +
+  const std::string found = bytes.empty() ? "it is empty"
+                            : is_text     ? "it is a text file. If it is an experiment, 'cohort run " +
                                             file.path().filename().string() + " --record run.mcap' records it"
-                                      : "the file begins otherwise";
-  file.at(0).fail("this is no MCAP file: it should begin with the bytes 89 4D 43 41 50 30 0D 0A; " + found);
+                                      : "it has other first bytes";
+  file.at(0).fail("this is not an MCAP file: it must begin with the bytes 89 4D 43 41 50 30 0D 0A, but " + found);
 }
 
 std::optional<Contents> read_summary(const FileBytes& file) {
@@ -119,12 +119,12 @@ std::optional<Contents> read_summary(const FileBytes& file) {
     const Place place = file.at(offset);
     const RecordHead head = read_record_head(window.get(offset, record_head_size), place);
     if (head.size > file.size() - offset - record_head_size)
-      place.fail("a record of " + std::to_string(head.size) + " bytes; the file ends before");
+      place.fail("a record of " + std::to_string(head.size) + " bytes does not fit into the file");
     use(head, window.get(offset + record_head_size, head.size), place);
     return offset + record_head_size + head.size;
   };
   record(mcap_magic.size(), [&](const RecordHead& head, ByteView content, const Place& place) {
-    if (head.opcode != Opcode::header) place.fail("there should be the file's header");
+    if (head.opcode != Opcode::header) place.fail("expected the file's header");
     contents.header = read_header(content, place);
   });
   const std::uint64_t summary_end =

@@ -40,12 +40,12 @@ void MessageStream::Source::open(const Block& block) {
     if (record.opcode != Opcode::message) return;
     const Message message = read_message(record.content, place);
     if (message.log_time < block.start_time || message.log_time > block.end_time)
-      place.fail("a message of " + std::to_string(message.log_time.count()) + " ns in a chunk from " +
+      place.fail("a message at " + std::to_string(message.log_time.count()) + " ns is in a chunk from " +
                  std::to_string(block.start_time.count()) + " to " + std::to_string(block.end_time.count()) + " ns");
     if (message.log_time < query_.from || message.log_time > query_.to) return;
     if (!query_.channels.empty() && !std::ranges::binary_search(query_.channels, message.channel)) return;
     if (!contents_->channels.contains(message.channel)) {
-      if (is_strict_) place.fail("a message of channel " + std::to_string(message.channel) + ", which is not defined");
+      if (is_strict_) place.fail("a message has channel " + std::to_string(message.channel) + ", which is not defined");
       return;
     }
     opened.messages.emplace_back(message.log_time, record.offset);
@@ -57,7 +57,7 @@ void MessageStream::Source::open(const Block& block) {
   if (open_bytes_ > std::max<std::uint64_t>(limits_.open_chunks, opened.records.size()))
     file_->at(block.offset)
         .fail("chunks of more than " + std::to_string(limits_.open_chunks) +
-              " bytes overlap in time here; read the file in its own order");
+              " bytes overlap in time here; read the file in file order");
   const auto slot = std::ranges::find(open_, nullptr, &OpenBlock::block);
   const auto index = static_cast<std::size_t>(slot - open_.begin());
   if (slot == open_.end()) open_.emplace_back();
@@ -70,7 +70,8 @@ void MessageStream::Source::add_head(std::size_t index) {
   heads_.push({block.messages[block.next].first, block.block->offset, index});
 }
 
-// In order of time: all that may have a message before the next one. In the file's order: the next, when none is open.
+// Opens blocks. In order of time: all that may have a message before the next one. In file order: the next block, when
+// none is open.
 void MessageStream::Source::open_due() {
   while (next_block_ < blocks_.size()) {
     const Block& block = *blocks_[next_block_];

@@ -6,27 +6,27 @@
 
 namespace cohort::recording {
 
-/// What a stream holds.
+/// The state of a stream.
 class MessageStream::Source {
  public:
-  /// `is_strict`: a message of an unknown channel is an error, not left out.
+  /// `is_strict`: a message of an unknown channel is an error; otherwise it is skipped.
   Source(std::shared_ptr<const FileBytes> file, std::shared_ptr<const Contents> contents, const ReadLimits& limits,
          MessageQuery query, bool is_strict);
 
   std::optional<Message> next();
 
  private:
-  // A block with those of its messages that are wanted, in order.
+  // A block with its selected messages, in order.
   struct OpenBlock {
     const Block* block = nullptr;
     Bytes records;
     std::vector<std::pair<Timestamp, std::uint64_t>> messages;  // log time, offset among the records
     std::size_t next = 0;
   };
-  // Of the block that is open at `open_[index]`.
+  // The next message of the block that is open at `open_[index]`.
   struct Head {
     Timestamp time{};
-    std::uint64_t offset = 0;  // of the block in the file
+    std::uint64_t offset = 0;  // offset of the block in the file
     std::size_t index = 0;
   };
   struct IsLater {
@@ -46,12 +46,12 @@ class MessageStream::Source {
   MessageQuery query_;
   bool is_strict_;
 
-  std::vector<const Block*> blocks_;  // those that are wanted, in the order in which they are opened
+  std::vector<const Block*> blocks_;  // selected blocks, in the order in which they are opened
   std::size_t next_block_ = 0;
-  std::vector<OpenBlock> open_;  // slots; an empty one has no block
+  std::vector<OpenBlock> open_;  // slots; an empty slot has no block
   std::uint64_t open_bytes_ = 0;
   std::priority_queue<Head, std::vector<Head>, IsLater> heads_;
-  std::optional<std::size_t> last_;  // the slot whose message was given last
+  std::optional<std::size_t> last_;  // the slot of the last message
 };
 
 }  // namespace cohort::recording

@@ -10,28 +10,28 @@
 namespace cohort::recording {
 
 enum class Order {
-  log_time,  ///< equal times as they stand in the file
+  log_time,  ///< messages with equal times in file order
   file,
 };
 
-/// Which messages, and in which order.
+/// A selection of messages, and their order.
 struct MessageQuery {
   std::vector<ChannelId> channels{};  ///< empty: all
   Timestamp from{};
-  Timestamp to{std::numeric_limits<std::uint64_t>::max()};  ///< also in it
+  Timestamp to{std::numeric_limits<std::uint64_t>::max()};  ///< inclusive
   Order order = Order::log_time;
 };
 
-/// Messages of a file, one after the other. Holds the chunk that it is at, and in order of time those that overlap it.
-/// May outlive its reader. One thread at a time.
+/// The messages of a file, in sequence. It holds the current chunk, and in order of time also the chunks that overlap
+/// it. It may outlive its reader. For one thread at a time.
 class MessageStream {
  public:
   MessageStream(MessageStream&&) noexcept;
   MessageStream& operator=(MessageStream&&) noexcept;
   ~MessageStream();
 
-  /// The next one, or none at the end. Its data live until the next call. Throws McapError at a chunk that cannot be
-  /// read, at a message of an unknown channel, and where more chunks overlap in time than the limits allow.
+  /// Returns the next message, or nothing at the end. Its data is valid until the next call. Throws McapError at an
+  /// unreadable chunk, at a message of an unknown channel, and where more chunks overlap in time than the limits allow.
   std::optional<Message> next();
 
  private:

@@ -17,7 +17,7 @@ std::string count(std::uint64_t number, const std::string& what) {
   return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
 }
 
-// Writes what a scan found, each part as it stands in the file.
+// A writer of the parts that a scan found, in file order.
 class Copy {
  public:
   Copy(const FileBytes& source, Scan& scan, const ReadLimits& limits, McapWriter& writer)
@@ -43,10 +43,9 @@ class Copy {
  private:
   void add_channel(Channel channel) {
     if (channel.schema != 0 && !scan_.contents.schemas.contains(channel.schema)) {
-      scan_.damages.push_back({source_.size(), 0,
-                               "the schema of channel '" + channel.topic +
-                                   "' is nowhere in what can be read; its messages are kept without",
-                               false});
+      scan_.damages.push_back(
+          {source_.size(), 0, "the schema of channel '" + channel.topic + "' is lost; its messages are kept without it",
+           false});
       channel.schema = 0;
     }
     writer_.add(std::move(channel));
@@ -100,7 +99,7 @@ Statistics write(const FileBytes& source, Scan& scan, const std::filesystem::pat
   };
   std::optional<AtomicFile> file;
   telling([&] { file.emplace("the recording", target); });
-  // Chunks are as they were.
+  // Chunks are copied with their own sizes.
   constexpr std::size_t endless = std::numeric_limits<std::size_t>::max();
   const auto write_bytes = [&](ByteView bytes) {
     telling([&] { file->write({reinterpret_cast<const char*>(bytes.data()), bytes.size()}); });
@@ -113,7 +112,7 @@ Statistics write(const FileBytes& source, Scan& scan, const std::filesystem::pat
   return writer.statistics();
 }
 
-// What has messages to keep may be replaced; another file is worth writing for attachments too.
+// Requires messages to keep before a file is replaced; another file may also contain only attachments.
 void expect_something_to_keep(const FileBytes& file, const Scan& scan, bool is_in_place) {
   const Contents& contents = scan.contents;
   const bool has_rest = !contents.attachments.empty() || !contents.metadata.empty();
@@ -121,10 +120,10 @@ void expect_something_to_keep(const FileBytes& file, const Scan& scan, bool is_i
   std::string found = "no message in the file can be read";
   if (has_rest)
     found += ", only " + count(contents.attachments.size(), "attachment") + " and " +
-             count(contents.metadata.size(), "record") + " of metadata, which -o writes to another file";
+             count(contents.metadata.size(), "record") + " of metadata, which can be written to another file with -o";
   file.at(scan.damages.front().offset)
-      .fail(scan.damages.front().problem + "; " + found + "; it has " + count(file.size(), "byte") +
-            " and is left as it is");
+      .fail(scan.damages.front().problem + "; " + found + "; the file has " + count(file.size(), "byte") +
+            " and is not changed");
 }
 
 }  // namespace
@@ -152,9 +151,9 @@ std::string Recovery::text() const {
   std::string text = "kept " + count(kept.message_count, "message") + " in " + count(kept.chunk_count, "chunk") + ", " +
                      count(kept.attachment_count, "attachment") + ", " + count(kept.metadata_count, "record") +
                      " of metadata\n";
-  if (was_whole()) return text + "nothing was lost: the file is whole\n";
-  text += "lost " + count(lost_chunks, "damaged chunk") + " with " + count(lost_messages, "message") +
-          " that are known of; " + count(lost_bytes, "byte") + " could not be read\n";
+  if (was_whole()) return text + "nothing was lost: the file is complete\n";
+  text += "lost " + count(lost_chunks, "damaged chunk") + " with " + count(lost_messages, "message") + " at least; " +
+          count(lost_bytes, "byte") + " could not be read\n";
   constexpr std::size_t most = 20;
   for (std::size_t i = 0; i < std::min(most, damages.size()); ++i)
     text += "  byte " + std::to_string(damages[i].offset) + ": " + damages[i].problem + "\n";

@@ -4,24 +4,24 @@
 
 namespace cohort::recording {
 
-/// What `recover` found and kept.
+/// The result of `recover`.
 struct Recovery {
   Statistics kept;
-  std::vector<Damage> damages;      ///< empty: the file was whole
-  std::uint64_t lost_chunks = 0;    ///< that are there, but damaged
-  std::uint64_t lost_messages = 0;  ///< that are known to be lost; more may be, of what is not there at all
+  std::vector<Damage> damages;      ///< empty: the file was complete
+  std::uint64_t lost_chunks = 0;    ///< found, but damaged
+  std::uint64_t lost_messages = 0;  ///< known to be lost; missing parts may have had more
   std::uint64_t lost_bytes = 0;
 
   bool was_whole() const { return damages.empty(); }
-  /// For people: a line for what was kept, one for what was lost, and one for each damage, at most 20.
+  /// Returns a text for people: a line on the kept data, one on the lost data, and one for each damage, at most 20.
   std::string text() const;
 };
 
-/// Writes a closed file of everything in `source` that can be read: messages with their channels in the order of the
-/// file, attachments and metadata. It is written beside `target` and takes its place when it is whole; `target` may be
-/// `source`. Then a file that is whole is left as it is. Throws FileError if a file cannot be opened or written, or is
-/// being recorded to; McapError, with `target` as it was, if `source` is no MCAP file, or damaged and without a message
-/// that can be read. To another file it also writes attachments and metadata alone.
+/// Writes all readable data of `source` to a closed file: messages with their channels in file order, attachments and
+/// metadata. The file is written beside `target` and replaces it when it is complete. `target` may be `source`; then a
+/// complete file is not changed. Throws FileError if a file cannot be opened or written, or is being recorded. Throws
+/// McapError, and keeps `target` unchanged, if `source` is not an MCAP file, or is damaged and has no readable message.
+/// To a different file it also writes attachments and metadata without messages.
 Recovery recover(const std::filesystem::path& source, const std::filesystem::path& target,
                  const ReadLimits& limits = {});
 

@@ -4,7 +4,7 @@
 
 namespace cohort::recording {
 
-/// Where the bytes of a recording go, from its first to its last. What fails throws FileError. `sync` may be called by
+/// The destination of a recording's bytes, in sequence. Failing functions throw FileError. `sync` may be called from
 /// another thread than the rest.
 class ByteStore {
  public:
@@ -13,15 +13,15 @@ class ByteStore {
   ByteStore& operator=(const ByteStore&) = delete;
   virtual ~ByteStore() = default;
 
-  /// For messages.
+  /// Returns a name for messages.
   virtual std::string name() const { return "the recording"; }
-  /// All of them; if it throws, maybe some.
+  /// Writes all bytes; after an exception, some may be written.
   virtual void write(ByteView bytes) = 0;
-  /// Forgets what was written after the first `size` bytes.
+  /// Removes the bytes that were written after the first `size` bytes.
   virtual void cut_off(std::uint64_t size) = 0;
-  /// Returns when everything that was written is safe from the end of this machine, as far as the store can tell.
+  /// Returns when all written data survives a crash of this machine, as far as the store can tell.
   virtual void sync() = 0;
-  /// Nothing will be written any more.
+  /// Ends the writing.
   virtual void finish() = 0;
 };
 

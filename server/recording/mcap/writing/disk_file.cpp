@@ -24,15 +24,16 @@ constexpr const char* is_taken = "another process is recording to it";
 void DiskFile::fail(int error) const { refuse(path_, why_not_written(error)); }
 
 DiskFile::DiskFile(std::filesystem::path path) : path_(std::move(path)) {
-  // Not blocking, so that a pipe that nobody reads from is refused below.
+  // Opens without blocking, so that a pipe without a reader is refused below.
   descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
   if (descriptor_ < 0) fail(errno);
   try {
     struct stat status {};
-    if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) refuse(path_, "it is no file");
+    if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) refuse(path_, "it is not a regular file");
     lock();
     struct stat now {};
-    if (stat(path_.c_str(), &now) == 0 && now.st_ino != status.st_ino) refuse(path_, is_taken);  // just replaced
+    if (stat(path_.c_str(), &now) == 0 && now.st_ino != status.st_ino)
+      refuse(path_, is_taken);  // replaced a moment ago
     if (status.st_size > 0) write_beside();
   } catch (...) {
     close_all();
@@ -51,14 +52,14 @@ void DiskFile::close_all() {
     if (*descriptor >= 0) close(std::exchange(*descriptor, -1));
 }
 
-// What is there stays, and stays locked, until something of this recording is on the disk.
+// Keeps an existing file, locked, until data of this recording is on the disk.
 void DiskFile::write_beside() {
   try {
     beside_.emplace("the recording", std::filesystem::canonical(path_));
   } catch (const WriteError& error) {
     throw FileError(error.what());
   }
-  if (std::filesystem::equivalent(beside_->path(), path_))  // nothing can take its place: it is empty now
+  if (std::filesystem::equivalent(beside_->path(), path_))  // it cannot be replaced, so it was truncated
     return beside_.reset();
   const int beside = open(beside_->path().c_str(), O_WRONLY | O_CLOEXEC);
   if (beside < 0) fail(errno);
@@ -98,7 +99,7 @@ void DiskFile::sync() {
 
 void check_not_being_written(const std::filesystem::path& path) {
   const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) return;  // whoever reads it says why
+  if (descriptor < 0) return;  // reading it reports the reason
   const bool is_free = flock(descriptor, LOCK_SH | LOCK_NB) == 0;
   close(descriptor);
   if (!is_free) refuse(path, is_taken);

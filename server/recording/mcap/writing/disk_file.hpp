@@ -9,12 +9,12 @@
 
 namespace cohort::recording {
 
-/// A file that is written from its beginning to its end. While it is open nobody else can open it so. What it replaces
-/// stays until the first `sync`, and for good if there is none. What fails throws FileError: what, where, why, what to
-/// do.
+/// A file that is written from beginning to end. While it is open, no other DiskFile can open it. A file that it
+/// replaces stays until the first `sync`, and for good if there is none. Failing functions throw FileError: what
+/// failed, where, why, and what to do.
 class DiskFile : public ByteStore {
  public:
-  /// Makes the file, or one that is to replace it.
+  /// Creates the file, or one that will replace it.
   explicit DiskFile(std::filesystem::path path);
   ~DiskFile() override;
 
@@ -22,7 +22,7 @@ class DiskFile : public ByteStore {
   std::string name() const override { return "the recording " + path_.string(); }
   void write(ByteView bytes) override;
   void cut_off(std::uint64_t size) override;
-  /// Returns when everything that was written is on the disk, under the file's name.
+  /// Returns when all written data is on the disk, under the file's name.
   void sync() override;
   void finish() override { sync(); }
 
@@ -34,13 +34,13 @@ class DiskFile : public ByteStore {
 
   std::filesystem::path path_;
   int descriptor_ = -1;
-  int replaced_ = -1;                 // what was there, locked
-  std::mutex mutex_;                  // guards the next two
-  std::optional<AtomicFile> beside_;  // this file, until it has its name
+  int replaced_ = -1;                 // the replaced file, locked
+  std::mutex mutex_;                  // guards the next two members
+  std::optional<AtomicFile> beside_;  // this file, until it has its final name
   bool has_its_name_ = false;
 };
 
-/// Throws FileError if somebody writes to the file through a DiskFile at this time.
+/// Throws FileError if the file is currently being written through a DiskFile.
 void check_not_being_written(const std::filesystem::path& path);
 
 }  // namespace cohort::recording

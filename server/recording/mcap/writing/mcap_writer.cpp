@@ -15,11 +15,11 @@ std::uint16_t next_id(const Map& map, const char* what) {
   if (map.empty()) return 1;
   const std::uint16_t last = map.rbegin()->first;
   if (last == std::numeric_limits<std::uint16_t>::max())
-    throw std::length_error(std::string("an MCAP file has 65,535 ") + what + " at the most");
+    throw std::length_error(std::string("an MCAP file has at most 65,535 ") + what);
   return static_cast<std::uint16_t>(last + 1);
 }
 
-// Of schemas and channels, in a map by id.
+// Appends the records of a map of schemas or channels by id.
 template <class Id, class Value>
 void append_each(Bytes& to, const std::map<Id, Value>& values) {
   for (const auto& [id, value] : values) append(to, value);
@@ -65,9 +65,9 @@ ChannelId McapWriter::add_channel(std::string topic, SchemaId schema, std::strin
 }
 
 void McapWriter::add(Schema schema) {
-  if (schema.id == 0) throw std::invalid_argument("a schema's id is not 0");
+  if (schema.id == 0) throw std::invalid_argument("the id of a schema must not be 0");
   const auto [added, is_new] = schemas_.emplace(schema.id, std::move(schema));
-  if (!is_new) throw std::invalid_argument("there is a schema " + std::to_string(added->first) + " already");
+  if (!is_new) throw std::invalid_argument("schema " + std::to_string(added->first) + " already exists");
   append(definitions_, added->second);
   append(chunk_, added->second);
 }
@@ -77,7 +77,7 @@ void McapWriter::add(Channel channel) {
     throw std::invalid_argument("channel " + channel.topic + " names schema " + std::to_string(channel.schema) +
                                 ", which was not added");
   const auto [added, is_new] = channels_.emplace(channel.id, std::move(channel));
-  if (!is_new) throw std::invalid_argument("there is a channel " + std::to_string(added->first) + " already");
+  if (!is_new) throw std::invalid_argument("channel " + std::to_string(added->first) + " already exists");
   append(definitions_, added->second);
   append(chunk_, added->second);
 }
@@ -85,13 +85,13 @@ void McapWriter::add(Channel channel) {
 void McapWriter::write_message(ChannelId channel, std::uint32_t sequence, Timestamp log_time, Timestamp publish_time,
                                ByteView data) {
   if (!channels_.contains(channel))
-    throw std::invalid_argument("there is no channel " + std::to_string(channel) + " to write a message to");
+    throw std::invalid_argument("channel " + std::to_string(channel) + " does not exist");
   MessageIndex& index = message_indexes_[channel];
   index.channel = channel;
   index.entries.push_back({log_time, chunk_.size()});
   try {
     append(chunk_, Message{{channel, sequence, log_time, publish_time}, data});
-  } catch (const std::bad_alloc&) {  // without a part of it
+  } catch (const std::bad_alloc&) {  // the writer drops the incomplete message
     chunk_.resize(index.entries.back().offset);
     index.entries.pop_back();
     throw;
@@ -180,7 +180,7 @@ void McapWriter::append_group(Bytes& to, std::uint64_t start, Opcode opcode, con
   if (to.size() > before) summary_offsets_.push_back({opcode, start + before, to.size() - before});
 }
 
-// The summary, its offsets and the end of the file, all of which begin at `start`.
+// Returns the summary, its offsets and the end of the file, which begin at `start`.
 Bytes McapWriter::summary(std::uint64_t start) {
   Statistics statistics = statistics_;
   statistics.schema_count = static_cast<std::uint16_t>(schemas_.size());

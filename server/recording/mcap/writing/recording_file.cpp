@@ -16,20 +16,20 @@ namespace cohort::recording {
 namespace {
 
 constexpr std::size_t block_size = 256U << 10U;
-constexpr std::size_t wake_size = 512U << 10U;  // so much waits before the writer is woken early
+constexpr std::size_t wake_size = 512U << 10U;  // queued bytes at which the writer is woken early
 constexpr std::size_t most_spare = 16;
 constexpr int writer_niceness = 10;
-constexpr const char* no_memory = "there is no memory for what is to be recorded";
+constexpr const char* no_memory = "out of memory";
 
-// What stands before each message in a block, or in its place.
+// The head of a message in a block, or an entry instead of one.
 struct Entry {
   MessageHead head;
   std::uint64_t size = 0;
   bool is_call = false;
 };
 
-// A thread that no signal goes to: they are the program's, and SIGXFSZ, which would end it at its limit of file sizes,
-// becomes an error of `write`.
+// Starts a thread that receives no signals: they are the program's. SIGXFSZ, which would end the program at its limit
+// of the file size, becomes an error of `write`.
 template <class Function>
 std::thread quiet_thread(const Function& function) {
   sigset_t all;
@@ -61,6 +61,7 @@ RecordingFile::RecordingFile(std::shared_ptr<ByteStore> store, RecordingOptions 
       write_blocks();
       const std::lock_guard lock(mutex_);
       is_closed_ = true;
+      flushed_.notify_all();
     });
   } catch (...) {
     stop_syncing();
@@ -70,7 +71,7 @@ RecordingFile::RecordingFile(std::shared_ptr<ByteStore> store, RecordingOptions 
 
 RecordingFile::~RecordingFile() { close(); }
 
-// What fails once is tried once more: the run goes on, and cannot be had again.
+// Retries a failed write once, as the run cannot be repeated.
 void RecordingFile::write(ByteView bytes) {
   try {
     store_->write(bytes);
@@ -93,7 +94,7 @@ RecordingFile::Block& RecordingFile::block_for(std::size_t size) {
   return queue_.back();
 }
 
-// Under the lock.
+// Requires the lock.
 void RecordingFile::add_entry(const MessageHead& head, std::uint64_t size, bool is_call, ByteView data) {
   const Entry entry{head, size, is_call};
   Block& block = block_for(sizeof entry + data.size());
@@ -108,10 +109,10 @@ void RecordingFile::add_entry(const MessageHead& head, std::uint64_t size, bool 
   if (is_first || (before < wake_size && queued_ >= wake_size)) wake_.notify_one();
 }
 
-// Under the lock.
+// Requires the lock.
 void RecordingFile::end(const std::string& why) {
   if (!error_.empty()) return;
-  error_ = store_->name() + " ends early: " + why + ". What was recorded before is whole";
+  error_ = store_->name() + " ends early: " + why + ". The messages recorded before are intact";
   is_closing_ = true;
   wake_.notify_one();
 }
@@ -121,7 +122,7 @@ void RecordingFile::end_early(const std::string& why) {
   end(why);
 }
 
-// Under the lock. False if there is no memory for it, which ends the recording and nothing else.
+// Requires the lock. Returns false if it is out of memory, which ends only the recording.
 template <class Add>
 bool RecordingFile::is_added(const Add& add) {
   try {
@@ -142,7 +143,7 @@ bool RecordingFile::write_message(ChannelId channel, std::uint32_t sequence, Tim
     return false;
   }
   if (queued_ + data.size() > options_.most_essential_queued) {
-    end(std::to_string(queued_ >> 20U) + " MiB wait to be written, and more may not");
+    end(std::to_string(queued_ >> 20U) + " MiB are waiting to be written, which is the limit");
     return false;
   }
   return is_added([&] { add_entry({channel, sequence, log_time, publish_time}, data.size(), false, data); });
@@ -211,27 +212,41 @@ bool RecordingFile::is_closed() const {
   return is_closed_;
 }
 
+void RecordingFile::flush() {
+  std::unique_lock lock(mutex_);
+  const std::uint64_t flush = ++flushes_wanted_;
+  wake_.notify_one();
+  flushed_.wait(lock, [&] { return flushes_done_ >= flush || is_closed_; });
+}
+
 void RecordingFile::close() {
   begin_closing();
   if (writer_thread_.joinable()) writer_thread_.join();
   stop_syncing();
 }
 
-// The writer's thread, down to the end of `give_up`.
+// The writer's thread runs this function and those down to `give_up`.
 void RecordingFile::write_blocks() {
-  // Linux has a niceness for each thread: on a machine without a core to spare the run and its controllers come first.
+  // Linux has a niceness for each thread: without a spare core, the run and its controllers have priority.
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), writer_niceness);
   std::deque<Block> blocks;
   bool is_last = false;
   while (!is_last) {
-    is_last = wait_for_blocks(blocks);
+    std::uint64_t flushes = 0;
+    is_last = wait_for_blocks(blocks, flushes);
     try {
       for (; !blocks.empty(); blocks.pop_front()) {
         write_block(blocks.front());
         release(std::move(blocks.front()));
       }
-      end_chunk_if_due(is_last);
+      const bool is_flushed = flushes > flushes_done_;  // which no other thread writes
+      end_chunk_if_due(is_last, is_flushed);
       ask_for_sync();
+      if (is_flushed) {
+        const std::lock_guard lock(mutex_);
+        flushes_done_ = flushes;
+        flushed_.notify_all();
+      }
       if (is_last) {
         writer_.close();
         store_->finish();
@@ -243,10 +258,11 @@ void RecordingFile::write_blocks() {
   }
 }
 
-// Takes what is queued when it is much or old, or at the end; true at the end.
-bool RecordingFile::wait_for_blocks(std::deque<Block>& blocks) {
+// Takes the queued blocks when they are large or old enough, when a flush waits, or at the end. Returns true at the
+// end. `flushes`: number of flushes requested so far.
+bool RecordingFile::wait_for_blocks(std::deque<Block>& blocks, std::uint64_t& flushes) {
   std::unique_lock lock(mutex_);
-  while (!is_closing_ && queued_ < wake_size) {
+  while (!is_closing_ && queued_ < wake_size && flushes_wanted_ == flushes_done_) {
     const bool is_waiting = first_queued_at_ || chunk_began_at_;
     if (!is_waiting) {
       wake_.wait(lock);
@@ -257,6 +273,7 @@ bool RecordingFile::wait_for_blocks(std::deque<Block>& blocks) {
     if (wake_.wait_until(lock, oldest + options_.flush_interval) == std::cv_status::timeout) break;
   }
   blocks.swap(queue_);
+  flushes = flushes_wanted_;
   if (!chunk_began_at_) chunk_began_at_ = first_queued_at_;
   first_queued_at_.reset();
   return is_closing_;
@@ -279,9 +296,10 @@ void RecordingFile::write_block(const Block& block) {
   }
 }
 
-void RecordingFile::end_chunk_if_due(bool is_last) {
+void RecordingFile::end_chunk_if_due(bool is_last, bool is_flushed) {
   if (writer_.pending_messages() == 0) chunk_began_at_.reset();
-  if (is_last || !chunk_began_at_ || Clock::now() - *chunk_began_at_ < options_.flush_interval) return;
+  if (is_last || !chunk_began_at_) return;
+  if (!is_flushed && Clock::now() - *chunk_began_at_ < options_.flush_interval) return;
   writer_.flush_chunk();
   chunk_began_at_.reset();
 }
@@ -309,7 +327,7 @@ void RecordingFile::release(Block block) {
   if (block.bytes.capacity() == block_size && spare_.size() < most_spare) spare_.push_back(std::move(block));
 }
 
-// Closes what is there: with the chunk that was begun, if that can be written now, or without it.
+// Closes the file, with the current chunk if that can be written now, or without it.
 void RecordingFile::give_up(const std::exception& reason) {
   const bool lacks_memory = dynamic_cast<const std::bad_alloc*>(&reason) != nullptr;
   const std::string text = lacks_memory ? store_->name() + " ends early: " + no_memory : reason.what();
@@ -318,21 +336,22 @@ void RecordingFile::give_up(const std::exception& reason) {
     rest = is_closed_up(with_chunk);
     if (rest.empty()) break;
   }
+  const std::uint64_t count = writer_.statistics().message_count;
+  const std::string messages = std::to_string(count) + " messages recorded before";
   if (rest.empty())
-    rest = "is closed and can be read";
-  else if (writer_.statistics().message_count > 0)
-    rest = "can be read as far as it goes, and 'cohort recover' closes it" + keep_unclosed();
+    rest = "The file has the " + messages + " and was closed";
+  else if (count > 0)
+    rest = "The file has the " + messages + " but is not closed; 'cohort recover' closes it" + keep_unclosed();
   else
-    rest = "is not worth a file: what was there before is left as it was";
+    rest = "Nothing was recorded before; an existing file is unchanged";
   const std::lock_guard lock(mutex_);
-  error_ =
-      text + ". What was recorded before (" + std::to_string(writer_.statistics().message_count) + " messages) " + rest;
+  error_ = text + ". " + rest;
   queue_.clear();
   spare_.clear();
   queued_ = 0;
 }
 
-// Nothing, or why it cannot be.
+// Returns an empty text if the file was closed, otherwise the reason.
 std::string RecordingFile::is_closed_up(bool with_chunk) {
   try {
     store_->cut_off(size_);
@@ -355,7 +374,7 @@ std::string RecordingFile::keep_unclosed() {
   }
 }
 
-// A thread of its own: while the disk is slow, chunks go on to the operating system.
+// Runs on a thread of its own, so that chunks reach the operating system while the disk is slow.
 void RecordingFile::sync_now_and_then() {
   std::unique_lock lock(sync_mutex_);
   while (!ends_syncing_) {
@@ -371,7 +390,7 @@ void RecordingFile::sync_now_and_then() {
     }
     if (!problem.empty()) {
       const std::lock_guard main_lock(mutex_);
-      if (error_.empty()) error_ = problem + ". What was recorded in the last seconds may not be on the disk";
+      if (error_.empty()) error_ = problem + ". The messages of the last seconds may be lost";
     }
     lock.lock();
     sync_wake_.wait_for(lock, std::chrono::seconds(1), [this] { return ends_syncing_; });

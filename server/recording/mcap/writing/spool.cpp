@@ -9,7 +9,7 @@ namespace cohort::recording {
 void Spool::write(ByteView bytes) {
   std::unique_lock lock(mutex_);
   has_room_.wait(lock, [this] { return bytes_.size() < capacity_ || is_abandoned_; });
-  if (is_abandoned_) throw FileError("nobody fetches the recording any more");
+  if (is_abandoned_) throw FileError("the client no longer fetches the recording");
   bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
 }
 

@@ -11,28 +11,28 @@
 
 namespace cohort::recording {
 
-/// Bytes on their way from the thread that writes a recording to whoever fetches them, part by part. That thread waits
-/// while `capacity` bytes or more are not fetched. Any thread.
+/// A buffer between the thread that writes a recording and the client that fetches it in parts. The thread waits while
+/// `capacity` bytes or more are not fetched. For any thread.
 class Spool : public ByteStore {
  public:
   explicit Spool(std::size_t capacity) : capacity_(capacity) {}
 
   struct Part {
     Bytes bytes;                          ///< empty if there are none yet, or no more
-    std::optional<std::uint64_t> size{};  ///< of all; none as long as more may come
+    std::optional<std::uint64_t> size{};  ///< total size; unknown while more may follow
   };
-  /// At most `most` bytes from `offset` on. Those before it have arrived, and are forgotten. Nothing if bytes from
-  /// there on were forgotten before, or are none of it.
+  /// Returns at most `most` bytes from `offset` on. Earlier bytes count as received, and are forgotten. Returns nothing
+  /// if bytes from there on were already forgotten, or are out of range.
   std::optional<Part> fetch(std::uint64_t offset, std::size_t most);
-  /// Bytes that are not fetched.
+  /// Returns the number of unfetched bytes.
   std::size_t size() const;
-  /// All of it is there and was fetched, or nobody will.
+  /// Returns true if everything was written and fetched, or the spool was abandoned.
   bool is_done() const;
-  /// Nobody fetches any more: from now on writing fails.
+  /// Ends the fetching: from now on, writing fails.
   void abandon();
 
   void write(ByteView bytes) override;
-  /// Does nothing: whoever fetches may have them, and a record is whole here or not at all.
+  /// Does nothing: the bytes may already be fetched. Records are always whole here.
   void cut_off(std::uint64_t size) override;
   void sync() override {}
   void finish() override;
@@ -41,8 +41,8 @@ class Spool : public ByteStore {
   const std::size_t capacity_;
   mutable std::mutex mutex_;  // guards all below
   std::condition_variable has_room_;
-  std::deque<std::byte> bytes_;  // from `start_` on
-  std::uint64_t start_ = 0;      // of `bytes_` in the whole
+  std::deque<std::byte> bytes_;  // the bytes from `start_` on
+  std::uint64_t start_ = 0;      // offset of `bytes_` in the whole data
   bool is_finished_ = false;
   bool is_abandoned_ = false;
 };

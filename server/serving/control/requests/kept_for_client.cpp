@@ -8,7 +8,7 @@ namespace cohort::session {
 std::string name_of(KeptForClient::Kind kind) {
   switch (kind) {
     case KeptForClient::Kind::saved_snapshot: return "saved snapshot";
-    case KeptForClient::Kind::upload: return "data that was handed over";
+    case KeptForClient::Kind::upload: return "uploaded data";
     case KeptForClient::Kind::recording: break;
   }
   return "recording";

@@ -5,14 +5,14 @@
 
 namespace cohort::session {
 
-/// A request, and where it came in.
+/// A request and its source.
 struct ReceivedRequest {
   wire::Request request;
   wire::Sender sender;
   wire::Participant* participant = nullptr;
 };
 
-/// What it takes in memory.
+/// Returns the memory that a request takes.
 inline std::size_t size_of(const wire::Request& request) {
   std::size_t bytes = sizeof request + request.label.size();
   const auto add = [&](const auto& content) { bytes += content.size(); };

@@ -5,7 +5,7 @@
 namespace cohort::session {
 namespace {
 
-constexpr int run_to_requests = 3;  // the run's share of the time to that of requests
+constexpr int run_to_requests = 3;  // ratio of the run's share of the time to that of requests
 
 }  // namespace
 
@@ -17,7 +17,7 @@ bool RequestBudget::allows(const std::string& account, Time now) {
 
 void RequestBudget::charge(const std::string& account, Time took, Time now) {
   advance(now - took);
-  advanced_to_ = std::max(advanced_to_, now);  // no debt goes down while a request is done
+  advanced_to_ = std::max(advanced_to_, now);  // debts do not decrease while a request is carried out
   if (took <= Time::zero()) return;
   Time& debt = debts_[account];
   debt = std::min(debt + took, largest_debt);
@@ -37,7 +37,7 @@ bool RequestBudget::allows_restart(const std::string& account, Time now) {
   return allows(account, now);
 }
 
-// All debts go down by the same until the smallest is paid, then the others by what is left, and so on.
+// Reduces all debts equally until the smallest is paid, then shares the rest among the others, and so on.
 void RequestBudget::advance(Time now) {
   if (now <= advanced_to_) return;
   Time left = (now - advanced_to_) / run_to_requests;

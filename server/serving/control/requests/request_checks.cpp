@@ -7,6 +7,8 @@
 namespace cohort::session {
 namespace {
 
+constexpr std::uint64_t most_steps = std::uint64_t{1} << 62;
+
 constexpr const char* not_finite = "a number is not finite";
 
 bool is_finite(const wire::Vector3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -18,24 +20,27 @@ bool is_finite(const wire::Pose& pose) {
 bool is_finite(const wire::Twist& twist) { return is_finite(twist.linear) && is_finite(twist.angular); }
 
 std::string what_is_wrong_with(const wire::UnknownOperation& operation) {
-  return "there is no operation " + std::to_string(operation.number);
+  return "unknown operation " + std::to_string(operation.number);
 }
 std::string what_is_wrong_with(const wire::SetSimulationState& operation) {
   if (operation.state <= wire::SimulationState::quitting) return {};
-  return "there is no state " + std::to_string(static_cast<std::uint32_t>(operation.state)) +
-         " to set: 0 stopped, 1 playing, 2 paused, 3 quitting";
+  return "invalid state " + std::to_string(static_cast<std::uint32_t>(operation.state)) +
+         ", expected 0 (stopped), 1 (playing), 2 (paused) or 3 (quitting)";
 }
 std::string what_is_wrong_with(const wire::StepSimulation& operation) {
-  constexpr std::uint64_t most_steps = std::uint64_t{1} << 62;
   if (operation.steps > 0 && operation.steps <= most_steps) return {};
   return "expected at least 1 step, and at most 2^62, not " + std::to_string(operation.steps);
 }
+std::string what_is_wrong_with(const wire::AdvanceTime& operation) {
+  if (operation.steps <= most_steps) return {};
+  return "expected at most 2^62 steps, not " + std::to_string(operation.steps);
+}
 std::string what_is_wrong_with(const wire::SetSpeed& operation) {
   if (operation.speed >= 0.0 && operation.speed <= 1e9) return {};
-  return "expected a speed from 0 (as fast as it goes) to 1e9, not " + std::to_string(operation.speed);
+  return "expected a speed from 0 (as fast as possible) to 1e9, not " + std::to_string(operation.speed);
 }
 std::string what_is_wrong_with(const wire::SetEntityState& operation) {
-  if (!operation.pose && !operation.twist) return "neither a pose nor a twist is to be set";
+  if (!operation.pose && !operation.twist) return "expected a pose, a twist or both";
   const bool fits =
       (!operation.pose || is_finite(*operation.pose)) && (!operation.twist || is_finite(*operation.twist));
   return fits ? "" : not_finite;

@@ -6,7 +6,7 @@
 
 namespace cohort::session {
 
-/// What is wrong with a request that can be seen without the world; empty if nothing is.
+/// Returns a fault of a request that is visible without the world; empty if there is none.
 std::string what_is_wrong(const wire::Request& request);
 
 }  // namespace cohort::session

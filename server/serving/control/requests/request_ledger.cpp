@@ -36,7 +36,7 @@ RequestLedger::Receipt RequestLedger::receive(std::uint64_t client, std::uint64_
   if (static_cast<std::uint64_t>(under_way) >= wire::requests_under_way) return Receipt::too_many;
   known.newest = std::max(known.newest, number);
   known.replies.emplace(number, std::nullopt);
-  // Those that may still be asked for again are the last ones, and what is under way.
+  // A client may repeat its last requests and those that are in progress, so their replies stay.
   std::erase_if(known.replies, [&](const auto& each) {
     return each.second && each.first <= known.newest - std::min(known.newest, wire::requests_under_way);
   });
@@ -49,7 +49,7 @@ const wire::Reply& RequestLedger::remembered(std::uint64_t client, std::uint64_t
 
 void RequestLedger::keep(const wire::Reply& reply) {
   const auto client = clients_.find(reply.client);
-  if (client == clients_.end()) return;  // pushed out by others meanwhile
+  if (client == clients_.end()) return;  // dropped for other clients meanwhile
   const auto place = client->second.replies.find(reply.number);
   if (place != client->second.replies.end()) place->second = reply;
 }
@@ -76,7 +76,7 @@ std::optional<std::string> RequestLedger::take_part(std::uint64_t client, std::u
   if (bytes.size() > wire::largest_part)
     return "a part of " + std::to_string(bytes.size()) + " bytes is larger than " + std::to_string(wire::largest_part);
   if (offset > size || bytes.size() > size - offset)
-    return "the part from " + std::to_string(offset) + " on goes beyond the end at " + std::to_string(size);
+    return "the part from " + std::to_string(offset) + " on exceeds the data's size of " + std::to_string(size);
   if (offset == 0) {
     dropped_.erase({client, KeptForClient::Kind::upload});
     incoming_[client] = {.since = now, .size = size};
@@ -84,12 +84,12 @@ std::optional<std::string> RequestLedger::take_part(std::uint64_t client, std::u
   const auto holder = incoming_.find(client);
   if (const std::string why = why_dropped(client, KeptForClient::Kind::upload); !why.empty()) return why;
   if (holder == incoming_.end() || holder->second.size != size)
-    return "the part from " + std::to_string(offset) + " on belongs to nothing: parts begin at 0";
+    return "the part from " + std::to_string(offset) + " on has no preceding part: the first part has offset 0";
   std::vector<std::byte>& data = holder->second.bytes;
-  if (offset + bytes.size() <= data.size()) return std::nullopt;  // came before
+  if (offset + bytes.size() <= data.size()) return std::nullopt;  // a repeated part
   if (offset != data.size())
-    return "the part from " + std::to_string(offset) + " on comes where one from " + std::to_string(data.size()) +
-           " on is expected";
+    return "the part from " + std::to_string(offset) + " on is out of order, expected the part from " +
+           std::to_string(data.size()) + " on";
   const auto added = std::as_bytes(bytes);
   if (data.capacity() < data.size() + added.size())
     data.reserve(std::min<std::size_t>(size, 2 * (data.size() + added.size())));  // never more than its size
@@ -106,7 +106,7 @@ std::optional<std::vector<std::byte>> RequestLedger::take_all(std::uint64_t clie
 }
 
 void RequestLedger::list(std::vector<KeptForClient>& kept) const {
-  std::map<const void*, KeptForClient> snapshots;  // of which each stands for all who share it
+  std::map<const void*, KeptForClient> snapshots;  // each counted once for all clients that share it
   for (const auto& [client, data] : outgoing_) {
     KeptForClient& each = snapshots[data.bytes.get()];
     if (each.since <= data.since) each = {KeptForClient::Kind::saved_snapshot, client, data.since, data.bytes->size()};

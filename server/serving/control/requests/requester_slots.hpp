@@ -9,16 +9,16 @@
 
 namespace cohort::session {
 
-/// Who may send requests to a server at a time. Each identity has a limited number of slots, and each role has some
-/// that the other cannot take. Where there is none left, the one that has asked for nothing for longest has to go. Pure
-/// logic with an injected clock. Not thread-safe.
+/// The clients that may send requests to a server at the same time. Each identity has a limited number of slots, and
+/// some slots are reserved for each role. If none is free, the client that has been idle for the longest time loses its
+/// slot. Pure logic with an injected clock. Not thread-safe.
 class RequesterSlots {
  public:
-  using Time = std::chrono::nanoseconds;  ///< of a steady clock
+  using Time = std::chrono::nanoseconds;  ///< from a steady clock
   static constexpr std::size_t most = 64;
   static constexpr std::size_t most_of_identity = 32;
   static constexpr std::size_t kept_for_role = 16;
-  /// A client that waits for a reply asks again sooner.
+  /// A client that waits for a reply asks again before this time.
   static constexpr Time idle_after = std::chrono::milliseconds(1500);
 
   struct Holder {
@@ -29,9 +29,9 @@ class RequesterSlots {
 
   struct Admission {
     bool is_in = false;
-    std::optional<std::uint64_t> leaves{};  ///< who has to go for it
+    std::optional<std::uint64_t> leaves{};  ///< the client that loses its slot
   };
-  /// The client asks for something. If it is not in yet it comes in, if there is room.
+  /// Notes a request of the client, and gives it a slot if it has none and one is available.
   Admission use(std::uint64_t client, const std::string& identity, bool may_control, Time now);
   void leave(std::uint64_t client) { holders_.erase(client); }
 

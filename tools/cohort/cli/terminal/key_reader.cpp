@@ -60,7 +60,7 @@ std::optional<std::string> KeyReader::read(std::chrono::milliseconds at_most) {
   if (!first) return std::nullopt;
   if (*first == ' ') return "space";
   if (*first != escape) return std::string(1, *first);
-  // ESC [ A or ESC O A is an arrow; longer sequences are other keys.
+  // ESC [ A or ESC O A is an arrow key; longer sequences are other keys.
   std::optional<char> last = next(rest_of_a_sequence);
   if (!last || (*last != '[' && *last != 'O')) return std::nullopt;
   bool is_short = true;

@@ -8,8 +8,8 @@
 
 namespace cohort::tool {
 
-/// Reads single keys from standard input, which need not be a terminal. A terminal is put into a mode without echo and
-/// without lines for as long as this lives. Ctrl-C keeps its meaning.
+/// A reader of single keys from standard input, which need not be a terminal. During its lifetime, a terminal is in a
+/// mode without echo and line buffering. Ctrl-C keeps its meaning.
 class KeyReader {
  public:
   KeyReader();
@@ -17,8 +17,8 @@ class KeyReader {
   KeyReader& operator=(const KeyReader&) = delete;
   ~KeyReader();
 
-  /// The next key: a character, "space", or "up", "down", "left", "right". Nothing if none comes in time; any other
-  /// special key is passed over.
+  /// Returns the next key: a character, "space", or "up", "down", "left", "right". Returns nothing if no key arrives in
+  /// time. Skips other special keys.
   std::optional<std::string> read(std::chrono::milliseconds at_most);
 
  private:

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "tools/cohort/cli/shown.hpp"
+#include "tools/data/csv_tables.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 using description::PrintedQuantity;
 using description::Quantity;
 
-// The columns of one object, or of all of them together.
+// Returns the columns of one object, or of all objects together.
 std::vector<std::string> columns_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::position: return {"x", "y", "z"};
@@ -50,7 +51,7 @@ std::vector<double> values_of(Quantity quantity, const Simulation& simulation, s
   }
 }
 
-// At both ends.
+// Returns the values at both ends of the joint.
 std::vector<double> values_of_joint(Quantity quantity, const BreakableJoints& joints, std::size_t joint) {
   std::vector<double> values;
   for (const physics::Wrench& wrench : {joints.wrench_on_first(joint), joints.wrench_on_second(joint)}) {
@@ -67,14 +68,6 @@ double number_of(Quantity quantity, const Objects& objects, const std::vector<st
   }));
 }
 
-// A name may have a comma or a quote in it.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char character : text) quoted += character == '"' ? std::string("\"\"") : std::string(1, character);
-  return quoted + "\"";
-}
-
 }  // namespace
 
 PrintedTable::PrintedTable(const description::Experiment& experiment, const Simulation& simulation, bool to_stdout)
@@ -83,15 +76,15 @@ PrintedTable::PrintedTable(const description::Experiment& experiment, const Simu
   for (const PrintedQuantity& printed : experiment.prints) {
     every_.push_back(ticks_of(printed.every, experiment.world.step));
     for (const std::string& column : columns_of(printed.quantity)) {
-      if (is_of_all_together(printed.quantity)) header += "," + cell(printed.selector + "/" + column);
+      if (is_of_all_together(printed.quantity)) header += "," + data::csv_cell(printed.selector + "/" + column);
     }
     if (is_of_all_together(printed.quantity)) continue;
     for (const std::size_t object : printed.objects)
       for (const std::string& column : columns_of(printed.quantity))
-        header += "," + cell(experiment.world.instances[object].name + "/" + column);
+        header += "," + data::csv_cell(experiment.world.instances[object].name + "/" + column);
     for (const std::size_t joint : printed.joints)
       for (const std::string& column : columns_of(printed.quantity))
-        header += "," + cell(experiment.world.breakable_joints[joint].name + "/" + column);
+        header += "," + data::csv_cell(experiment.world.breakable_joints[joint].name + "/" + column);
   }
   add_line(header);
 }

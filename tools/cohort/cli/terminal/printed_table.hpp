@@ -8,17 +8,18 @@
 
 namespace cohort::tool {
 
-/// What an experiment prints, as a table with a line for each time at which something is due: CSV, with the time in the
-/// first column and one column for each number. What is not due, or not in the world, leaves its columns empty.
+/// The values that an experiment prints, as CSV with a line for each time at which a value is due. The first column is
+/// the time; each number has its own column. A column is empty if its value is not due, or its object not in the world.
 class PrintedTable {
  public:
-  /// `to_stdout`: each line is also printed as soon as it is there. Both must outlive this.
+  /// `to_stdout`: also print each line as soon as it is complete. Experiment and simulation must outlive this.
   PrintedTable(const description::Experiment& experiment, const Simulation& simulation, bool to_stdout);
 
-  /// At each boundary.
+  /// Adds the values that are due; called at each tick boundary.
   void boundary();
 
   const std::string& text() const { return text_; }
+  bool is_on_stdout() const { return to_stdout_; }
 
  private:
   void add_line(const std::string& line);
@@ -26,7 +27,7 @@ class PrintedTable {
   const description::Experiment& experiment_;
   const Simulation& simulation_;
   bool to_stdout_;
-  std::vector<std::uint64_t> every_;  // ticks, of each quantity
+  std::vector<std::uint64_t> every_;  // interval of each quantity in ticks
   std::string text_;
 };
 

@@ -8,12 +8,12 @@
 
 namespace cohort::tool {
 
-/// Where the reading of a recording is, a few times a second.
+/// The progress of reading a recording, shown several times per second.
 class ReplayProgress {
  public:
   explicit ReplayProgress(Log& log) : log_(log) {}
 
-  /// `what`: such as `replayed`.
+  /// `what`: the activity, such as `replayed`.
   void at(std::chrono::nanoseconds log_time, const char* what) {
     constexpr std::chrono::milliseconds interval{200};
     const auto now = std::chrono::steady_clock::now();

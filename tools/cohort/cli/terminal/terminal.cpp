@@ -13,8 +13,8 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr std::chrono::seconds line_interval{2};            // where lines cannot be rewritten
-constexpr std::chrono::milliseconds worth_mentioning{300};  // a wait
+constexpr std::chrono::seconds line_interval{2};            // interval of lines that cannot be rewritten
+constexpr std::chrono::milliseconds worth_mentioning{300};  // shortest wait that is reported
 
 std::string awaited_text(const session::Progress& progress) {
   std::string text = "waiting for " + progress.awaited.front();
@@ -31,7 +31,7 @@ double percent(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-// Models without devices are no robots, but they are what there is to see.
+// Models without devices are not robots; they are counted if there is no robot.
 std::string counted_objects(const description::World& world, std::uint32_t robots) {
   if (robots > 0) return counted(robots, "robot");
   const auto moving = static_cast<std::size_t>(std::ranges::count_if(
@@ -42,25 +42,27 @@ std::string counted_objects(const description::World& world, std::uint32_t robot
 }  // namespace
 
 void Terminal::progress(const session::Progress& progress) {
+  if (!options_.shows_progress) return;
   const bool waits = !progress.awaited.empty() && (!progress.started || progress.waiting > worth_mentioning);
   const std::string awaited = waits ? awaited_text(progress) : std::string();
   std::string line;
-  // In columns for people: the line stands still while its numbers change.
+  // Fixed columns keep the line in place while its numbers change.
   if (progress.started)
-    line = fmt::format(
-        fmt::runtime(log_.format() == LogFormat::text ? "{:8.2f} of {:.2f} s simulated   {:6.1f} x real time"
-                                                      : "{:.2f} of {:.2f} s simulated, {:.1f} x real time"),
-        seconds(progress.time), seconds(progress.duration), progress.real_time_factor);
-  if (progress.unrecorded) line += log_.format() == LogFormat::text ? "   NOT RECORDED" : ", not recorded any more";
+    line = fmt::format(fmt::runtime(log_.format() == LogFormat::text ? "{:8.2f}{} s simulated   {:6.1f} x real time"
+                                                                     : "{:.2f}{} s simulated, {:.1f} x real time"),
+                       seconds(progress.time), of_duration(progress.duration), progress.real_time_factor);
+  if (progress.unrecorded) line += log_.format() == LogFormat::text ? "   NOT RECORDED" : ", no longer recorded";
   if (waits) line += (line.empty() ? "" : log_.format() == LogFormat::text ? "   " : ", ") + awaited;
   if (progress.paused) line += log_.format() == LogFormat::text ? "   paused" : ", paused";
   if (waits && progress.started) line += fmt::format(", {:.1f} s", seconds(progress.waiting));
 
   if (line.empty()) return log_.clear_progress();
   const auto now = std::chrono::steady_clock::now();
-  const bool news = (awaited != last_awaited_ && waits) || progress.paused != was_paused_;
+  const bool news =
+      (awaited != last_awaited_ && waits) || progress.paused != was_paused_ || progress.unrecorded != was_unrecorded_;
   last_awaited_ = awaited;
   was_paused_ = progress.paused;
+  was_unrecorded_ = progress.unrecorded;
   if (!log_.rewrites_progress() && !news && now - last_line_ < line_interval) return;
   last_line_ = now;
   LogFields fields = {{"sim_time_s", seconds(progress.time)}, {"duration_s", seconds(progress.duration)}};
@@ -76,7 +78,7 @@ void Terminal::event(const session::RunEvent& event) {
              {{"tick", event.tick}, {"kind", event.kind}});
 }
 
-// What an error at the end says again, or what is in the nature of things, need not be read.
+// Events that the final error repeats, and events of normal operation, have the level `info`.
 LogLevel Terminal::level_of(const session::RunEvent& event) {
   const std::string& kind = event.kind;
   if (kind == "event" || kind == "joined" || kind == "back" || kind == "superseded" || kind == "failed" ||
@@ -84,44 +86,49 @@ LogLevel Terminal::level_of(const session::RunEvent& event) {
     return LogLevel::info;
   if (kind == "lost" && options_.own_controllers) return LogLevel::info;
   if (kind == "unrecorded") return LogLevel::error;
-  // A frame that is sent again may be answered twice.
-  if (kind == "rejected" && (event.text.starts_with("repeated") || event.text.starts_with("stale")))
-    return LogLevel::info;
+  // Once for each controller, also if the run goes on from several snapshots.
+  if (kind == "unsaved" && !unsaved_told_.insert(event.text).second) return LogLevel::info;
   // The summary counts them.
   if (kind == "missed" && std::exchange(miss_was_told_, true)) return LogLevel::info;
   return LogLevel::warning;
 }
 
-void Terminal::summary(const description::Experiment& experiment, const session::RunResult& result,
-                       double cpu_seconds) {
-  log_.info(result.end == session::RunResult::End::finished ? "the run is finished" : "the run has ended early",
+void Terminal::summary(const description::Experiment& experiment, const session::RunResult& result, double cpu_seconds,
+                       std::FILE* stream) {
+  log_.info(result.end == session::RunResult::End::finished ? "the run has finished" : "the run has ended early",
             {{"ticks", result.ticks}, {"state_hash", fmt::format("{:016x}", result.state_hash)}});
   log_.clear_progress();
-  if (options_.quiet) return;
+  if (options_.quiet || (stream == stderr && log_.format() == LogFormat::json)) return;
   const double wall = seconds(result.wall_time);
-  std::printf("experiment        %s, seed %lu (Cohort %s)\n", experiment.name.c_str(),
-              static_cast<unsigned long>(experiment.seed), COHORT_VERSION);
-  std::printf("ticks             %lu (%.2f s simulated, %s)\n", static_cast<unsigned long>(result.ticks),
-              seconds(result.sim_time), counted_objects(experiment.world, result.robots).c_str());
-  if (!result.stop_reason.empty()) std::printf("stopped           by %s\n", result.stop_reason.c_str());
-  std::printf("real-time factor  %.1f (%.2f s wall, %.2f s CPU)\n", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0,
-              wall, cpu_seconds);
+  std::fprintf(stream, "experiment        %s, seed %lu (Cohort %s)\n", experiment.name.c_str(),
+               static_cast<unsigned long>(experiment.seed), COHORT_VERSION);
+  std::fprintf(stream, "ticks             %lu (%.2f s simulated, %s)\n", static_cast<unsigned long>(result.ticks),
+               seconds(result.sim_time), counted_objects(experiment.world, result.robots).c_str());
+  if (!result.stop_reason.empty()) std::fprintf(stream, "stopped           by %s\n", result.stop_reason.c_str());
+  if (!result.unrecorded.empty()) std::fprintf(stream, "recording         INCOMPLETE: %s\n", result.unrecorded.c_str());
+  std::fprintf(stream, "real-time factor  %.1f (%.2f s wall, %.2f s CPU)\n",
+               wall > 0.0 ? seconds(result.sim_time) / wall : 0.0, wall, cpu_seconds);
   if (result.robots > 0)
-    std::printf(
-        "barrier latency   p50 %s us, p99 %s us, max %s us\n", whole_microseconds(result.barrier.quantile(0.5)).c_str(),
-        whole_microseconds(result.barrier.quantile(0.99)).c_str(), whole_microseconds(result.barrier.max()).c_str());
+    std::fprintf(stream, "barrier latency   p50 %s us, p99 %s us, max %s us\n",
+                 whole_microseconds(result.barrier.quantile(0.5)).c_str(),
+                 whole_microseconds(result.barrier.quantile(0.99)).c_str(),
+                 whole_microseconds(result.barrier.max()).c_str());
   if (result.lateness.count() > 0)
-    std::printf("tick lateness     p50 %s us, p99 %s us, max %s us\n",
-                whole_microseconds(result.lateness.quantile(0.5)).c_str(),
-                whole_microseconds(result.lateness.quantile(0.99)).c_str(),
-                whole_microseconds(result.lateness.max()).c_str());
+    std::fprintf(stream, "tick lateness     p50 %s us, p99 %s us, max %s us; longer than a step in %.2f %% of ticks\n",
+                 whole_microseconds(result.lateness.quantile(0.5)).c_str(),
+                 whole_microseconds(result.lateness.quantile(0.99)).c_str(),
+                 whole_microseconds(result.lateness.max()).c_str(),
+                 percent(result.late_ticks, result.lateness.count()));
   if (result.robots > 0)
-    std::printf("contacts          obstacles in %.2f %% of robot-ticks, other robots in %.2f %%\n",
-                percent(result.touches.obstacles, result.touches.robot_ticks),
-                percent(result.touches.robots, result.touches.robot_ticks));
-  if (result.late > 0) std::printf("late answers      %lu\n", static_cast<unsigned long>(result.late));
-  std::printf("state hash        %016lx\n", static_cast<unsigned long>(result.state_hash));
-  std::fflush(stdout);
+    std::fprintf(stream, "contacts          obstacles in %.2f %% of robot-ticks, other robots in %.2f %%\n",
+                 percent(result.touches.obstacles, result.touches.robot_ticks),
+                 percent(result.touches.robots, result.touches.robot_ticks));
+  if (result.late > 0) std::fprintf(stream, "late answers      %lu\n", static_cast<unsigned long>(result.late));
+  if (result.repeated > 0)
+    std::fprintf(stream, "repeated answers  %lu, ignored; %lu frames were sent again\n",
+                 static_cast<unsigned long>(result.repeated), static_cast<unsigned long>(result.resent));
+  std::fprintf(stream, "state hash        %016lx\n", static_cast<unsigned long>(result.state_hash));
+  std::fflush(stream);
 }
 
 }  // namespace cohort::tool

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstdio>
+#include <set>
 #include <string>
 
 #include "server/run/run.hpp"
@@ -8,19 +10,22 @@
 
 namespace cohort::tool {
 
-/// What people see of a run: progress, events and an end by error on the log, now and then where it cannot rewrite a
-/// line; the summary on standard output.
+/// Console output of a run. Progress, events and a final error go to the log; progress is rarer where lines cannot be
+/// rewritten. The summary goes to standard output.
 class Terminal {
  public:
   struct Options {
     bool quiet = false;            ///< no summary
-    bool own_controllers = false;  ///< their deaths are told by who started them
+    bool shows_progress = true;    ///< or else tells events only
+    bool own_controllers = false;  ///< the starting process reports their deaths
   };
   Terminal(Log& log, Options options) : log_(log), options_(options) {}
 
   void progress(const session::Progress& progress);
   void event(const session::RunEvent& event);
-  void summary(const description::Experiment& experiment, const session::RunResult& result, double cpu_seconds);
+  /// Writes the summary to standard output or standard error; to the latter only if messages are text.
+  void summary(const description::Experiment& experiment, const session::RunResult& result, double cpu_seconds,
+               std::FILE* stream);
 
  private:
   LogLevel level_of(const session::RunEvent& event);
@@ -29,8 +34,10 @@ class Terminal {
   Options options_;
   std::string last_awaited_;
   bool was_paused_ = false;
+  bool was_unrecorded_ = false;
   std::chrono::steady_clock::time_point last_line_;
   bool miss_was_told_ = false;
+  std::set<std::string> unsaved_told_;  // texts
 };
 
 }  // namespace cohort::tool

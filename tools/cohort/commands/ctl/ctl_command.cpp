@@ -22,7 +22,7 @@ constexpr milliseconds for_a_server{5'000};
 constexpr milliseconds for_status{2'000};
 constexpr milliseconds watch_interval{500};
 
-// One call of the command. What it throws is why it failed, unless it was interrupted.
+// One execution of the command. Its exceptions are the reason of a failure, unless it was interrupted.
 class Ctl {
  public:
   Ctl(const CtlCommand& command, Log& log, const std::atomic<bool>& stop)
@@ -61,16 +61,16 @@ class Ctl {
   std::runtime_error no_server() const {
     const std::uint32_t domain = command_.connection.domain();
     return std::runtime_error(fmt::format(
-        "no server that can be controlled is at {}, domain {}. Is one running there, with this --domain? A run that "
-        "starts its own controllers takes a domain of its own unless it is given one{}. 'cohort doctor --server {} "
-        "--domain {}' looks for what is wrong",
+        "no controllable server found at {}, domain {}. Check that a server runs there and that --domain matches: a "
+        "run that starts its own controllers chooses a free domain unless --domain is given{}. 'cohort doctor --server "
+        "{} --domain {}' diagnoses the connection",
         command_.connection.server, domain,
-        command_.connection.secure.empty() ? "; one with --secure needs it here too"
-                                           : ", and does its folder have this identity",
+        command_.connection.secure.empty() ? ". A server started with --secure also requires --secure here"
+                                           : ". Check that the server's --secure folder contains this identity",
         command_.connection.server, domain));
   }
 
-  // Says also why there was no reply.
+  // Executes a request; if there is no reply, adds the reason to the error.
   template <class Request>
   void ask(const Request& request) {
     try {
@@ -78,11 +78,12 @@ class Ctl {
     } catch (const ControlError& error) {
       if (error.result != ControlResult::no_answer) throw;
       const std::string why = why_it_waits();
-      throw ControlError(error.what() + (why.empty() ? "" : ", and will be at the next tick: " + why), error.result);
+      throw ControlError(error.what() + (why.empty() ? "" : "; it takes effect at the next tick: " + why),
+                         error.result);
     }
   }
 
-  // What is asked for waits for a boundary, and that for the controllers.
+  // A request waits for a tick boundary, which waits for the controllers.
   std::string why_it_waits() try {
     control_.set_time_limit(for_status);
     const SimulationStatus status = control_.status();
@@ -161,7 +162,8 @@ int ctl(const CtlCommand& command, Log& log, const std::atomic<bool>& stop) {
 
 Subcommand add_ctl(CommandLine app) {
   const auto command = std::make_shared<CtlCommand>();
-  CommandLine line = app.add_subcommand("ctl", "Control a run: pause, step, change its world, save, ask how it is");
+  CommandLine line =
+      app.add_subcommand("ctl", "Control a run: pause it, step it, change its world, save it, show its status");
   add_ctl_options(line, *command);
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return ctl(*command, log, stop); }};
 }

@@ -33,7 +33,7 @@ std::string history_text(const RunHistory& history, std::chrono::nanoseconds ste
     text += "\n";
   }
   if (history.keep_interval == 0) return text;
-  return text + fmt::format("it can go back to {:.3f} s, {:.3f} s at the latest; a snapshot is kept every {:g} s\n",
+  return text + fmt::format("snapshots to go back to: from {:.3f} s to {:.3f} s, one every {:g} s\n",
                             seconds_at(history.first_kept_tick, step), seconds_at(history.last_kept_tick, step),
                             seconds_at(history.keep_interval, step));
 }

@@ -4,12 +4,12 @@
 #include <cohort/types.hpp>
 #include <string>
 
-/// How `cohort ctl history` shows what has happened in a run; `step` is that of the run.
+/// Output of `cohort ctl history`. `step` is the step of the run.
 namespace cohort::tool {
 
-/// For people: a line for each event, by its first time, and one on how far back the run can go.
+/// Returns a line for each event, ordered by first occurrence, and a line on the times that the run can go back to.
 std::string history_text(const RunHistory& history, std::chrono::nanoseconds step);
-/// For programs: docs/cli.md.
+/// Returns JSON, as described in docs/cli.md.
 std::string history_json(const RunHistory& history, std::chrono::nanoseconds step);
 
 }  // namespace cohort::tool

@@ -7,11 +7,15 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "server/core/text.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/wording.hpp"
 
 namespace cohort::tool {
@@ -19,14 +23,14 @@ namespace {
 
 constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
 
-// Numbers with spaces or commas between.
+// Parses numbers that are separated by spaces or commas.
 std::vector<double> numbers_in(const std::string& text) {
   std::vector<double> numbers;
   std::size_t at = 0;
   while ((at = text.find_first_not_of(" ,\t", at)) != std::string::npos) {
     const std::size_t end = std::min(text.find_first_of(" ,\t", at), text.size());
     const auto number = parse_real(text.substr(at, end - at));
-    if (!number || !std::isfinite(*number)) throw UsageError("'" + text.substr(at, end - at) + "' is no number");
+    if (!number || !std::isfinite(*number)) throw UsageError("'" + text.substr(at, end - at) + "' is not a number");
     numbers.push_back(*number);
     at = end;
   }
@@ -39,7 +43,7 @@ Vector3 vector_in(const std::string& text) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-// As in SDF: roll about x, then pitch about y, then yaw about z, all of the world.
+// Parses a pose. Angles are those of SDF: roll about x, then pitch about y, then yaw about z, all axes of the world.
 WorldPose pose_in(const std::string& text) {
   const std::vector<double> numbers = numbers_in(text);
   if (numbers.size() != 3 && numbers.size() != 6)
@@ -62,7 +66,7 @@ std::string printed(const std::vector<std::string>& names) {
   return text;
 }
 
-// A subcommand that is one request, and what its options fill in.
+// A subcommand that is one request, and the variables that its options write.
 template <class Asked>
 struct RequestLine {
   CommandLine line;
@@ -71,13 +75,13 @@ struct RequestLine {
 
 struct Nothing {};
 
-// Subcommands that are one request.
+// The subcommands that are one request each.
 class Requests {
  public:
   // `command` must outlive the command line.
   Requests(CommandLine line, CtlCommand& command) : line_(std::move(line)), command_(command) {}
 
-  // `ask` takes the control and what was asked for, and returns what is printed.
+  // Adds a subcommand. `ask` takes the control and the parsed options, and returns the text to print.
   template <class Asked, class Ask>
   RequestLine<Asked> add(const std::string& name, const std::string& text, Ask ask) {
     const auto asked = std::make_shared<Asked>();
@@ -94,7 +98,9 @@ class Requests {
 };
 
 void add_name(CommandLine sub, std::string& entity) {
-  sub.add_option("NAME", entity, "Of an object, with its scope").required().type_name("");
+  sub.add_option("NAME", entity, "Name of the object; its scope is needed only if several objects have this name")
+      .required()
+      .type_name("");
 }
 
 Option add_vector(CommandLine sub, const std::string& name, Vector3& vector, const std::string& text) {
@@ -106,44 +112,45 @@ Option add_vector(CommandLine sub, const std::string& name, Vector3& vector, con
 
 void add_pose(CommandLine sub, WorldPose& pose) {
   sub.add_option_function<std::string>(
-         "--pose", [&pose](const std::string& value) { pose = pose_in(value); }, "Metres and radians, in the world")
+         "--pose", [&pose](const std::string& value) { pose = pose_in(value); },
+         "Pose in the world frame, in metres and radians")
       .type_name("\"X Y Z [ROLL PITCH YAW]\"")
       .required();
 }
 
 void add_time_commands(Requests& requests) {
-  requests.add<Nothing>("pause", "Hold the run at the next boundary",
+  requests.add<Nothing>("pause", "Pause the run at the next tick boundary",
                         [](Control& control, const Nothing&) { return control.pause(); });
-  requests.add<Nothing>("resume", "Let it go on", [](Control& control, const Nothing&) { return control.play(); });
+  requests.add<Nothing>("resume", "Resume the run", [](Control& control, const Nothing&) { return control.play(); });
   auto [step, steps] =
-      requests.add<std::uint64_t>("step", "Let a paused run make so many ticks, and wait for them",
+      requests.add<std::uint64_t>("step", "Advance a paused run by N ticks and wait until they are done",
                                   [](Control& control, std::uint64_t count) { return control.step(count); });
   steps = 1;
-  step.add_option("N", steps, "How many; 1 if it is not said")
+  step.add_option("N", steps, "Number of ticks (default: 1)")
       .check(whole_number(1, std::uint64_t{1} << 62))
       .type_name("");
   auto [speed, set_speed] =
-      requests.add<double>("speed", "Simulated seconds per second at the most",
+      requests.add<double>("speed", "Limit the speed, in simulated seconds per second",
                            [](Control& control, double factor) { return control.set_speed(factor); });
   speed
       .add_option_function<std::string>(
           "X", [&set = set_speed](const std::string& text) { set = text == "max" ? 0.0 : *parse_real(text); },
-          "max, or a number")
+          "max or a number")
       .required()
       .check(max_or_number_above_zero(1e9))
       .type_name("");
   using Seed = std::optional<std::uint64_t>;
-  auto [reset, to_reset] = requests.add<Seed>("reset", "Begin anew, the controllers attached",
+  auto [reset, to_reset] = requests.add<Seed>("reset", "Restart the run; controllers stay attached",
                                               [](Control& control, const Seed& seed) { return control.reset(seed); });
   reset
       .add_option_function<std::uint64_t>(
-          "--seed", [&to = to_reset](const std::uint64_t& seed) { to = seed; }, "Another seed")
+          "--seed", [&to = to_reset](const std::uint64_t& seed) { to = seed; }, "New seed (default: the same seed)")
       .check(whole_number(0, most))
       .type_name("N");
   auto [back, go_back] =
-      requests.add<double>("back", "Go back to the last kept snapshot at or before a time",
+      requests.add<double>("back", "Go back to the last snapshot at or before a time",
                            [](Control& control, double seconds) { return control.back(nanoseconds(seconds)); });
-  back.add_option("T", go_back, "Simulated seconds from the run's beginning")
+  back.add_option("T", go_back, "Simulated seconds since the start of the run")
       .required()
       .check(number_from_zero(most_seconds))
       .type_name("");
@@ -151,64 +158,113 @@ void add_time_commands(Requests& requests) {
                         [](Control& control, const Nothing&) { return control.quit(); });
 }
 
-// Reads the file of that name, if there is one; else a model of the world is meant.
-void take_model(Spawn& spawn) {
-  if (!std::filesystem::is_regular_file(spawn.model)) return;
-  const std::vector<char> text = read_file(spawn.model);
+// Sends the text of the model file.
+void take_file(Spawn& spawn, const std::filesystem::path& file) {
+  const std::vector<char> text = read_file(file);
   spawn.text.assign(text.begin(), text.end());
   spawn.model.clear();
 }
 
+// Spawns a model file, a model of the world, or a model that is installed with Cohort, also as model://NAME.
+ControlReply spawn_model(Control& control, Spawn what) {
+  constexpr std::string_view scheme = "model://";
+  if (std::filesystem::is_regular_file(what.model)) {
+    take_file(what, what.model);
+  } else if (what.model.starts_with(scheme)) {
+    what.model.erase(0, scheme.size());
+  } else if (std::filesystem::path(what.model).has_extension()) {
+    throw std::invalid_argument("there is no file '" + what.model + "'");
+  }
+  try {
+    control.spawn(what);
+  } catch (const ControlError& error) {
+    const bool is_unknown = !what.model.empty() && error.result == ControlResult::operation_failed &&
+                            std::string_view(error.what()).find("has no model") != std::string_view::npos;
+    const std::optional<std::filesystem::path> file = is_unknown ? installed_model(what.model) : std::nullopt;
+    if (!file) throw;
+    take_file(what, *file);
+    control.spawn(what);
+  }
+  return control.last_reply();
+}
+
+// Returns the scoped names that end in `name`: explorers/sbot_0 for sbot_0.
+std::vector<std::string> names_ending_in(Control& control, const std::string& name) {
+  std::vector<std::string> names = control.entities();
+  std::erase_if(names, [&](const std::string& each) { return !each.ends_with("/" + name); });
+  return names;
+}
+
+// Sends a request about the object of this name, or about the only object whose scoped name ends in it.
+template <class Ask>
+ControlReply ask_of_object(Control& control, const std::string& name, Ask ask) {
+  try {
+    return ask(name);
+  } catch (const ControlError& error) {
+    if (error.result != ControlResult::not_found) throw;
+    const std::vector<std::string> names = names_ending_in(control, name);
+    if (names.empty()) throw;
+    if (names.size() > 1)
+      throw std::invalid_argument("several objects are called '" + name + "', such as '" + names[0] + "' and '" +
+                                  names[1] + "': give the name with its scope");
+    return ask(names.front());
+  }
+}
+
 void add_spawn_commands(Requests& requests) {
-  auto [spawn, to_spawn] =
-      requests.add<Spawn>("spawn", "Add an object or a robot to the world", [](Control& control, Spawn what) {
-        take_model(what);
-        control.spawn(what);
-        return control.last_reply();
-      });
-  spawn.add_option("MODEL", to_spawn.model, "A model of the world, or a file with one (.sdf, .urdf, .yaml)")
+  auto [spawn, to_spawn] = requests.add<Spawn>("spawn", "Add an object or a robot to the world", spawn_model);
+  spawn
+      .add_option("MODEL", to_spawn.model,
+                  "Model file (.sdf, .urdf, .yaml), or name of a model of the world or of one installed with Cohort")
       .required()
       .type_name("");
-  spawn.add_option("--name", to_spawn.name, "Its name in the world").required().type_name("NAME");
-  spawn.add_option("--team", to_spawn.team, "That a robot joins, where several could be meant").type_name("NAME");
-  spawn.add_flag("--rename", to_spawn.allow_renaming, "Take another name where this one is taken");
+  spawn.add_option("--name", to_spawn.name, "Name of the new object in the world").required().type_name("NAME");
+  spawn.add_option("--team", to_spawn.team, "Team that a robot joins, if more than one is possible").type_name("NAME");
+  spawn.add_flag("--rename", to_spawn.allow_renaming, "Choose another name if this one is taken");
   add_pose(spawn, to_spawn.pose);
-  auto [remove, to_remove] =
-      requests.add<std::string>("remove", "Take an object out of the world",
-                                [](Control& control, const std::string& entity) { return control.remove(entity); });
+  auto [remove, to_remove] = requests.add<std::string>(
+      "remove", "Remove an object from the world", [](Control& control, const std::string& entity) {
+        return ask_of_object(control, entity, [&](const std::string& name) { return control.remove(name); });
+      });
   add_name(remove, to_remove);
 }
 
 void add_motion_commands(Requests& requests) {
   auto [pose, new_pose] = requests.add<EntityState>(
-      "set-pose", "Put an object elsewhere, at rest",
-      [](Control& control, const auto& state) { return control.set_pose(state.entity, state.pose); });
+      "set-pose", "Move an object to a pose, at rest", [](Control& control, const auto& state) {
+        return ask_of_object(control, state.entity,
+                             [&](const std::string& name) { return control.set_pose(name, state.pose); });
+      });
   add_name(pose, new_pose.entity);
   add_pose(pose, new_pose.pose);
   auto [velocity, new_twist] = requests.add<EntityState>(
-      "set-velocity", "Give an object a velocity",
-      [](Control& control, const auto& state) { return control.set_twist(state.entity, state.twist); });
+      "set-velocity", "Set the velocity of an object", [](Control& control, const auto& state) {
+        return ask_of_object(control, state.entity,
+                             [&](const std::string& name) { return control.set_twist(name, state.twist); });
+      });
   add_name(velocity, new_twist.entity);
-  add_vector(velocity, "--linear", new_twist.twist.linear, "Metres per second, in the world").required();
-  add_vector(velocity, "--angular", new_twist.twist.angular, "Radians per second, in the world");
+  add_vector(velocity, "--linear", new_twist.twist.linear, "Linear velocity in the world frame, in m/s").required();
+  add_vector(velocity, "--angular", new_twist.twist.angular, "Angular velocity in the world frame, in rad/s");
   struct Push {
     std::string entity;
     AppliedForce force;
   };
   auto [force, to_push] = requests.add<Push>(
-      "apply-force", "Push an object for a while",
-      [](Control& control, const Push& push) { return control.apply_force(push.entity, push.force); });
+      "apply-force", "Apply a force and a torque to an object", [](Control& control, const Push& push) {
+        return ask_of_object(control, push.entity,
+                             [&](const std::string& name) { return control.apply_force(name, push.force); });
+      });
   AppliedForce& push = to_push.force;
   add_name(force, to_push.entity);
-  add_vector(force, "--force", push.force, "Newtons, in the world");
-  add_vector(force, "--torque", push.torque, "Newton metres, in the world");
+  add_vector(force, "--force", push.force, "Force in the world frame, in N");
+  add_vector(force, "--torque", push.torque, "Torque in the world frame, in N m");
   force
       .add_option_function<double>(
           "--duration", [&push](const double& seconds) { push.duration = nanoseconds(seconds); },
-          "Simulated seconds (default: one step)")
+          "Duration in simulated seconds (default: one step)")
       .check(number_above_zero(9e9))
       .type_name("S");
-  force.add_option("--link", push.link, "Of the object (default: its root)").type_name("LINK");
+  force.add_option("--link", push.link, "Link of the object (default: the root link)").type_name("LINK");
 }
 
 void add_light_command(Requests& requests) {
@@ -217,7 +273,7 @@ void add_light_command(Requests& requests) {
     LightSetting setting;
   };
   auto [light, switched] = requests.add<Switched>(
-      "set-light", "Switch a light",
+      "set-light", "Switch a light on or off, or set its intensity and color",
       [](Control& control, const Switched& to) { return control.set_light(to.light, to.setting); });
   LightSetting& set = switched.setting;
   add_name(light, switched.light);
@@ -229,7 +285,7 @@ void add_light_command(Requests& requests) {
       .type_name("on|off");
   light
       .add_option_function<double>(
-          "--intensity", [&set](const double& intensity) { set.intensity = intensity; }, "Its intensity")
+          "--intensity", [&set](const double& intensity) { set.intensity = intensity; }, "Intensity of the light")
       .type_name("X");
   light
       .add_option_function<std::string>(
@@ -254,12 +310,13 @@ std::vector<char> read_file(const std::filesystem::path& file) {
 void add_ctl_options(CommandLine line, CtlCommand& command) {
   add_domain_option(line, command.connection.domains, domain_of_server);
   add_secure_option(line, command.connection.secure,
-                    "Folder of an identity that may control (default: $COHORT_SECURE)");
+                    "Folder of an identity that may control the run (default: $COHORT_SECURE)");
   line.require_subcommand();
   line.fallthrough();
   add_server_option(line, command.connection.server);
-  line.add_option("--timeout", command.timeout,
-                  "Seconds to wait (default: 5 for a server, 30 for what is asked, no end for step, reset and load)")
+  line.add_option(
+          "--timeout", command.timeout,
+          "Time limit in seconds (default: 5 to find the server, 30 for a reply, none for step, reset and load)")
       .check(number_above_zero(9e6))
       .type_name("S");
   Requests requests(line, command);
@@ -270,25 +327,28 @@ void add_ctl_options(CommandLine line, CtlCommand& command) {
 
   const auto add_file = [&](const std::string& name, const std::string& text, CtlCommand::What what) {
     CommandLine sub = line.add_subcommand(name, text);
-    sub.add_option("FILE", command.file, "Of the snapshot").required().type_name("");
+    sub.add_option("FILE", command.file, "Snapshot file").required().type_name("");
     sub.callback([&command, what] { command.what = what; });
   };
-  add_file("save", "Write a snapshot of the run to a file", CtlCommand::What::save);
-  add_file("load", "Let the run go on from a snapshot", CtlCommand::What::load);
-  CommandLine status = line.add_subcommand("status", "Say how the run is, and who is awaited");
-  status.add_flag("--watch", command.watch, "Again and again, twice a second");
-  status.add_flag("--json", command.json, "As JSON; with --watch an object on each line");
+  add_file("save", "Save a snapshot of the run to a file", CtlCommand::What::save);
+  add_file("load", "Load a snapshot, from which the run continues", CtlCommand::What::load);
+  CommandLine status =
+      line.add_subcommand("status", "Show the state of the run, and the controllers that it waits for");
+  status.add_flag("--watch", command.watch, "Update the status twice a second");
+  status.add_flag("--json", command.json, "Print JSON; with --watch, one object per line");
   status.callback([&] { command.what = CtlCommand::What::status; });
-  CommandLine history = line.add_subcommand("history", "Say what has happened, and how far back the run can go");
-  history.add_flag("--json", command.json, "As JSON");
+  CommandLine history =
+      line.add_subcommand("history", "Show the events of the run, and the snapshots that it can go back to");
+  history.add_flag("--json", command.json, "Print JSON");
   history.callback([&] { command.what = CtlCommand::What::history; });
   auto [entities, filter] = requests.add<std::string>(
-      "entities", "List what is in the world",
+      "entities", "List the objects in the world",
       [](Control& control, const std::string& expression) { return control.entities(expression); });
   entities.add_option("FILTER", filter, "POSIX extended regular expression").type_name("");
   line.footer(
-      "Examples: cohort ctl pause; cohort ctl step 10; cohort ctl spawn box --name crate_1 --pose \"1 0 0.1\";\n"
-      "cohort ctl --server 10.0.0.5 --domain 7 status --watch");
+      "Examples: cohort ctl step 10\n"
+      "          cohort ctl spawn post --name post_1 --pose \"1.6 0 0\"\n"
+      "          cohort ctl --server 10.0.0.5 --domain 7 status --watch");
 }
 
 }  // namespace cohort::tool

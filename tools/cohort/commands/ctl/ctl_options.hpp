@@ -11,7 +11,7 @@
 
 namespace cohort::tool {
 
-/// What the command line says of `cohort ctl`: docs/cli.md.
+/// The command line of `cohort ctl`; see docs/cli.md.
 struct CtlCommand {
   enum class What {
     request,
@@ -21,18 +21,18 @@ struct CtlCommand {
     load,
   };
   What what = What::request;
-  std::function<std::string(Control&)> request{};  ///< asks, and returns what is printed
+  std::function<std::string(Control&)> request{};  ///< executes the request, and returns the text to print
   Connection connection{};
-  std::filesystem::path file{};     ///< of a snapshot
+  std::filesystem::path file{};     ///< snapshot file
   std::optional<double> timeout{};  ///< [s]; none: by operation
   bool watch = false;
   bool json = false;
 };
 
-/// Throws std::runtime_error if the file cannot be read.
+/// Returns the contents of a file. Throws std::runtime_error if it cannot be read.
 std::vector<char> read_file(const std::filesystem::path& file);
 
-/// `command` must outlive the command line.
+/// Adds the options and subcommands. `command` must outlive the command line.
 void add_ctl_options(CommandLine line, CtlCommand& command);
 
 }  // namespace cohort::tool

@@ -13,7 +13,7 @@ namespace {
 
 std::string speed_text(double speed) { return speed == 0.0 ? "max" : fmt::format("{:g}", speed); }
 
-// `0..3,7`: in the words that select them.
+// Returns the selector of these ids, such as `0..3,7`.
 std::string ranges_of(const std::vector<std::uint32_t>& ids) {
   std::string text;
   for (std::size_t i = 0; i < ids.size();) {
@@ -51,8 +51,8 @@ std::string word_of(SimulationState state) {
 std::string status_text(const SimulationStatus& status) {
   std::string text = fmt::format("{}   {}   run {}, seed {}   {}\n", status.experiment, word_of(status.state),
                                  status.run, status.seed, counted(status.robots, "robot"));
-  text += fmt::format("tick {}   {:.2f} of {:.2f} s simulated   {:.2f} x real time (speed {})   hash {:016x}\n",
-                      status.tick, seconds(status.time), seconds(status.duration), status.real_time_factor,
+  text += fmt::format("tick {}   {:.2f}{} s simulated   {:.2f} x real time (speed {})   hash {:016x}\n", status.tick,
+                      seconds(status.time), of_duration(status.duration), status.real_time_factor,
                       speed_text(status.speed), status.state_hash);
   if (const std::string awaited = awaited_text(status); !awaited.empty()) text += awaited + "\n";
   if (status.controllers.empty()) return text + "no controller\n";
@@ -65,7 +65,7 @@ std::string status_text(const SimulationStatus& status) {
                         ranges_of(each.robots), each.due_tick,
                         each.awaited ? fmt::format("{:.1f} s", seconds(each.awaiting)) : "-", each.late,
                         microseconds(each.answer_p50), microseconds(each.answer_p99), each.rejected, each.resent,
-                        each.alive ? "" : "  gone or silent");
+                        each.alive ? "" : "  gone or not responding");
   return text;
 }
 

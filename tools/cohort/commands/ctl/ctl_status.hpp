@@ -3,15 +3,15 @@
 #include <cohort/control.hpp>
 #include <string>
 
-/// How `cohort ctl status` shows the status of a run.
+/// Output of `cohort ctl status`.
 namespace cohort::tool {
 
-/// For people: some lines on the run, and a table with a line for each controller.
+/// Returns some lines on the run, and a table with a line for each controller.
 std::string status_text(const SimulationStatus& status);
-/// For programs: docs/cli.md. `indent`: of each level in spaces; -1: all in one line.
+/// Returns JSON, as described in docs/cli.md. `indent`: spaces per level; -1: all in one line.
 std::string status_json(const SimulationStatus& status, int indent);
 
-/// A word for a state.
+/// Returns the name of a state.
 std::string word_of(SimulationState state);
 
 }  // namespace cohort::tool

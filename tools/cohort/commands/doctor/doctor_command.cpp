@@ -34,7 +34,8 @@ void print_json(const std::vector<Finding>& findings) {
   std::cout << list.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
 }
 
-// Who we are when we look for the server: the client of the folder, or an observer if it has all.
+// Returns the identity that looks for the server: the client of the folder, or the observer if the folder has all
+// identities.
 std::optional<wire::Identity> identity_in(const std::filesystem::path& folder) {
   if (folder.empty()) return std::nullopt;
   const std::filesystem::path observer = folder / "clients" / "observer";
@@ -50,20 +51,21 @@ std::vector<Finding> examine(const DoctorCommand& command) {
     if (!std::filesystem::exists(command.secure / "identity") && findings.back().health != Health::problem)
       for (const wire::Identity& door : wire::read_doors(command.secure)) doors.push_back(door.door);
   } else if (!command.network.starts_with("127.")) {
-    findings.push_back({"security", Health::warning, "none: whoever reaches " + command.network + " can drive robots",
-                        "'cohort security init DIR' makes identities for --secure DIR."});
+    findings.push_back({"security", Health::warning,
+                        "none: anyone who can reach " + command.network + " can drive the robots",
+                        "'cohort security init DIR' creates identities for --secure DIR."});
   }
   if (doors.empty()) doors.push_back(0);
   findings.push_back(check_ports(command.domain, command.network, doors));
   if (has_network) findings.push_back(check_firewall(command.domain, command.network));
-  // Where a machine cannot hear itself, DDS could not end its threads.
+  // If a machine cannot receive its own packets, DDS cannot end its threads.
   if (findings.back().health == Health::problem && findings.back().check == "firewall") {
-    findings.push_back({"server", Health::ok, "not looked for, since the firewall is in the way"});
+    findings.push_back({"server", Health::ok, "not checked: the firewall blocks it"});
   } else if (has_network) {
     try {
       findings.push_back(check_server(command, identity_in(command.secure), command.expects_server));
     } catch (const std::exception& error) {
-      findings.push_back({"server", Health::problem, error.what(), "See what else is wrong."});
+      findings.push_back({"server", Health::problem, error.what(), "Fix the other problems first."});
     }
   }
   for (const Finding& finding : {check_buffers("/proc"), check_limits("/proc", "/sys"), check_clock("/sys"),
@@ -88,20 +90,20 @@ int doctor(DoctorCommand command) {
 
 Subcommand add_doctor(CommandLine app) {
   const auto command = std::make_shared<DoctorCommand>();
-  CommandLine line = app.add_subcommand("doctor", "Look for what usually goes wrong, and say what to do");
+  CommandLine line = app.add_subcommand("doctor", "Diagnose common problems of the machine and the network");
   line.add_option("--server", command->server,
-                  "Address of the server that should answer (default: any of this machine)")
+                  "Address of a server that is expected to answer (default: any server on this machine)")
       .envname("COHORT_SERVER")
       .type_name("ADDRESS");
-  line.add_option("--domain", command->domain, "Its DDS domain (default: 0)")
+  line.add_option("--domain", command->domain, "DDS domain of the server (default: 0)")
       .envname("COHORT_DOMAIN")
       .check(whole_number(0, last_domain))
       .type_name("N");
-  line.add_option("--network", command->network, "Address of the interface that this machine is to serve on")
+  line.add_option("--network", command->network, "Address of the network interface to serve on")
       .envname("COHORT_NETWORK")
       .capture_default_str()
       .type_name("ADDRESS");
-  line.add_option("--secure", command->secure, "Folder of 'cohort security', or of one identity of it")
+  line.add_option("--secure", command->secure, "Folder made by 'cohort security', or the folder of one identity in it")
       .envname("COHORT_SECURE")
       .type_name("DIR");
   line.add_flag("--json", command->json, "Print the findings as JSON");

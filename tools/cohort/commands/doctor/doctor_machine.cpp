@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The first line; empty if there is no such file.
+// Returns the first line of a file; empty if the file does not exist.
 std::string line_of(const fs::path& file) {
   std::ifstream in(file);
   std::string line;
@@ -33,13 +33,13 @@ std::optional<std::uint64_t> number_of(const fs::path& file) {
   return error == std::errc() ? std::optional(number) : std::nullopt;
 }
 
-// `max` is no number: then there is no limit.
+// A limit that is a number; the value `max` means no limit.
 struct ProcessLimit {
   std::uint64_t most = 0;
   std::uint64_t now = 0;
 };
 
-// Of the control group that this process is in.
+// Returns the process limit of this process's control group.
 std::optional<ProcessLimit> process_limit(const fs::path& proc, const fs::path& sys) {
   std::string group = line_of(proc / "self/cgroup");
   if (!group.starts_with("0::/")) return std::nullopt;
@@ -61,15 +61,15 @@ double seconds_of(clockid_t clock) {
 Finding check_buffers(const fs::path& proc) {
   constexpr std::uint64_t wanted = 4'194'304;  // as Cohort asks for
   const auto most = number_of(proc / "sys/net/core/rmem_max");
-  if (!most) return {"buffers", Health::ok, "the kernel does not tell how large UDP receive buffers may be"};
+  if (!most) return {"buffers", Health::ok, "the kernel does not report the limit of UDP receive buffers"};
   const std::string found =
-      fmt::format("UDP receive buffers may have {} kB, Cohort asks for {} kB", *most / 1024, wanted / 1024);
+      fmt::format("UDP receive buffers are limited to {} kB; Cohort requests {} kB", *most / 1024, wanted / 1024);
   if (*most >= wanted) return {"buffers", Health::ok, found};
-  return {
-      "buffers", Health::warning, found,
-      fmt::format("With many clients or large observations, frames get lost and are sent again, which costs time but "
-                  "no bits. As root: sysctl -w net.core.rmem_max={}; to keep it, the same in /etc/sysctl.d",
-                  wanted)};
+  return {"buffers", Health::warning, found,
+          fmt::format(
+              "With many clients or large observations, frames are lost and resent. This costs time and does not "
+              "change results. As root: sysctl -w net.core.rmem_max={}; to make it permanent, add it to /etc/sysctl.d",
+              wanted)};
 }
 
 Finding check_limits(const fs::path& proc, const fs::path& sys) {
@@ -84,14 +84,14 @@ Finding check_limits(const fs::path& proc, const fs::path& sys) {
       fmt::format("open files {}, processes and threads {}", text(files.rlim_cur), text(processes.rlim_cur));
   std::string advice;
   if (files.rlim_cur < enough_files)
-    advice = fmt::format("Each client takes some files: 'ulimit -n {}' in this shell. ", enough_files);
+    advice = fmt::format("Each client needs several files: run 'ulimit -n {}' in this shell. ", enough_files);
   if (processes.rlim_cur < enough_processes)
-    advice += "Each client has some ten threads: 'ulimit -u' in this shell, or limits.conf, allows more. ";
+    advice += "Each client needs about ten threads: raise the limit with 'ulimit -u' in this shell or in limits.conf. ";
   if (const auto group = process_limit(proc, sys)) {
     found += fmt::format(", in this control group {} of {}", group->now, group->most);
     if (group->now + enough_processes > group->most)
       advice +=
-          "The control group (a container, or a systemd unit) is nearly full: raise pids.max, --pids-limit of the "
+          "The control group (of a container or a systemd unit) is near its limit: raise pids.max, --pids-limit of the "
           "container or TasksMax of the unit. ";
   }
   if (!advice.empty()) advice.pop_back();
@@ -102,25 +102,26 @@ Finding check_clock(const fs::path& sys) {
   const std::string source = line_of(sys / "devices/system/clocksource/clocksource0/current_clocksource");
   timespec resolution{};
   clock_getres(CLOCK_MONOTONIC, &resolution);
-  // How far the wall clock and the steady one part within a moment: slewing is slow, a jump is not.
+  // Drift between the wall clock and the steady clock in a short time: slewing is slow, a jump is not.
   constexpr auto moment = std::chrono::milliseconds(200);
   constexpr double least_jump = 0.005;  // [s]
   const double before = seconds_of(CLOCK_REALTIME) - seconds_of(CLOCK_MONOTONIC);
   std::this_thread::sleep_for(moment);
   const double jump = seconds_of(CLOCK_REALTIME) - seconds_of(CLOCK_MONOTONIC) - before;
   Finding finding{"clock", Health::ok,
-                  fmt::format("source {}, steady clock in steps of {} ns", source.empty() ? "unknown" : source,
+                  fmt::format("source {}, steady clock with a resolution of {} ns", source.empty() ? "unknown" : source,
                               resolution.tv_nsec)};
   if (source == "hpet" || source == "acpi_pm" || source == "jiffies") {
     finding.health = Health::warning;
     finding.advice =
-        "This clock is slow to read, which costs time in each tick; 'dmesg | grep -i tsc' says why it is in use.";
+        "This clock is slow to read, which costs time in each tick; 'dmesg | grep -i tsc' shows why it is used.";
   }
   if (std::abs(jump) > least_jump) {
     finding.health = Health::warning;
-    finding.found += fmt::format(", the wall clock jumped by {:.3f} s just now", jump);
+    finding.found += fmt::format(", the wall clock has just jumped by {:.3f} s", jump);
     finding.advice =
-        "Runs do not mind: they use the steady clock. Times in logs and certificates do: see what sets the clock.";
+        "Runs are not affected: they use the steady clock. Times in logs and certificates are: check the clock "
+        "synchronization.";
   }
   return finding;
 }
@@ -134,11 +135,12 @@ Finding check_processor(const fs::path& sys) {
   }
   Finding finding{"processor", Health::ok, fmt::format("{} core{}", cores, cores == 1 ? "" : "s")};
   if (const unsigned available = available_processors(); available < cores)
-    finding.found += fmt::format(", a control group's quota lets {} work", available);
+    finding.found += fmt::format(", a control group limits them to {}", available);
   if (!governors.empty()) finding.found += fmt::format(", frequency governor {}", fmt::join(governors, ", "));
   if (governors.contains("powersave") || governors.contains("conservative")) {
     finding.health = Health::warning;
-    finding.advice = "Short ticks never bring such cores to speed. As root: cpupower frequency-set -g performance";
+    finding.advice =
+        "With short ticks, these cores stay at a low frequency. As root: cpupower frequency-set -g performance";
   }
   return finding;
 }
@@ -149,7 +151,7 @@ Finding check_library() {
   const std::string found = fmt::format("Cyclone DDS {}, {}", built, library.string());
   if (library.filename().string().find("so." + built) != std::string::npos) return {"library", Health::ok, found};
   return {"library", Health::warning, found,
-          fmt::format("Cohort was built with {}, and another version seems to be in use: build it again, or mend "
+          fmt::format("Cohort was built with {}, but another version seems to be loaded: rebuild Cohort, or correct "
                       "LD_LIBRARY_PATH",
                       built)};
 }

@@ -59,13 +59,13 @@ class Udp {
   bool connect(const sockaddr_in& to) const {
     return ::connect(descriptor_, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0;
   }
-  // 0, or what errno says: of this one, or of the one before if the other side has said so meanwhile.
+  // Returns 0 or errno, which may be the error of the previous datagram if the other side has reported it meanwhile.
   int send() const { return ::send(descriptor_, "?", 1, 0) < 0 ? errno : 0; }
   bool receives_within(std::chrono::milliseconds patience) const {
     pollfd watched{descriptor_, POLLIN, 0};
     return poll(&watched, 1, static_cast<int>(patience.count())) == 1;
   }
-  // What came back: nothing is an answer too.
+  // Returns the pending error of the socket; 0 if there is none.
   int error() const {
     int error = 0;
     socklen_t size = sizeof error;
@@ -85,7 +85,8 @@ std::optional<sockaddr_in> socket_address(const std::string& address, std::uint1
   return result;
 }
 
-// Sockets of UDP ports, as the kernel lists them: `sl  local_address rem_address … inode`, addresses as HEX:PORT.
+// Returns the inodes of the sockets of a UDP port. The kernel lists them as `sl  local_address rem_address … inode`,
+// with addresses as HEX:PORT.
 std::vector<std::string> sockets_of_port(std::uint16_t port) {
   std::vector<std::string> inodes;
   for (const char* file : {"/proc/net/udp", "/proc/net/udp6"}) {
@@ -103,7 +104,7 @@ std::vector<std::string> sockets_of_port(std::uint16_t port) {
   return inodes;
 }
 
-// Whether an ephemeral port may be it.
+// Returns whether the kernel may use the port as an ephemeral port.
 bool is_ephemeral(std::uint16_t port) {
   std::ifstream in("/proc/sys/net/ipv4/ip_local_port_range");
   unsigned first = 0, last = 0;
@@ -116,7 +117,7 @@ bool is_own(const std::string& address) {
          std::ranges::any_of(own, [&](const Interface& i) { return i.address == address; });
 }
 
-// A closed port is told by the other machine's kernel; a firewall usually swallows.
+// Returns whether the other machine's kernel reports the port as closed; a firewall usually drops the datagram instead.
 bool says_that_it_is_closed(const std::string& address, std::uint16_t port) {
   const auto to = socket_address(address, port);
   const Udp udp;
@@ -160,15 +161,16 @@ std::vector<Finding> check_interfaces(const std::string& address) {
   Finding finding{"interface", Health::ok, fmt::format("{}", fmt::join(texts, ", "))};
   if (!is_own(address)) {
     finding.health = Health::problem;
-    finding.found = fmt::format("no interface that is up has {}; there are {}", address, finding.found);
-    finding.advice = "Give --network the address of one of these; 'ip address' says which are down.";
+    finding.found =
+        fmt::format("no active interface has the address {}; active interfaces: {}", address, finding.found);
+    finding.advice = "Give --network one of these addresses; 'ip address' also lists inactive interfaces.";
   } else if (address.starts_with("127.")) {
-    finding.found += "; a server on " + address + " is for this machine only";
-    if (outward > 0) finding.found += ", on another of these for its network";
+    finding.found += "; a server on " + address + " can be reached from this machine only";
+    if (outward > 0) finding.found += ", a server on another address from the network of that address";
   } else if (outward > 1) {
-    finding.found += fmt::format("; {} is used, clients have to be on its side", address);
+    finding.found += fmt::format("; {} is used: clients must be on its network", address);
   }
-  return {finding, {"multicast", Health::ok, "not needed: clients look for the server where they are told to"}};
+  return {finding, {"multicast", Health::ok, "not needed: clients connect to the address that they are given"}};
 }
 
 Finding check_ports(std::uint32_t domain, const std::string& address, const std::vector<std::uint32_t>& doors) {
@@ -183,7 +185,7 @@ Finding check_ports(std::uint32_t domain, const std::string& address, const std:
     finding.found += " are free";
     if (is_ephemeral(last)) {
       finding.health = Health::warning;
-      finding.advice = "Any program may be given one of them for a while: choose a domain below 100.";
+      finding.advice = "The kernel may assign these ports to any program: choose a domain below 100.";
     }
     return finding;
   }
@@ -199,8 +201,8 @@ Finding check_ports(std::uint32_t domain, const std::string& address, const std:
   } else {
     finding.health = Health::problem;
     finding.advice = fmt::format(
-        "Another program, or a second server, has this domain on {}: end it, or give server and "
-        "clients another with --domain.",
+        "Another program, or a second server, uses the ports of this domain on {}: end it, or choose another --domain "
+        "for server and clients.",
         address);
   }
   return finding;
@@ -211,16 +213,15 @@ Finding check_firewall(std::uint32_t domain, const std::string& address) {
   const auto own = socket_address(address, port);
   const Udp receiver;
   if (!own || !receiver.bind(*own))
-    return {"firewall", Health::ok, fmt::format("not tried: UDP port {} of {} is not free", port, address)};
+    return {"firewall", Health::ok, fmt::format("not tested: UDP port {} of {} is in use", port, address)};
   const Udp sender;
   if (sender.connect(*own) && sender.send() == 0 && receiver.receives_within(patience_with_kernel))
-    return {"firewall", Health::ok, fmt::format("a datagram to UDP port {} of {} comes back", port, address)};
-  return {
-      "firewall", Health::problem,
-      fmt::format("a datagram to UDP port {} of {} gets lost on this machine", port, address),
-      fmt::format("A firewall swallows it: let UDP ports {} and {} in ('nft list ruleset' or 'iptables -L' shows what "
-                  "stops them).",
-                  port, port + 1)};
+    return {"firewall", Health::ok, fmt::format("a datagram to UDP port {} of {} arrives", port, address)};
+  return {"firewall", Health::problem,
+          fmt::format("a datagram to UDP port {} of {} is lost on this machine", port, address),
+          fmt::format(
+              "A firewall drops it: allow UDP ports {} and {} ('nft list ruleset' or 'iptables -L' lists the rules).",
+              port, port + 1)};
 }
 
 Finding check_server(const DoctorCommand& command, const std::optional<wire::Identity>& identity, bool is_expected) {
@@ -228,36 +229,38 @@ Finding check_server(const DoctorCommand& command, const std::optional<wire::Ide
   const std::string where = fmt::format("{}, domain {}", command.server, command.domain);
   const Health bad = is_expected ? Health::problem : Health::ok;
   if (says_that_it_is_closed(command.server, port))
-    return {"server", bad, fmt::format("at {} nobody has UDP port {}", where, port),
-            is_expected ? "Start the server, or give its --domain; a server on another machine needs --network." : ""};
+    return {"server", bad, fmt::format("at {}, UDP port {} is closed", where, port),
+            is_expected ? "Start the server, or correct --domain; a server for other machines needs --network." : ""};
   const wire::Survey survey = wire::survey(command.domain, command.server, identity, patience_with_server);
   if (!survey.majors.empty())
     return {"server", Health::problem,
-            fmt::format("at {} somebody speaks version {} of the protocol, and this is version 1", where,
+            fmt::format("at {}, a server uses version {} of the protocol; this program uses version 1", where,
                         fmt::join(survey.majors, ", ")),
             "Install the same major version of Cohort on both sides."};
   if (!survey.models.empty()) {
-    std::string found = fmt::format("at {} a server answers; its robots: {}", where, fmt::join(survey.models, ", "));
+    std::string found = fmt::format("at {}, a server answers; its robots: {}", where, fmt::join(survey.models, ", "));
     if (survey.run)
       found += fmt::format("; run {} is at tick {}", *survey.run, survey.tick);
     else if (!identity || identity->role == wire::Role::observer)
-      found += "; no run goes on just now: it may wait for controllers";
+      found += "; no run is in progress: the server may be waiting for controllers";
     return {"server", Health::ok, found};
   }
   if (survey.has_server)
-    return {"server", Health::problem, fmt::format("at {} there is a server, but nothing that it sends arrives", where),
-            "Large messages get lost on the way: look for a firewall that drops fragments, and at the buffers."};
+    return {"server", Health::problem, fmt::format("at {}, there is a server, but none of its messages arrive", where),
+            "Large messages are lost: look for a firewall that drops fragments, and check the buffers."};
   const std::string holder = is_own(command.server) ? holder_of_port(port) : "";
   if (holder.ends_with("(cohort)") || (!holder.empty() && identity))
     return {"server", Health::problem,
-            fmt::format("at {} {} has UDP port {}, but does not let us in", where, holder, port),
-            identity ? "Their folders are not of one making, a certificate has expired, or it serves without --secure."
-                     : "It serves with --secure: give --secure DIR/clients/NAME."};
-  return {"server", bad, fmt::format("at {} nobody answers on UDP port {}", where, port),
-          is_expected
-              ? fmt::format("The address is wrong, a firewall swallows UDP ports {} and {}, or it serves {}.", port,
-                            port + 1, identity ? "without --secure or with another folder" : "with --secure")
-              : ""};
+            fmt::format("at {}, {} uses UDP port {}, but refuses the connection", where, holder, port),
+            identity ? "The certificates come from different authorities, a certificate has expired, or the server "
+                       "runs without --secure."
+                     : "The server runs with --secure: give --secure DIR/clients/NAME."};
+  return {
+      "server", bad, fmt::format("at {}, no server answers on UDP port {}", where, port),
+      is_expected
+          ? fmt::format("The address is wrong, a firewall drops UDP ports {} and {}, or the server runs {}.", port,
+                        port + 1, identity ? "without --secure or with another folder of identities" : "with --secure")
+          : ""};
 }
 
 }  // namespace cohort::tool

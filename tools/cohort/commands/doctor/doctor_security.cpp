@@ -22,17 +22,17 @@ Finding check_identity(const wire::Identity& identity) {
   const std::int64_t now = std::time(nullptr);
   const std::string who = fmt::format("{} ({}), door {}", identity.name, identity.folder.string(), identity.door);
   const std::string again = fmt::format(
-      "Remove its folders in server/ and clients/, make them anew with 'cohort security "
-      "add DIR {} --robots …', and hand the client's out again.",
+      "Remove its folders in server/ and clients/, create them again with 'cohort security add DIR {} --robots …', and "
+      "copy the client's folder to its machine.",
       identity.name);
   if (now >= validity.end) return {"security", Health::problem, who + ": expired at " + date_of(validity.end), again};
   if (now < validity.begin)
     return {"security", Health::problem,
-            fmt::format("{}: valid only from {} on, and it is {}", who, date_of(validity.begin), date_of(now)),
-            "The clock of this machine, or of the one where it was made, is wrong."};
+            fmt::format("{}: valid only from {}; the time is {}", who, date_of(validity.begin), date_of(now)),
+            "The clock of this machine, or of the machine that made the certificate, is wrong."};
   const fs::perms others = fs::perms::group_all | fs::perms::others_all;
   if ((fs::status(identity.folder / wire::key_file).permissions() & others) != fs::perms::none)
-    return {"security", Health::warning, who + ": others may read its key",
+    return {"security", Health::warning, who + ": other users can read its key",
             fmt::format("chmod 600 {}", (identity.folder / wire::key_file).string())};
   if (validity.end - now < soon)
     return {"security", Health::warning, who + ": expires at " + date_of(validity.end), again};
@@ -49,7 +49,7 @@ std::vector<Finding> check_security(const fs::path& folder) {
         is_one ? std::vector{wire::read_identity(folder)} : wire::read_doors(folder);
     for (const wire::Identity& identity : identities) findings.push_back(check_identity(identity));
   } catch (const std::exception& error) {
-    findings.push_back({"security", Health::problem, error.what(), "'cohort security init' makes such a folder."});
+    findings.push_back({"security", Health::problem, error.what(), "'cohort security init' creates this folder."});
   }
   return findings;
 }

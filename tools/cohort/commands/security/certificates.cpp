@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr const char* authority_key = "authority_key.pem";
 constexpr std::string_view server_name = "server";
 
-// What `openssl` prints. Its working folder is the one that the files are made in.
+// Runs `openssl` in the folder of the files, and returns its output.
 std::string openssl(const fs::path& folder, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "openssl");
   const ProgramResult result = run_program(arguments, folder);
@@ -27,7 +27,7 @@ std::string openssl(const fs::path& folder, std::vector<std::string> arguments) 
   return result.output;
 }
 
-// In certificates, and as permissions name who they are for: there in the order of RFC 2253, the last part first.
+// Returns the subject of a certificate. Permissions name it in the order of RFC 2253, the last part first.
 std::string subject_of(const std::string& door, std::string_view side) {
   return fmt::format("/O=Cohort/OU={}/CN={}", door, side);
 }
@@ -84,7 +84,7 @@ struct Allowed {
   const char* partition;  // empty: the default one
 };
 
-// docs/protocol.md, "Topics".
+// Returns the allowed topics; see docs/protocol.md, "Topics".
 std::vector<Allowed> allowed_to(wire::Role role, bool may_control) {
   std::vector<Allowed> allowed;
   switch (role) {
@@ -127,7 +127,7 @@ void sign(const fs::path& folder, const std::string& document, std::string_view 
   fs::remove(folder / "document.xml");
 }
 
-// One side of a door in a folder of its own inside of `making`, which has the authority.
+// Creates one side of a door, in its own folder inside `making`, which has the certificate authority.
 void make_side(const NewIdentity& identity, wire::Role role, const fs::path& making, const std::string& days) {
   const bool is_server = role == wire::Role::server;
   const std::string_view side = is_server ? server_name : std::string_view("client");
@@ -153,7 +153,7 @@ void make_side(const NewIdentity& identity, wire::Role role, const fs::path& mak
   fs::permissions(folder, fs::perms::owner_all);
 }
 
-// A folder beside the ones to come, its owner's alone, gone with this.
+// A temporary folder beside the folders to create, readable by its owner only, and removed by the destructor.
 class Workshop {
  public:
   explicit Workshop(const fs::path& parent) {
@@ -161,7 +161,7 @@ class Workshop {
     std::string pattern = (parent / ".making-XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr)
       throw std::runtime_error(
-          fmt::format("cannot write in {}: {}", parent.string(), std::generic_category().message(errno)));
+          fmt::format("cannot write to {}: {}", parent.string(), std::generic_category().message(errno)));
     path_ = pattern;
   }
   Workshop(const Workshop&) = delete;
@@ -182,7 +182,7 @@ void make_door(const NewIdentity& identity, const fs::path& server, const fs::pa
   const Workshop workshop(server.parent_path());
   const fs::path& making = workshop.path();
   const std::string validity = std::to_string(days);
-  const std::string validity_of_authority = std::to_string(days + 1);  // so that it does not end before
+  const std::string validity_of_authority = std::to_string(days + 1);  // so that the certificates expire first
   openssl(making, {"req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-sha256",
                    "-days", validity_of_authority, "-keyout", authority_key, "-out", std::string(wire::authority_file),
                    "-subj", subject_of(identity.name, "authority")});
@@ -202,7 +202,7 @@ Validity validity_of(const fs::path& certificate) {
     const auto found = result.output.find(name + "=");
     if (found == std::string::npos ||
         strptime(result.output.c_str() + found + name.size() + 1, "%Y-%m-%d %H:%M:%SZ", &time) == nullptr)
-      throw std::runtime_error(fmt::format("{} is no certificate: {}", certificate.string(), result.errors));
+      throw std::runtime_error(fmt::format("{} is not a certificate: {}", certificate.string(), result.errors));
     return static_cast<std::int64_t>(timegm(&time));
   };
   return {time_after("notBefore"), time_after("notAfter")};

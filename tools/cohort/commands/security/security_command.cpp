@@ -24,15 +24,15 @@ std::string joined(const std::vector<std::string>& texts) { return fmt::format("
 struct SecurityCommand {
   enum class What { init, add, list };
   What what = What::list;
-  fs::path folder{};                   ///< of all identities
-  std::vector<std::string> clients{};  ///< of init: NAME=SELECTORS
-  std::string name{};                  ///< of add
-  std::vector<std::string> robots{};   ///< of add: selectors
+  fs::path folder{};                   ///< folder of all identities
+  std::vector<std::string> clients{};  ///< for init: NAME=SELECTORS
+  std::string name{};                  ///< for add
+  std::vector<std::string> robots{};   ///< for add: selectors
   bool encrypt = false;
   unsigned days = 365;
 };
 
-// What an identity may do besides driving robots stands among their selectors.
+// Selectors may also contain rights other than driving robots.
 void take_rights(NewIdentity& identity, const std::vector<std::string>& selectors) {
   for (const std::string& selector : selectors) {
     if (selector == "control") identity.may_control = true;
@@ -41,11 +41,11 @@ void take_rights(NewIdentity& identity, const std::vector<std::string>& selector
 }
 
 std::string rights_of(const std::vector<std::string>& robots, bool may_control) {
-  if (robots.empty()) return may_control ? "control the run, and drive nothing" : "look on, and drive nothing";
+  if (robots.empty()) return may_control ? "control the run, but not drive robots" : "observe, but not drive robots";
   return "drive " + joined(robots) + (may_control ? ", and control the run" : "");
 }
 
-// `red=0..3,red/*`
+// Parses a client, such as `red=0..3,red/*`.
 NewIdentity parse_client(const std::string& text) {
   const auto equals = text.find('=');
   NewIdentity identity;
@@ -53,21 +53,22 @@ NewIdentity parse_client(const std::string& text) {
   if (equals != std::string::npos) take_rights(identity, split_selectors(std::string_view(text).substr(equals + 1)));
   if (identity.robots.empty() && !identity.may_control)
     throw std::invalid_argument(
-        fmt::format("'{}' does not say which robots that client may drive; expected such as {}=explorers/*", text,
-                    identity.name.empty() ? "red" : identity.name));
+        fmt::format("'{}' does not name the robots that the client may drive; expected, for example, {}=explorers/*",
+                    text, identity.name.empty() ? "red" : identity.name));
   return identity;
 }
 
 void check_name(const std::string& name) {
   if (!wire::is_identity_name(name))
-    throw std::invalid_argument(fmt::format("'{}' is no name for a client: up to 40 letters, digits, _ and -", name));
+    throw std::invalid_argument(
+        fmt::format("'{}' is not a valid client name; expected up to 40 letters, digits, _ and -", name));
 }
 
 void initialise(const SecurityCommand& command) {
   const fs::path& folder = command.folder;
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
     throw std::invalid_argument(
-        fmt::format("{} exists and is no empty folder; 'cohort security add' adds a client to one that was made before",
+        fmt::format("{} exists and is not an empty folder; 'cohort security add' adds a client to an existing folder",
                     folder.string()));
   std::vector<NewIdentity> identities = {{.name = "observer", .role = wire::Role::observer}};
   for (const std::string& client : command.clients) identities.push_back(parse_client(client));
@@ -77,12 +78,12 @@ void initialise(const SecurityCommand& command) {
     check_name(identity.name);
     const auto same = [&](const NewIdentity& other) { return other.name == identity.name; };
     if (std::count_if(identities.begin(), identities.end(), same) > 1)
-      throw std::invalid_argument(fmt::format("there are two clients of the name '{}'", identity.name));
+      throw std::invalid_argument(fmt::format("there are two clients named '{}'", identity.name));
     identity.door = door;
     if (command.encrypt) identity.protection = "encrypt";
   }
   if (identities.size() > wire::last_door + 1)
-    throw std::invalid_argument(fmt::format("at most {} clients have a port of their own", wire::last_door));
+    throw std::invalid_argument(fmt::format("expected at most {} clients", wire::last_door));
   const bool is_new = !fs::exists(folder);
   try {
     for (const NewIdentity& identity : identities)
@@ -93,9 +94,8 @@ void initialise(const SecurityCommand& command) {
     throw;
   }
   std::cout << fmt::format(
-      "{0} is made. {0}/server is the server's: cohort serve … --secure {0}\n"
-      "Each folder in {0}/clients belongs to one client: copy it whole to the client's machine, and to nobody "
-      "else's:\n",
+      "created {0}. {0}/server belongs to the server: cohort serve … --secure {0}\n"
+      "Each folder in {0}/clients belongs to one client: copy the whole folder to that client's machine only:\n",
       folder.string());
   for (const NewIdentity& identity : identities)
     std::cout << fmt::format("  --secure {}  {}\n", client_folder(folder, identity.name).string(),
@@ -106,24 +106,24 @@ void add(const SecurityCommand& command) {
   check_name(command.name);
   const std::vector<wire::Identity> doors = wire::read_doors(command.folder);
   if (!fs::is_directory(command.folder / "server"))
-    throw std::invalid_argument(fmt::format("{} is not what 'cohort security init' made", command.folder.string()));
+    throw std::invalid_argument(fmt::format("{} was not created by 'cohort security init'", command.folder.string()));
   for (const wire::Identity& door : doors)
     if (door.name == command.name)
       throw std::invalid_argument(fmt::format(
-          "{} has a client '{}' already; to make it anew, remove {} and {}", command.folder.string(), command.name,
+          "{} already has a client '{}'; to create it again, remove {} and {}", command.folder.string(), command.name,
           server_folder(command.folder, command.name).string(), client_folder(command.folder, command.name).string()));
   NewIdentity identity{.name = command.name, .protection = doors.front().protection};
   take_rights(identity, command.robots);
   if (identity.robots.empty() && !identity.may_control)
-    throw std::invalid_argument(fmt::format("'{}' could do nothing: expected robots or 'control'", command.name));
-  // The first that is free: a client that was removed leaves a gap.
+    throw std::invalid_argument(fmt::format("'{}' would have no rights; expected robots or 'control'", command.name));
+  // The first free door: a removed client leaves a gap.
   while (std::ranges::find(doors, identity.door, &wire::Identity::door) != doors.end()) ++identity.door;
   if (identity.door > wire::last_door)
-    throw std::invalid_argument(fmt::format("at most {} clients have a port of their own", wire::last_door));
+    throw std::invalid_argument(fmt::format("expected at most {} clients", wire::last_door));
   const fs::path client = client_folder(command.folder, identity.name);
-  if (fs::exists(client)) throw std::invalid_argument(fmt::format("{} exists already", client.string()));
+  if (fs::exists(client)) throw std::invalid_argument(fmt::format("{} already exists", client.string()));
   make_door(identity, server_folder(command.folder, identity.name), client, command.days);
-  std::cout << fmt::format("{} is made: it may {}. The server takes it when it is started again with this folder.\n",
+  std::cout << fmt::format("created {}: it may {}. Restart the server with this folder to accept it.\n",
                            client.string(), rights_of(identity.robots, identity.may_control));
 }
 
@@ -137,7 +137,7 @@ void list(const SecurityCommand& command) {
     std::cout << fmt::format("{:<20} {:<6} {:<11} {:<16} {}{}\n", door.name, door.door,
                              door.protection == "encrypt" ? "encrypted" : "signed", until,
                              door.robots.empty()
-                                 ? door.may_control ? "nothing; controls the run" : "nothing, only look on"
+                                 ? door.may_control ? "nothing; controls the run" : "nothing; observes only"
                                  : joined(door.robots) + (door.may_control ? "; controls the run" : ""),
                              is_over ? "   EXPIRED" : "");
   }
@@ -147,22 +147,23 @@ void list(const SecurityCommand& command) {
 
 Subcommand add_security(CommandLine app) {
   const auto command = std::make_shared<SecurityCommand>();
-  CommandLine line = app.add_subcommand("security", "Make and list who may drive what, with certificates");
+  CommandLine line = app.add_subcommand("security", "Create certificates and permissions, and list them");
   line.require_subcommand();
   const auto add_folder = [command](CommandLine sub) {
-    sub.add_option("DIR", command->folder, "Folder of all identities").required().type_name("");
+    sub.add_option("DIR", command->folder, "Folder of the identities").required().type_name("");
   };
   const auto add_days = [command](CommandLine sub) {
-    sub.add_option("--days", command->days, "How long the certificates are valid")
+    sub.add_option("--days", command->days, "Validity of the certificates in days")
         .check(whole_number(1, longest_validity))
         .capture_default_str()
         .type_name("N");
   };
-  CommandLine init_line = line.add_subcommand("init", "Make certificates and permissions for a server and its clients");
+  CommandLine init_line =
+      line.add_subcommand("init", "Create certificates and permissions for a server and its clients");
   add_folder(init_line);
   init_line
       .add_option("--client", command->clients,
-                  "A client and what it may drive, control too; may be repeated (default: controllers=all)")
+                  "Client, and the robots it may drive, or control; may be repeated (default: controllers=all)")
       .one_value()
       .type_name("NAME=SEL[,SEL...]");
   init_line.add_flag("--encrypt", command->encrypt, "Encrypt all messages (default: sign them)");
@@ -170,12 +171,13 @@ Subcommand add_security(CommandLine app) {
   init_line.callback([command] { command->what = SecurityCommand::What::init; });
   init_line.footer("Example: cohort security init keys --client red=red/* --client operator=none,control");
 
-  CommandLine add_line = line.add_subcommand("add", "Make one more client");
+  CommandLine add_line = line.add_subcommand("add", "Add a client");
   add_folder(add_line);
-  add_line.add_option("NAME", command->name, "Of the client: letters, digits, _ and -").required().type_name("");
+  add_line.add_option("NAME", command->name, "Name of the client: letters, digits, _ and -").required().type_name("");
   add_line
-      .add_option("--robots", command->robots,
-                  "What it may drive: all, an id, ids A..B, a name with *, none; and control; by commas")
+      .add_option(
+          "--robots", command->robots,
+          "Robots it may drive (all, an id, ids A..B, a name with *, or none), and control, separated by commas")
       .required()
       .comma_separated()
       .type_name("SEL[,SEL...]");
@@ -183,7 +185,7 @@ Subcommand add_security(CommandLine app) {
   add_line.callback([command] { command->what = SecurityCommand::What::add; });
   add_line.footer("Example: cohort security add keys green --robots green/*");
 
-  CommandLine list_line = line.add_subcommand("list", "Say who may drive what, and until when certificates are valid");
+  CommandLine list_line = line.add_subcommand("list", "List clients, their rights, and when their certificates expire");
   add_folder(list_line);
   list_line.callback([command] { command->what = SecurityCommand::What::list; });
   list_line.footer("Example: cohort security list keys");

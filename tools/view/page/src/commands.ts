@@ -1,12 +1,12 @@
 import { defaultSteering, readSteer } from "./steering";
 
-/** What can be typed in the console. */
+/** Commands of the console. */
 export interface Command {
   name: string;
   usage: string; // its arguments
   help: string;
-  complete?: (index: number) => readonly string[]; // what an argument may be
-  run: (args: string[]) => unknown; // what it says, if that is a text, now or later
+  complete?: (index: number) => readonly string[]; // candidates for an argument
+  run: (args: string[]) => unknown; // its output, if that is a text or a promise of one
 }
 
 /** `line` is its name, and after it its arguments. */
@@ -85,7 +85,7 @@ export class Commands {
       const kept = localStorage.getItem(storage);
       if (kept) this.profile = readProfile(kept);
     } catch {
-      // What is kept is damaged, or nothing may be kept: begin with what everybody has.
+      // The stored profile is damaged, or storage is not allowed: begin with the default profile.
     }
     for (const each of this.ownCommands()) this.add(each);
   }
@@ -102,14 +102,14 @@ export class Commands {
   keys(): Readonly<Record<string, string>> {
     return this.profile.keys;
   }
-  /** What a held key does to a robot that is driven. */
+  /** Effect of a held key on a driven robot. */
   steeringOfKey(key: string): string | undefined {
     return this.profile.steering[key];
   }
 
   /** Runs a line or a script. Throws Error with a sentence for what cannot be done. */
   async run(text: string, depth = 0): Promise<string> {
-    if (depth > deepestAlias) throw new Error("an alias leads back to itself");
+    if (depth > deepestAlias) throw new Error("the alias refers to itself");
     const lines = statements(text);
     if (lines.length > mostLines) throw new Error(`a script has at most ${mostLines} commands`);
     const said: string[] = [];
@@ -117,7 +117,7 @@ export class Commands {
     return said.filter((each) => each !== "").join("\n");
   }
 
-  /** What the last word of a line may be. */
+  /** Returns the possible completions of the last word of a line. */
   complete(line: string): string[] {
     const given = words(line);
     if (line === "" || line.endsWith(" ")) given.push("");
@@ -194,37 +194,37 @@ export class Commands {
     return [
       command(
         "help [COMMAND]",
-        "says what there is",
+        "lists the commands",
         ([name]) => this.help(name),
         () => this.names(),
       ),
       command(
         "bind [KEY COMMAND]",
-        "a key or mouse button does a command; without arguments lists them",
+        "binds a key or mouse button to a command; without arguments lists the bindings",
         change("keys", "bind KEY COMMAND"),
         (index) => (index === 0 ? Object.keys(this.profile.keys) : this.names()),
       ),
-      command("unbind KEY", "the key does nothing any more", forget("keys", "unbind KEY"), () =>
+      command("unbind KEY", "removes the binding of a key", forget("keys", "unbind KEY"), () =>
         Object.keys(this.profile.keys),
       ),
       command(
         "steer [KEY DIRECTION | KEY CHANNEL VALUE]",
-        "a key that drives while it is held: ahead, back, left, right, or a channel; without arguments lists them",
+        "drives while a key is held: ahead, back, left, right, or a channel; without arguments lists these keys",
         change("steering", "steer KEY ahead|back|left|right, or steer KEY CHANNEL VALUE", readSteer),
         (index) => (index === 0 ? Object.keys(this.profile.steering) : ["ahead", "back", "left", "right"]),
       ),
-      command("unsteer KEY", "the key drives no more", forget("steering", "unsteer KEY"), () =>
+      command("unsteer KEY", "removes a driving key", forget("steering", "unsteer KEY"), () =>
         Object.keys(this.profile.steering),
       ),
       command(
         "alias [NAME COMMAND]",
-        "a word for a command; without arguments lists them",
+        "defines another name for a command; without arguments lists the aliases",
         change("aliases", "alias NAME COMMAND"),
       ),
       command("unalias NAME", "forgets it", forget("aliases", "unalias NAME"), () => Object.keys(this.profile.aliases)),
       command(
         "script [NAME COMMANDS]",
-        "keeps a script, its commands parted by ';'",
+        "saves a script of commands separated by ';'",
         change("scripts", "script NAME COMMANDS"),
       ),
       command(
@@ -237,9 +237,9 @@ export class Commands {
         },
         () => Object.keys(this.profile.scripts),
       ),
-      command("wait SECONDS", "before the next command", async ([time]) => {
+      command("wait SECONDS", "waits before the next command", async ([time]) => {
         const seconds = Number(time);
-        if (!(seconds >= 0 && seconds <= 3600)) throw new Error("expected seconds, up to 3600");
+        if (!(seconds >= 0 && seconds <= 3600)) throw new Error("expected a time from 0 to 3600 seconds");
         await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
       }),
     ];
@@ -257,7 +257,7 @@ function readProfile(text: string): Profile {
   const read = JSON.parse(text) as Partial<Record<keyof Profile, unknown>>;
   const strings = (value: unknown, name: string): Record<string, string> => {
     if (typeof value !== "object" || value === null || !Object.values(value).every((each) => typeof each === "string"))
-      throw new Error(`this is no profile: its ${name} are no texts`);
+      throw new Error(`not a profile: its ${name} are not strings`);
     return { ...(value as Record<string, string>) };
   };
   return {

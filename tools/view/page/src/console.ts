@@ -53,7 +53,7 @@ export class ConsolePanel {
     }
   }
 
-  // What went wrong, for whoever did it without the console.
+  // Shows an error of an action that did not come from the console.
   private call(text: string): void {
     const told = element("told");
     told.textContent = text;

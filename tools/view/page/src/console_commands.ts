@@ -34,7 +34,7 @@ async function ask(connection: Connection, request: ViewRequest): Promise<string
   return text;
 }
 
-/** What can be said in the console beside what Commands know themselves. */
+/** Adds the commands of the console beside those of Commands itself. */
 export function addConsoleCommands(parts: Parts): void {
   for (const each of [
     ...playbackCommands(parts),
@@ -58,22 +58,22 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
     plain("play", "goes on"),
     plain("pause", "stands still"),
     plain("replay", "shows the recording of a run that has ended"),
-    command("step [TICKS]", "goes on by ticks, one if none is said; back where seek can", ([ticks]) =>
+    command("step [TICKS]", "steps by a number of ticks (default: 1); negative numbers step back where 'seek' can", ([ticks]) =>
       ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }),
     ),
     command(
       "seek SECONDS",
-      "goes to a time of a recording, or back to one of a server that keeps snapshots",
+      "goes to a time of a recording, or back in a run whose server keeps snapshots",
       ([time]) => ask(connection, { operation: "seek", number: numberOf(time, "seconds") }),
     ),
     command(
       "speed FACTOR",
-      "simulated seconds a second; max: as fast as it goes",
+      "sets simulated seconds per second; max: as fast as possible",
       ([factor]) => speed(factor === "max" ? 0 : numberOf(factor, "a factor, or max")),
       () => ["max", ...speeds.map(String)],
     ),
-    command("faster", "the next speed up", () => speed(next(true))),
-    command("slower", "the next speed down", () => speed(next(false))),
+    command("faster", "selects the next higher speed", () => speed(next(true))),
+    command("slower", "selects the next lower speed", () => speed(next(false))),
   ];
 }
 
@@ -97,15 +97,15 @@ function cameraCommands({ viewer }: Parts): Command[] {
       names,
     );
   return [
-    choose("orbit", "turns about what is looked at"),
+    choose("orbit", "orbits the camera about its target"),
     choose("top", "looks from above"),
-    choose("fly", "moves by keys: w a s d, q and z"),
-    attach("follow", "goes along with an object or robot"),
-    attach("eye", "looks as a robot does"),
-    command("home", "looks at everything", () => viewer.home()),
+    choose("fly", "flies by the keys w a s d, q and z"),
+    attach("follow", "follows an object or robot"),
+    attach("eye", "looks through the eye of a robot"),
+    command("home", "shows the whole world", () => viewer.home()),
     command(
       "select NAME",
-      "chooses an object or robot, by its name or id",
+      "selects an object or robot by its name or id",
       ([name]) => {
         viewer.select(entityOf(name));
         return viewer.selectedEntity?.name ?? "";
@@ -115,13 +115,13 @@ function cameraCommands({ viewer }: Parts): Command[] {
     command("deselect", "chooses nothing", () => viewer.select(undefined)),
     command(
       "viewpoint [save NAME | NAME]",
-      "keeps or takes a place to look from; without arguments lists them",
+      "saves or recalls a viewpoint; without arguments lists them",
       (args) => viewpoint(viewer, args),
       () => ["save", ...Object.keys(viewpoints())],
     ),
     command(
       "where [NAME]",
-      "says where it is",
+      "prints a position and heading",
       ([name]) => {
         const { position, heading } = viewer.poseOf(entityOf(name));
         return `${position.map((each) => each.toFixed(4)).join(" ")} m, heading ${heading.toFixed(3)} rad`;
@@ -129,7 +129,7 @@ function cameraCommands({ viewer }: Parts): Command[] {
       names,
     ),
     command("plot CHANNEL", "plots a channel of the selected robot", ([name]) => {
-      if (!viewer.inspector.plot(name ?? "")) throw new Error(`what is selected has no channel '${name ?? ""}'`);
+      if (!viewer.inspector.plot(name ?? "")) throw new Error(`the selected robot has no channel '${name ?? ""}'`);
     }),
   ];
 }
@@ -185,27 +185,27 @@ function pictureCommands({ viewer, connection, console, timeBar, commands, canva
       },
       () => ["light", "dark"],
     ),
-    command("screenshot", "the picture as PNG", async () => {
+    command("screenshot", "saves the picture as PNG", async () => {
       download(await screenshot(canvas, () => viewer.draw(performance.now())), "cohort.png");
       return "cohort.png";
     }),
-    command("film", "begins or ends recording the picture as WebM", () => {
+    command("film", "starts or stops recording the picture as WebM", () => {
       if (film.isOn) film.stop();
       else film.start();
       return film.isOn ? "recording; 'film' ends it" : "cohort.webm";
     }),
-    command("fullscreen", "fills the screen, or no longer", async () => {
+    command("fullscreen", "enters or leaves full screen", async () => {
       if (document.fullscreenElement) await document.exitFullscreen();
       else await document.documentElement.requestFullscreen();
     }),
-    command("console", "opens or closes this", () => console.toggle()),
-    command("events", "shows or hides what happened", () => {
+    command("console", "opens or closes the console", () => console.toggle()),
+    command("events", "shows or hides the events", () => {
       const panel = element("events");
       panel.hidden = !panel.hidden;
     }),
     command(
       "profile export|import",
-      "keys, aliases and scripts as a file",
+      "exports or imports keys, aliases and scripts as a file",
       async ([what]) => {
         if (what === "export")
           download(new Blob([commands.exportProfile()], { type: "application/json" }), "cohort-profile.json");
@@ -227,10 +227,11 @@ function worldCommands({ viewer, connection }: Parts): Command[] {
   const numbers = (args: string[], count: number, what: string): number[] =>
     Array.from({ length: count }, (_, i) => numberOf(args[i], what));
   return [
-    command("reset", "begins the run anew", () => ask(connection, { operation: "reset" })),
+    command("reset", "restarts the run from its beginning", () => ask(connection, { operation: "reset" })),
+    command("shutdown", "ends the run and its server", () => ask(connection, { operation: "shutdown" })),
     command(
       "spawn MODEL NAME X Y [Z]",
-      "brings an object into the world",
+      "adds an object to the world",
       ([model, name, ...at]) =>
         ask(connection, {
           operation: "spawn",
@@ -242,13 +243,13 @@ function worldCommands({ viewer, connection }: Parts): Command[] {
     ),
     command(
       "remove NAME",
-      "takes an object out",
+      "removes an object from the world",
       ([name]) => ask(connection, { operation: "remove", name: whole(name) }),
       names,
     ),
     command(
       "move NAME X Y [Z [HEADING]]",
-      "puts an object elsewhere, upright",
+      "moves an object and sets it upright",
       ([name, ...at]) =>
         ask(connection, {
           operation: "move",
@@ -265,7 +266,7 @@ function worldCommands({ viewer, connection }: Parts): Command[] {
     ),
     command(
       "push NAME FX FY [FZ]",
-      "a force for a tenth of a second [N]",
+      "applies a force [N] for 0.1 s",
       ([name, ...force]) =>
         ask(connection, {
           operation: "push",
@@ -286,7 +287,7 @@ export function showPressed(viewer: Viewer): void {
   }
 }
 
-/** What was chosen before, or else what the system prefers. */
+/** Returns the theme that was chosen before, or else the one that the system prefers. */
 export function preferredTheme(): "light" | "dark" {
   try {
     const kept = localStorage.getItem(themeKey);

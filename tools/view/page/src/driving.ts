@@ -4,7 +4,7 @@ import type { Connection } from "./connection";
 import type { ConsolePanel } from "./console";
 import { element } from "./element";
 import { none, type SceneChannel } from "./messages";
-import { commandOf, neutralOf, padOf, readSteer, type Steer, steerOfPad, wheelsOf } from "./steering";
+import { commandOf, neutralOf, padOf, readSteer, type Steer, sliderEnds, steerOfPad, wheelsOf } from "./steering";
 import type { Viewer } from "./viewer";
 
 const interval = 50; // [ms] from one request to the next at the least
@@ -51,11 +51,11 @@ export class Driving {
     return [
       command(
         "drive [NAME]",
-        "takes a robot of a server and drives it by keys (steer) or a game pad",
+        "claims a robot and drives it by keys (see steer) or a game pad",
         ([name]) => this.drive(name),
         robots,
       ),
-      command("release", "lets the robot go that is driven", () => this.release()),
+      command("release", "releases the driven robot", () => this.release()),
     ];
   }
 
@@ -67,7 +67,7 @@ export class Driving {
     if (!scene || !robot || robot.robot === none)
       throw new Error(name === undefined ? "select a robot first" : `there is no robot '${name}'`);
     if (this.driven?.name === robot.name) return `drives ${robot.name}`;
-    if (this.isClaiming) throw new Error("a robot is asked for already");
+    if (this.isClaiming) throw new Error("a robot is already being claimed");
     if (this.driven) await this.release();
     this.isClaiming = true;
     this.show();
@@ -92,7 +92,7 @@ export class Driving {
     return text;
   }
 
-  /** Whether it was one to drive with. */
+  /** Returns whether it was a driving key. */
   keyDown({ key, code }: KeyboardEvent): boolean {
     if (!this.driven) return false;
     if (key === "Escape") {
@@ -112,7 +112,7 @@ export class Driving {
     const robot = this.selectedRobot();
     const driven = robot === this.driven?.name ? this.driven : undefined;
     this.button.hidden = robot === undefined;
-    this.button.textContent = this.isClaiming ? "asks for it …" : driven ? "let go" : "drive";
+    this.button.textContent = this.isClaiming ? "claiming …" : driven ? "let go" : "drive";
     this.button.disabled = this.isClaiming;
     this.button.classList.toggle("on", driven !== undefined);
     element("sliders").replaceChildren(...(driven ? this.sliders(driven) : []));
@@ -168,7 +168,7 @@ export class Driving {
     const text = [
       `drives ${this.driven.name}`,
       pad ? `${by}, or the left stick of ${pad.id}` : by,
-      "Escape lets go",
+      "Escape releases",
     ].join(" · ");
     if (line.textContent !== text) line.textContent = text;
   }
@@ -186,8 +186,9 @@ export class Driving {
     const label = document.createElement("label");
     const input = document.createElement("input");
     const output = document.createElement("output");
-    const isBounded = Number.isFinite(lower) && Number.isFinite(upper);
-    Object.assign(input, { type: isBounded ? "range" : "number", min: String(lower), max: String(upper), step: "any" });
+    const [least, most] = sliderEnds(unit, lower, upper);
+    const isBounded = Number.isFinite(least) && Number.isFinite(most);
+    Object.assign(input, { type: isBounded ? "range" : "number", min: String(least), max: String(most), step: "any" });
     const say = (): void => {
       output.textContent = `${Number(driven.base[at].toFixed(3))}${unit === "1" ? "" : ` ${unit}`}`;
     };

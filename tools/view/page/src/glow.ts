@@ -74,7 +74,7 @@ interface Lamp {
   circle: LineLoop | undefined;
 }
 
-/** What shines: LEDs as points with a halo, lamps as billboards with the circle that they reach. */
+/** Lights: LEDs as points with a halo, lamps as billboards with the circle that they reach. */
 export class Glow {
   readonly group = new Group();
   private readonly points: Points<BufferGeometry, ShaderMaterial>;

@@ -21,7 +21,7 @@ interface Plot {
   data: number[][];
 }
 
-/** What the selected entity is, where it is, what it senses and does. */
+/** Kind, pose, sensor readings and commands of the selected entity. */
 export class Inspector {
   private model: SceneModel | undefined;
   private robot: SceneRobot | undefined; // as it was last

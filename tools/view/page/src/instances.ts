@@ -51,7 +51,7 @@ interface Drawn {
   count: number;
 }
 
-/** One link of a model, for whoever wants to know where a ray meets it. */
+/** One link of a model, to find out where a ray meets it. */
 export interface LinkShape {
   model: number;
   link: number;

@@ -16,6 +16,8 @@ const canvas = element("canvas") as HTMLCanvasElement;
 const clickSlack = 4; // [pixels] that a mouse may move in a click
 
 let bytes = 0;
+let unrecorded = ""; // why the recording of the run has ended, once it has
+let notes: readonly string[] = []; // from the last status
 
 const viewer = new Viewer(canvas, (robot) => {
   connection.want("/cohort/robots", robot !== undefined);
@@ -83,12 +85,20 @@ function showStatus(status: ViewStatus): void {
   document.title = `${status.name} · Cohort`;
   element("factor").textContent = status.is_playing ? `${status.real_time_factor.toFixed(2)} ×` : "paused";
   const waiting = status.awaited.length > 0 ? `waits for ${status.awaited.join(", ")}` : "";
-  element("note").hidden = !status.note && !waiting;
-  element("note").textContent = [status.note, waiting].filter((each) => each !== "").join(" · ");
+  notes = [status.note, waiting];
+  showNotes();
+}
+
+function showNotes(): void {
+  const text = [unrecorded && `NOT RECORDED: ${unrecorded}`, ...notes].filter((each) => each !== "").join(" · ");
+  element("note").hidden = text === "";
+  element("note").textContent = text;
 }
 
 function showEvents(events: readonly ViewEvent[]): void {
   timeBar.mark(events);
+  unrecorded = events.find(({ kind }) => kind === "unrecorded")?.text ?? "";
+  showNotes();
   element("events").replaceChildren(
     ...events.slice(-200).map(({ time_ns, kind, text, count, last_ns }) => {
       const line = document.createElement("p");
@@ -184,7 +194,7 @@ setInterval(() => {
   bytes = 0;
 }, 1000);
 
-/** For tests and for whoever opens the browser's console. */
+/** For tests and for the browser's console. */
 Object.assign(window, {
   cohort: { viewer, commands, connection, driving, objects, run: (line: string) => commands.run(line) },
 });

@@ -1,4 +1,5 @@
-// What server/viewing/scene_messages.hpp and tools/view/messages/view_messages.hpp say, as rosmsg2-serialization decodes it.
+// The messages of server/viewing/scene_messages.hpp and tools/view/messages/view_messages.hpp, as rosmsg2-serialization
+// decodes them.
 
 export const none = 0xffffffff;
 

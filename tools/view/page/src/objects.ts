@@ -42,7 +42,7 @@ export class Objects {
     return [
       command(
         "add [MODEL]",
-        "opens or closes the card by which a click adds an object",
+        "opens or closes the card for adding objects by a click",
         ([model]) => {
           if (this.isAdding && model === undefined) this.close();
           else this.open(model);
@@ -74,7 +74,7 @@ export class Objects {
 
   // With the mouse. Each is told where it is in the picture.
 
-  /** Whether there is something to drag. */
+  /** Returns whether there is an object to drag. */
   grab(x: number, y: number): boolean {
     const { viewer } = this;
     const { poses } = viewer;
@@ -116,7 +116,7 @@ export class Objects {
       await this.ask({ operation: "move", name: dragged.name, numbers: [...numbers, dragged.heading] });
   }
 
-  /** A click; false if it is for nobody here. */
+  /** Handles a click; returns false if it is not for adding or dragging. */
   place(x: number, y: number): boolean {
     const scene = this.viewer.poses?.scene;
     if (!this.isAdding || !scene) return false;
@@ -129,9 +129,9 @@ export class Objects {
 
   private open(model = this.models.value): void {
     const names = this.modelNames();
-    if (names.length === 0) throw new Error("this world has no model but those of its robots and its ground");
+    if (names.length === 0) throw new Error("this world has no models of objects to add");
     if (model !== "" && !names.includes(model))
-      throw new Error(`there is no model '${model}' to add: there are ${names.join(", ")}`);
+      throw new Error(`there is no model '${model}' to add: expected one of ${names.join(", ")}`);
     this.viewer.select(undefined);
     this.card.hidden = false;
     this.offer(model);
@@ -146,7 +146,7 @@ export class Objects {
     this.suggestName();
   }
 
-  // The first that nobody has, nor had in this run.
+  // Suggests the first name that no object has, nor had in this run.
   private suggestName(): void {
     const taken = new Set(this.viewer.poses?.scene.entities.map(({ name }) => name));
     const kept = this.name.value.trim();
@@ -183,7 +183,7 @@ export class Objects {
     return place && [origin[0] + place[0] - grabbed[0], origin[1] + place[1] - grabbed[1], origin[2]];
   }
 
-  // What is selected.
+  // The selection.
 
   private async remove(): Promise<void> {
     const { selectedEntity } = this.viewer;

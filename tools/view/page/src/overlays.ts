@@ -76,7 +76,7 @@ export class Contacts {
   }
 }
 
-/** What the sensors of the selected robot look along: as far as they see, and no further than what they found. */
+/** Rays of the selected robot's sensors: to their range, or to the first hit. */
 export class Rays {
   readonly group = new Group();
   private readonly free = segments(0x2f8f6b, 0.55);

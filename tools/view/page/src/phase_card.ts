@@ -17,13 +17,13 @@ const ends: Record<string, string> = {
   shut_down: "The run was shut down",
 };
 
-/** What is to be said before a run, after it, and without a connection; nothing while it runs. */
+/** Returns the card before a run, after it, and without a connection; nothing while it runs. */
 export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Card | undefined {
   const isOver = status?.phase === "ended" || status?.phase === "gone";
   if (!isConnected && !isOver)
     return {
       title: "The connection is lost",
-      text: "The view has ended or cannot be reached. This page tries again by itself.",
+      text: "The view has ended or cannot be reached. This page reconnects automatically.",
       isWrong: true,
     };
   if (!status) return undefined;
@@ -31,14 +31,14 @@ export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Ca
   const over = { toType: status.to_type, recording: isConnected ? status.recording : "" };
   switch (status.phase) {
     case "waiting":
-      return { title: "Waits for a server", text: `None is at ${status.name}. To start one:`, toType: status.to_type };
+      return { title: "Waiting for a server", text: `No server responds at ${status.name}. To start one:`, toType: status.to_type };
     case "gathering": {
       const [first, ...others] = status.awaited;
       const more = others.length > 0 ? ` and ${others.length} more` : "";
       const drive = status.may_control ? ", or select a robot and press drive" : "";
       return {
-        title: "Waits for controllers",
-        text: `Nobody drives ${first ?? "the robots"}${more}. Start a controller${drive}, or in a shell:`,
+        title: "Waiting for controllers",
+        text: `No controller drives ${first ?? "the robots"}${more}. Start a controller${drive}, or in a shell:`,
         toType: status.to_type,
       };
     }
@@ -51,8 +51,8 @@ export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Ca
       };
     case "gone":
       return {
-        title: "The server is gone",
-        text: `At ${at}, without a word: it was killed, or cannot be reached.`,
+        title: "The server is unreachable",
+        text: `Since ${at}: it was killed or cannot be reached.`,
         isWrong: true,
         ...over,
       };
@@ -61,7 +61,7 @@ export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Ca
   }
 }
 
-/** Shows it over the picture, until whoever looks wants to see that. */
+/** Shows the card over the picture, until the user closes it. */
 export class PhaseCard {
   private status: ViewStatus | undefined;
   private isConnected = false;

@@ -48,7 +48,7 @@ export class Poses {
   firstPlace(model: number, link: number): number {
     return this.firstOfLink[model][link];
   }
-  /** Of a link of an entity among all links of a frame. */
+  /** Returns the index of an entity's link among all links of a frame. */
   placeOf(entity: number, link = 0): number {
     return this.firstOfLink[this.scene.entities[entity].model][link] + this.placeInModel[entity];
   }
@@ -75,7 +75,7 @@ export class Poses {
     this.blend = Math.min(1, Math.max(0, now - this.arrival) / Math.max(1, this.interval));
   }
 
-  /** Of a link by its place, as it is drawn; with a `blend` of 1 as the server has it. */
+  /** Reads the drawn pose of a link by its index; with a `blend` of 1, the server's last pose. */
   read(place: number, position: Vector3, orientation: Quaternion, blend = this.blend): void {
     const p = 3 * place;
     const q = 4 * place;

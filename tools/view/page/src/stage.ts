@@ -36,7 +36,7 @@ float lineOf(vec2 at, float spacing, float width) {
 }
 `;
 
-/** What everything stands in: the renderer, sun and ground. */
+/** The surroundings of everything: the renderer, sun and ground. */
 export class Stage {
   readonly renderer: WebGLRenderer;
   readonly scene = new ThreeScene();

@@ -1,9 +1,9 @@
 import { firstValue, valueNames } from "./channels";
 import type { SceneChannel } from "./messages";
 
-// What held keys and a game pad make of a robot's command: plain functions.
+// Plain functions that turn held keys and a game pad into a robot's command.
 
-/** What a held key does: drives two tracks or wheels, as shares of full speed, or gives a channel a value. */
+/** The effect of a held key: drives two tracks or wheels, as shares of full speed, or gives a channel a value. */
 export type Steer = { ahead: number; turn: number } | { channel: string; value: number };
 
 const directions: Record<string, { ahead: number; turn: number }> = {
@@ -22,10 +22,10 @@ export const defaultSteering: Readonly<Record<string, string>> = {
   a: "left",
   d: "right",
 };
-const turningShare = 0.5; // of full speed, on the spot
+const turningShare = 0.5; // share of full speed for turning on the spot
 const deadZone = 0.15;
 
-/** Of a line of a profile. Throws Error with a sentence if it is none. */
+/** Parses a line of a profile. Throws Error with a sentence if it is invalid. */
 export function readSteer(line: string): Steer {
   const direction = directions[line];
   if (direction) return direction;
@@ -53,6 +53,10 @@ export function wheelsOf(channels: readonly SceneChannel[]): Wheels | undefined 
 
 export const neutralOf = (channels: readonly SceneChannel[]): number[] =>
   channels.flatMap(({ size, neutral }) => Array.from({ length: size }, () => neutral));
+
+/** The ends of a channel's slider: its limits, or half a turn to each side for an angle without limits. */
+export const sliderEnds = (unit: string, lower: number, upper: number): [number, number] =>
+  unit === "rad" && !Number.isFinite(lower) && !Number.isFinite(upper) ? [-Math.PI, Math.PI] : [lower, upper];
 
 /** The command of a robot: `base` where nothing else says anything. */
 export function commandOf(
@@ -90,7 +94,7 @@ const beyondDeadZone = (axis: number | undefined): number => {
 export const padOf = (pads: readonly (Gamepad | null)[]): Gamepad | undefined =>
   pads.find((each) => each?.connected) ?? undefined;
 
-/** What its left stick does; nothing as long as it rests. */
+/** Returns the command of its left stick; nothing while the stick is at rest. */
 export function steerOfPad({ axes }: Pick<Gamepad, "axes">): Steer | undefined {
   const [turn, ahead] = [-beyondDeadZone(axes[0]), -beyondDeadZone(axes[1])];
   return turn === 0 && ahead === 0 ? undefined : { ahead, turn };

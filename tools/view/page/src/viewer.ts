@@ -25,7 +25,7 @@ export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sou
 const homeMargin = 0.4; // [m] around robots
 const manyEntities = 1500; // above, shadows are off unless asked for
 
-/** What is seen and heard of the world. */
+/** The picture and sound of the world. */
 export class Viewer {
   readonly stage: Stage;
   readonly cameras: Cameras;
@@ -59,7 +59,7 @@ export class Viewer {
     this.contacts.group.visible = false;
   }
 
-  // What comes from the server.
+  // Data from the server.
 
   show(scene: Scene): void {
     const selected = this.selectedEntity?.name;
@@ -112,7 +112,7 @@ export class Viewer {
     if (this.robot) this.inspector.take(this.robot, seconds(this.robot.time_ns));
   }
 
-  // What people do.
+  // User input.
 
   select(entity: number | undefined): void {
     this.selected = entity;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace cohort {
+
+/// The machine's clock, for the network, also in a program whose clocks `cohort exec` replaces by those of the
+/// simulation. In other programs it is std::chrono::steady_clock.
+struct NetworkClock {
+  // NOLINTBEGIN(readability-identifier-naming): as std::chrono has them.
+  using duration = std::chrono::nanoseconds;
+  using rep = duration::rep;
+  using period = duration::period;
+  using time_point = std::chrono::time_point<NetworkClock>;
+  // NOLINTEND(readability-identifier-naming)
+  static constexpr bool is_steady = true;
+
+  static time_point now() noexcept;
+};
+
+/// Makes the calling thread wait by the machine's clock during the lifetime of this object.
+class WaitsByNetworkClock {
+ public:
+  WaitsByNetworkClock() noexcept;
+  ~WaitsByNetworkClock();
+  WaitsByNetworkClock(const WaitsByNetworkClock&) = delete;
+  WaitsByNetworkClock& operator=(const WaitsByNetworkClock&) = delete;
+};
+
+}  // namespace cohort

@@ -1,0 +1,5 @@
+/* A program without a loader: nothing can be loaded into it. */
+
+#include <unistd.h>
+
+int main(void) { return (int)sleep(1000); }

@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "idl/messages/ros_discovery_messages.hpp"
+#include "idl/messages/ros_geometry_messages.hpp"
+#include "idl/messages/ros_navigation_messages.hpp"
+#include "idl/messages/ros_sensor_messages.hpp"
+
+// Bytes of messages from another implementation of CDR: rosbags, with the definitions of Jazzy or, where stated, of
+// Humble.
+namespace cohort::messages {
+namespace {
+
+template <RosMessage Message>
+std::string hex_of(const Message& message) {
+  constexpr const char* digits = "0123456789abcdef";
+  std::string hex;
+  for (const std::byte byte : encode(message)) {
+    hex += digits[std::to_integer<unsigned>(byte) >> 4];
+    hex += digits[std::to_integer<unsigned>(byte) & 15];
+  }
+  return hex;
+}
+
+ros::Header header(const std::string& frame) { return {{1, 500'000'000}, frame}; }
+const ros::Twist twist = {{0.25, 0.0, 0.0}, {0.0, 0.0, -1.0}};
+
+TEST(GoldenMessages, LaserScan) {
+  ros::LaserScan scan;
+  scan.header = header("scan");
+  scan.angle_min = -0.5F;
+  scan.angle_max = 0.5F;
+  scan.angle_increment = 0.25F;
+  scan.scan_time = 0.125F;
+  scan.range_min = 0.25F;
+  scan.range_max = 8.0F;
+  scan.ranges = {1.0F, 2.0F, std::numeric_limits<float>::infinity()};
+  EXPECT_EQ(hex_of(scan),
+            "00010000010000000065cd1d050000007363616e00000000000000bf0000003f0000803e000000000000003e0000803e"
+            "00000041030000000000803f000000400000807f00000000");
+}
+
+TEST(GoldenMessages, Odometry) {
+  ros::Odometry odometry;
+  odometry.header = header("odom");
+  odometry.child_frame_id = "base_link";
+  odometry.pose.pose = {{1.0, 2.0, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  odometry.pose.covariance[0] = 0.5;
+  odometry.pose.covariance[35] = 2.0;
+  odometry.twist.twist = twist;
+  EXPECT_EQ(hex_of(odometry),
+            "00010000010000000065cd1d050000006f646f6d000000000a000000626173655f6c696e6b0000000000000000000000"
+            "0000f03f0000000000000040000000000000000000000000000000000000000000000000000000000000000000000000"
+            "0000f03f000000000000e03f000000000000000000000000000000000000000000000000000000000000000000000000"
+            "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "00000040000000000000d03f000000000000000000000000000000000000000000000000000000000000000000000000"
+            "0000f0bf0000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+            "00000000");
+}
+
+TEST(GoldenMessages, TFMessage) {
+  EXPECT_EQ(hex_of(ros::TFMessage{{{header("odom"), "base", {{1.0, 2.0, 3.0}, {0.0, 0.0, 0.0, 1.0}}}}}),
+            "0001000001000000010000000065cd1d050000006f646f6d000000000500000062617365000000000000000000000000"
+            "0000f03f0000000000000040000000000000084000000000000000000000000000000000000000000000000000000000"
+            "0000f03f");
+}
+
+TEST(GoldenMessages, Twist) {
+  EXPECT_EQ(hex_of(twist),
+            "00010000000000000000d03f000000000000000000000000000000000000000000000000000000000000000000000000"
+            "0000f0bf");
+}
+
+TEST(GoldenMessages, Clock) { EXPECT_EQ(hex_of(ros::Clock{{1, 500'000'000}}), "00010000010000000065cd1d"); }
+
+template <std::size_t size>
+ros::GidOf<size> gid(std::uint8_t byte) {
+  ros::GidOf<size> gid;
+  std::fill_n(gid.data.begin(), 16, byte);
+  return gid;
+}
+template <std::size_t size>
+ros::ParticipantEntitiesInfoOf<size> participant() {
+  return {gid<size>(1), {{"/", "cohort", {gid<size>(2)}, {gid<size>(3)}}}};
+}
+
+TEST(GoldenMessages, ParticipantEntitiesInfo) {
+  EXPECT_EQ(hex_of(participant<16>()),
+            "000100000101010101010101010101010101010101000000020000002f00000007000000636f686f7274000001000000"
+            "020202020202020202020202020202020100000003030303030303030303030303030303");
+}
+
+TEST(GoldenMessages, ParticipantEntitiesInfoOfHumble) {
+  EXPECT_EQ(hex_of(participant<24>()),
+            "0001000001010101010101010101010101010101000000000000000001000000020000002f00000007000000636f686f"
+            "727400000100000002020202020202020202020202020202000000000000000001000000030303030303030303030303"
+            "030303030000000000000000");
+}
+
+}  // namespace
+}  // namespace cohort::messages

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "tools/bridges/betaflight/pilot.hpp"
+#include "tools/bridges/betaflight/sitl_packets.hpp"
+#include "tools/bridges/betaflight/sitl_program.hpp"
+#include "tools/bridges/common/firmware.hpp"
+
+namespace cohort::betaflight {
+
+/// A quadcopter that Betaflight flies, by the sticks of a pilot: at each frame it gets the state and the sticks, and
+/// commands the motors once.
+class Copter final : public bridges::Firmware {
+ public:
+  /// `patience` outlives this. `program`: started and ended with the run; null if it is started outside of the bridge.
+  Copter(const bridges::Patience& patience, std::unique_ptr<Program> program);
+
+  /// The robot has the channels of worlds/robots/quadcopter_x.
+  void start(const DrivenRobot& robot) override;
+  bool exchange(bridges::Conversation& program, const Observation& observation) override;
+  void act(Command& command) const override;
+  void stand() override { motors_ = {}; }
+
+ private:
+  State sense(const Observation& observation);
+  void look_for_pad(const Observation& observation, State& state);
+  void wait_until_ready(bridges::Conversation& program) const;
+  std::optional<Motors> exchange_by_the_wall(bridges::Conversation& program, const State& state,
+                                             const Channels& sticks);
+  std::optional<Motors> exchange_in_virtual_time(bridges::Conversation& program, const State& state,
+                                                 const Channels& sticks);
+  std::optional<Motors> wait_for_motors(bridges::Conversation& program, const std::vector<std::uint8_t>& state);
+
+  const bridges::Patience& patience_;
+  std::unique_ptr<Program> program_;
+  const bridges::Conversation* conversation_ = nullptr;  // from the first exchange on
+  std::optional<Pilot> pilot_;
+  double step_ = 0.0;       // between frames [s]
+  double sent_ = -1.0;      // time of the last state packet [s]
+  double time_lost_ = 0.0;  // by resets, which turn the run's time back and must not turn that of packets back [s]
+  std::array<double, 2> place_{}, velocity_{};  // to the north and west of the pad, as it was seen last
+  Motors motors_{};
+  std::chrono::steady_clock::time_point sent_at_{};  // by the wall's clock
+  bool flies_ = false;                               // the program has answered since the start
+
+  ObservationChannel orientation_, angular_velocity_, acceleration_, pressure_, height_, climb_, pads_, pad_;
+  std::array<CommandChannel, 4> rotors_;
+};
+
+}  // namespace cohort::betaflight

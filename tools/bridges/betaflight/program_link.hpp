@@ -1,0 +1,36 @@
+#pragma once
+
+#include <netinet/in.h>
+
+#include <string>
+
+#include "tools/bridges/common/descriptor.hpp"
+#include "tools/bridges/common/link.hpp"
+
+namespace cohort::betaflight {
+
+/// The datagrams of one program: it sends from any port, and listens at two, which are told apart by what is sent.
+class ProgramLink final : public bridges::Link {
+ public:
+  /// `socket`: bound to where servo packets come, non-blocking. `address`: the program's, IPv4.
+  ProgramLink(bridges::Descriptor socket, const std::string& address);
+
+  std::string place() const override;
+  std::string peer() const override;
+  bool is_connectionless() const override { return true; }
+  bool connect() override { return true; }
+  int descriptor() const override { return socket_.number(); }
+  std::size_t read(std::span<std::uint8_t> bytes) override;
+  std::size_t write(std::span<const std::uint8_t> bytes) override;
+  void hang_up() override {}
+
+ private:
+  bridges::Descriptor socket_;
+  sockaddr_in program_;
+  int mistakes_ = 0;
+};
+
+/// Returns a socket for servo packets that come to this address of the machine. Throws std::runtime_error.
+bridges::Descriptor open_servo_socket(const std::string& address);
+
+}  // namespace cohort::betaflight

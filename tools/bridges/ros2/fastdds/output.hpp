@@ -1,0 +1,42 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "tools/bridges/ros2/services/service_frames.hpp"
+
+namespace cohort::bridges::ros2 {
+
+/// The stream of frames to the bridge. A thread writes it, so that no thread that answers the bridge waits for the
+/// bridge. Safe to call from any thread.
+class Output {
+ public:
+  explicit Output(int descriptor);
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+  ~Output();
+
+  /// Sends a frame without waiting.
+  void send(const FrameToBridge& frame);
+  /// Drops what is not written yet, and what is sent from now on, so that no thread waits here any more.
+  void close();
+  /// Sends a request, once the bridge has taken most of what was sent before. Drops it if it is too large for a frame.
+  void send_request(const RequestReceived& request);
+
+ private:
+  void write_frames();
+
+  const int descriptor_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::string> frames_;
+  std::size_t waiting_bytes_ = 0;
+  bool ending_ = false;
+  std::thread writer_;
+};
+
+}  // namespace cohort::bridges::ros2

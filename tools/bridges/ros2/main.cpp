@@ -1,0 +1,106 @@
+// cohort-ros2-bridge: nodes of ROS 2 drive robots of a simulation (docs/ros2.md).
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "client_sdk/src/control/control_client.hpp"
+#include "client_sdk/src/control/experiment_query.hpp"
+#include "idl/dds/ros2/ros_names.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "tools/bridges/common/bridge_program.hpp"
+#include "tools/bridges/ros2/ros_bridge.hpp"
+
+namespace {
+
+using namespace cohort;
+
+ControlOptions control_options(const ClientOptions& client) {
+  return {client.server, client.domain, client.secure, client.name};
+}
+
+// Asks the server for what its experiment was read from, and reads it here.
+std::shared_ptr<const description::Experiment> experiment_of(const ClientOptions& client) {
+  ControlClient control(attach(control_options(client)));
+  const messages::ExperimentFiles files = query_experiment([&](const wire::GetExperiment& question) {
+    constexpr std::chrono::hours at_most{24};  // the server may be yet to come
+    const std::optional<wire::Reply> reply = control.ask(question, at_most, stop_on_signals());
+    if (!reply) throw std::runtime_error("the server does not send its experiment");
+    if (!reply->is_done()) throw std::runtime_error(reply->error_message);
+    return *reply;
+  });
+  return std::make_shared<const description::Experiment>(
+      parsing::read_experiment(std::make_shared<const description::KeptFiles>(messages::kept_files(files)), files.seed,
+                               std::chrono::nanoseconds(files.duration_ns)));
+}
+
+// As what is wrong in the command line: before it looks for a server.
+ros2::RosDomain domain_of_environment() {
+  try {
+    return ros2::RosDomain::from_environment();
+  } catch (const std::invalid_argument& error) {
+    throw bridges::UsageError(error.what());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using description::RosSync;
+  RosSync sync = RosSync::free;
+  std::uint32_t domain = 0;
+  std::string distribution = "auto";
+  bool has_no_services = false;
+
+  bridges::BridgeProgram program("cohort-ros2-bridge", "node", "Connects ROS 2 nodes to robots of a simulation.");
+  CLI::App& app = program.app();
+  app.get_option("--robots")->default_str("as in the experiment");
+  app.add_option("--ros-domain", domain, "ROS domain (default: the experiment's, else ROS_DOMAIN_ID, else 0)")
+      ->check(CLI::Range(0, 232))
+      ->type_name("N");
+  program.add_choice<RosSync>(
+      "--sync", sync, {{"free", RosSync::free}, {"command", RosSync::command}},
+      "When the bridge answers a frame: at once, with the newest command (free), or after a new command (command). "
+      "Default: as in the experiment");
+  program.offer_to_run_programs(
+      "Shell command that starts nodes with simulated time as their clock: the bridge answers each frame when they "
+      "have finished all work that is due at its time");
+  app.get_option("--run")->excludes(app.get_option("--sync"));
+  const std::map<std::string, std::string> distributions = {
+      {"auto", "auto"},     {"humble", "humble"},   {"iron", "iron"},      {"jazzy", "jazzy"},
+      {"kilted", "kilted"}, {"lyrical", "lyrical"}, {"rolling", "rolling"}};
+  program.add_choice<std::string>("--ros-distro", distribution, distributions,
+                                  "ROS 2 distribution of the nodes (default: auto, detected from the nodes)");
+  app.add_flag("--no-services", has_no_services, "Do not offer the services of simulation_interfaces");
+  app.footer("Example: cohort serve worlds/experiments/turtlebot3.yaml --speed 1 & cohort-ros2-bridge");
+  return program.run(argc, argv, [&](ClientOptions client) {
+    ros2::RosBridge::Options options;
+    options.participant = {domain_of_environment(), "/", "cohort"};
+    options.experiment = [client] { return experiment_of(client); };
+    const auto experiment = options.experiment();
+    if (app.get_option("--robots")->count() == 0) client.robots = experiment->ros2.robots;
+    if (app.get_option("--sync")->count() > 0) options.sync = sync;
+    if (app.get_option("--ros-domain")->count() > 0)
+      options.participant.domain.number = domain;
+    else if (experiment->ros2.domain)
+      options.participant.domain.number = *experiment->ros2.domain;
+    if (distribution != "auto")
+      options.gid_format = distribution == "humble" ? ros2::GidFormat::humble : ros2::GidFormat::since_iron;
+    options.command = program.command();
+    options.tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
+    if (!has_no_services) {
+      ros2::SimulationControl::Options& services = options.services.emplace();
+      services.control = control_options(client);
+      services.experiment = options.experiment;
+      if (distribution == "lyrical" || distribution == "rolling") services.version = ros2::InterfaceVersion::v2;
+      services.helper = {
+          .program = std::filesystem::read_symlink("/proc/self/exe").replace_filename("cohort-ros2-services"),
+          .domain = options.participant.domain,
+          .tell = options.tell};
+    }
+    options.client = std::move(client);
+    return ros2::RosBridge(std::move(options), stop_on_signals()).run();
+  });
+}

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "client_sdk/include/cohort/client.hpp"
+#include "idl/dds/ros2/ros_graph.hpp"
+#include "idl/dds/ros2/ros_participant.hpp"
+#include "idl/messages/cdr.hpp"
+#include "server/description/model.hpp"
+#include "tools/bridges/ros2/robots/drive.hpp"
+#include "tools/bridges/ros2/robots/settings.hpp"
+
+namespace cohort::ros2 {
+
+/// The time for which a command message was meant, if the message has a stamp.
+using Stamp = std::optional<std::chrono::nanoseconds>;
+
+/// The writers that others have, by topic of DDS.
+using WritersByTopic = std::map<std::string, std::vector<RosEndpoint>>;
+
+/// A topic that commands a robot. The same topic may come in several types: the publisher's type counts.
+class CommandTopic {
+ public:
+  struct Type {
+    std::string name;
+    std::string hash;
+    /// Changes the robot's command by a message. Throws messages::CdrError, or std::invalid_argument with what is
+    /// wrong in it: then the command is as it was.
+    std::function<Stamp(messages::CdrReader& message, std::span<double> command)> take;
+  };
+  /// Changes the robot's command as time goes on.
+  struct Motion {
+    std::function<void(std::chrono::nanoseconds time, std::span<double> command)> advance;
+    std::function<void()> end;  ///< ends the present command
+  };
+  /// `name` is absolute. `types`: the first one is offered while there is no publisher. `motion`: of commands that take
+  /// time.
+  CommandTopic(std::string name, std::vector<Type> types, Motion motion = Motion());
+
+  const std::string& name() const { return name_; }
+
+  /// Receives messages from now on.
+  void open(RosParticipant& participant, std::function<void(const Received&)> received, std::function<void()> matched);
+  /// Takes the type and reliability of the topic's publishers, if none publishes with the present ones. Returns whether
+  /// they have changed.
+  bool follow(RosParticipant& participant, const std::vector<RosEndpoint>& writers);
+  /// Returns why a writer of this topic can never be received; empty if it can.
+  std::string why_not(const RosEndpoint& writer) const;
+
+  /// As Type::take.
+  Stamp take(std::span<const std::byte> message, std::span<double> command) const;
+
+  /// Sets what was commanded for this time.
+  void advance(std::chrono::nanoseconds time, std::span<double> command) const {
+    if (motion_.advance) motion_.advance(time, command);
+  }
+  /// Ends what was commanded.
+  void end() const {
+    if (motion_.end) motion_.end();
+  }
+
+  /// Returns the participants that publish it, ascending.
+  std::span<const Gid> participants() const { return reader_->participants(); }
+
+ private:
+  void read(RosParticipant& participant);
+
+  std::string name_;
+  std::vector<Type> types_;
+  Motion motion_;
+  std::size_t type_ = 0;
+  bool is_reliable_ = true;
+  std::function<void(const Received&)> received_;
+  std::function<void()> matched_;
+  std::optional<RosReader> reader_;
+};
+
+/// Returns the topics that command a robot, those that move it first: `cmd_vel` if it has a drive, commands of joints,
+/// those of its other devices. `drive` may be nullptr, and must outlive them.
+std::vector<CommandTopic> command_topics(const description::Model& model, const DrivenRobot& robot,
+                                         const RobotSettings& settings, const Drive* drive);
+
+}  // namespace cohort::ros2

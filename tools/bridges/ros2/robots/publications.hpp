@@ -1,0 +1,102 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "client_sdk/include/cohort/client.hpp"
+#include "client_sdk/include/cohort/types.hpp"
+#include "idl/dds/ros2/ros_participant.hpp"
+#include "idl/messages/device_messages.hpp"
+#include "idl/messages/ros_navigation_messages.hpp"
+#include "tools/bridges/ros2/robots/drive.hpp"
+#include "tools/bridges/ros2/robots/frame_tree.hpp"
+#include "tools/bridges/ros2/robots/settings.hpp"
+
+namespace cohort::ros2 {
+
+/// The topics on which the frames of one robot are published.
+class Publications {
+ public:
+  Publications(const Publications&) = delete;
+  Publications& operator=(const Publications&) = delete;
+
+  /// `matched` is called on threads of DDS when a subscriber appears. `drive` may be nullptr, and must outlive this.
+  /// Throws std::runtime_error for settings that do not fit the robot.
+  Publications(RosParticipant& participant, const description::Model& model, const DrivenRobot& robot,
+               const RobotSettings& settings, Drive* drive, const std::function<void()>& matched);
+
+  /// Begins a run, or goes on with another one: the robot's frames are told.
+  void begin(std::chrono::nanoseconds time);
+  /// Returns whether `odom` tells where the robot is, rather than what its encoders say.
+  bool wants_true_pose() const { return tells_truth_; }
+  /// Tells what is due of a frame. `truth`: the robot's pose in the world, if it is wanted.
+  void publish(std::span<const double> observation, std::uint64_t tick, std::chrono::nanoseconds time,
+               const std::optional<WorldPose>& truth);
+  /// Tells those who have subscribed since the frame was told of it what it told: only in these participants, and only
+  /// topics of which they had not been told. Returns whether there was something to tell.
+  bool publish_to_newcomers(std::span<const Gid> participants);
+  /// Tells all of the last frame once more.
+  void publish_again();
+
+  /// Returns whether the last frame published something that a command of one of these participants answers. That is
+  /// the topic `reply_to`, or the rarest of the topics to which they subscribe.
+  bool asks(std::span<const Gid> participants) const;
+
+  /// Returns messages that were dropped because subscribers did not keep up.
+  std::uint64_t dropped() const { return dropped_; }
+  /// Returns whether all reliable subscribers have received what was told.
+  bool is_received() const;
+  /// Returns whether any topic has a subscriber.
+  bool has_subscribers() const;
+
+ private:
+  using Fill = std::function<void(messages::CdrWriter& to, const messages::ros::Header& header,
+                                  std::span<const double> observation)>;
+  struct Topic {
+    std::string name;      // in the list of topics
+    std::string frame_id;  // for the header
+    std::uint64_t interval = 1;
+    Fill fill;
+    RosWriter writer;
+    messages::Bytes last{};   // message of the last frame; empty: none
+    std::vector<Gid> told{};  // participants that subscribed then
+    bool counts_for_reply = true;
+  };
+
+  template <messages::RosMessage Message>
+  void add(RosParticipant& participant, const std::string& name, const std::string& frame, bool counts_for_reply,
+           Fill fill);
+  void add(RosParticipant& participant, const std::string& name, const std::string& frame, const std::string& type,
+           const std::string& type_hash, bool counts_for_reply, Fill fill, std::chrono::nanoseconds period = {});
+  std::uint64_t interval_of(double rate) const;
+  std::uint64_t interval_of(std::chrono::nanoseconds period) const;
+  void send(Topic& topic);
+  std::vector<SensorFrame> sensor_frames() const;
+  void move(std::span<const double> observation, double seconds);
+  void move_truly(const WorldPose& pose, double seconds);
+
+  const RobotSettings settings_;
+  std::function<void()> matched_;
+  Drive* drive_;
+  std::chrono::nanoseconds between_frames_;
+  std::uint32_t period_;
+  std::uint32_t phase_;
+  const std::vector<messages::DeviceMessage> devices_;
+  const bool tells_truth_;
+  FrameTree frames_;
+  std::vector<Topic> topics_;
+  std::optional<RosWriter> static_frames_;
+  std::optional<messages::ros::Odometry> odometry_;  // odometry of the frame, without its header
+  std::optional<std::chrono::nanoseconds> last_time_;
+  messages::CdrWriter cdr_;
+  std::uint64_t dropped_ = 0;
+};
+
+/// Returns channels as the server's code has them.
+std::vector<Channel> channels_of(const std::vector<ChannelInfo>& infos);
+
+}  // namespace cohort::ros2

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/description/ros2.hpp"
+
+namespace cohort::ros2 {
+
+/// How one robot is seen from ROS: what its experiment says, with the robot's own namespace.
+using RobotSettings = description::Ros2Settings;
+
+/// Returns the name of a topic for ROS; nothing if it is left out. `topic` is ours, such as `scan`.
+std::optional<std::string> name_of_topic(const RobotSettings& settings, std::string_view topic);
+
+/// Returns how often a topic is told at the most [Hz]; 0: as often as there is something new.
+double rate_of_topic(const RobotSettings& settings, std::string_view topic);
+
+}  // namespace cohort::ros2

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client_sdk/include/cohort/client.hpp"
+#include "server/description/experiment.hpp"
+#include "tools/bridges/ros2/robots/ros_robot.hpp"
+#include "tools/bridges/ros2/ros_program.hpp"
+#include "tools/bridges/ros2/simulation_control.hpp"
+#include "tools/bridges/ros2/true_poses.hpp"
+
+namespace cohort::ros2 {
+
+/// Robots of one client in the ROS graph: tells of each frame, waits for commands as each robot's `sync` has it, and
+/// answers. One thread, but for `stop`.
+class RosBridge {
+ public:
+  struct Options {
+    ClientOptions client;
+    RosParticipant::Options participant;
+    std::optional<GidFormat> gid_format{};                 ///< nothing: as peers have it
+    std::optional<description::RosSync> sync{};            ///< for all robots; empty: as in the experiment
+    std::optional<SimulationControl::Options> services{};  ///< nothing: no services
+    std::string command{};                                 ///< for the shell: nodes, run in virtual time; empty: none
+    /// Returns the experiment of the run. Called again when a robot comes that is not known yet.
+    std::function<std::shared_ptr<const description::Experiment>()> experiment;
+    std::function<void(const std::string& text)> tell;
+  };
+  /// Throws wire::WireError.
+  RosBridge(Options options, const std::atomic<bool>& stop);
+
+  /// Runs until the client ends. Throws std::runtime_error if it cannot go on.
+  ClientEnd run();
+
+ private:
+  void begin(const LeaseStart& lease);
+  void add_robot(const DrivenRobot& robot);
+  void answer(Client& client, const Frame& frame);
+  void wait_for_peers(const Client& client, const Frame& frame);
+  void wait_for_commands(const Client& client, const Frame& frame);
+  void tell_awaited(const RosRobot& robot, const Frame& frame) const;
+  RosRobot* awaited(const Frame& frame, std::chrono::nanoseconds waited) const;
+  void take_messages();
+  void note_change();
+  void look_at_graph();
+  std::optional<GidFormat> gid_format() const;
+  void announce();
+  void tell(const Frame& frame);
+  void start_program(const Client& client, const Frame& frame);
+  void let_program_work(const Client& client);
+  void wait_until_received(const Client& client) const;
+  void end_program();
+  std::chrono::nanoseconds end_of(const Frame& frame) const;
+  RosRobot& robot_of(const FrameRobot& frame) const;
+  bool is_over(const Client& client) const { return stop_ || client.is_over(); }
+
+  Options options_;
+  const std::atomic<bool>& stop_;
+  RosInbox inbox_;
+  RosParticipant participant_;
+  std::atomic<bool> graph_has_changed_{false};
+  RosGraph graph_;
+  RosWriter clock_;
+  std::shared_ptr<const description::Experiment> experiment_;
+  std::vector<std::unique_ptr<RosRobot>> robots_;  // by their first inputs
+  std::vector<RosRobot*> robot_of_input_;
+  std::map<std::uint32_t, RosRobot*> robot_of_id_;
+  std::optional<GidFormat> format_;  // nothing: no participant has shown it yet
+  bool is_announced_ = false;
+  bool is_first_frame_ = true;
+  std::chrono::nanoseconds step_{0};
+  std::unique_ptr<RosProgram> program_;
+  std::unique_ptr<TruePoses> true_poses_;  // once they are wanted
+  messages::CdrWriter cdr_;
+  std::optional<SimulationControl> services_;
+};
+
+}  // namespace cohort::ros2

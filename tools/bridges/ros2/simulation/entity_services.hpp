@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "idl/messages/ros_simulation_queries.hpp"
+#include "idl/messages/ros_simulation_services.hpp"
+#include "server/description/experiment.hpp"
+#include "tools/bridges/ros2/simulation/run_control.hpp"
+
+namespace cohort::ros2 {
+
+namespace simulation = messages::ros::simulation;
+
+/// Answers of the services that are of what is in the world. One thread.
+class EntityServices {
+ public:
+  using MakeExperiment = std::function<std::shared_ptr<const description::Experiment>()>;
+  /// `experiment` is called when a request needs it first. `run` must outlive this.
+  EntityServices(RunControl& run, MakeExperiment experiment) : run_(run), make_experiment_(std::move(experiment)) {}
+
+  simulation::SpawnEntity::Response answer(const simulation::SpawnEntity::Request& asked);
+  simulation::SpawnEntities::Response answer(const simulation::SpawnEntities::Request& asked);
+  simulation::DeleteEntity::Response answer(const simulation::DeleteEntity::Request& asked);
+  simulation::GetEntities::Response answer(const simulation::GetEntities::Request& asked);
+  /// Each state is of a boundary of its own, which its stamp says, unless the run is paused.
+  simulation::GetEntitiesStates::Response answer(const simulation::GetEntitiesStates::Request& asked);
+  simulation::GetEntityState::Response answer(const simulation::GetEntityState::Request& asked);
+  simulation::SetEntityState::Response answer(const simulation::SetEntityState::Request& asked);
+  simulation::GetEntityInfo::Response answer(const simulation::GetEntityInfo::Request& asked);
+  simulation::GetSpawnables::Response answer(const simulation::GetSpawnables::Request& asked);
+  simulation::GetCurrentWorld::Response answer(const simulation::GetCurrentWorld::Request&);
+
+ private:
+  const description::Experiment& experiment();
+  /// Returns the model of an entity, by its index in the experiment's world; nothing if it is not known here.
+  std::optional<std::size_t> model_of(const std::string& entity);
+  simulation::EntityCategory category_of(const std::string& entity);
+  bool is_selected(const std::string& entity, const simulation::EntityFilters& filters);
+
+  RunControl& run_;
+  MakeExperiment make_experiment_;
+  std::shared_ptr<const description::Experiment> experiment_;
+  std::map<std::string, std::size_t> models_;  // by entities of the experiment, and those that were spawned here
+};
+
+}  // namespace cohort::ros2

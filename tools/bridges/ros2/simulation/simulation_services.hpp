@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "idl/messages/cdr.hpp"
+#include "server/description/experiment.hpp"
+#include "tools/bridges/ros2/simulation/entity_services.hpp"
+
+namespace cohort::ros2 {
+
+/// A service of ROS.
+struct OfferedService {
+  std::string name{};       ///< such as `/step_simulation`
+  std::string type{};       ///< such as `simulation_interfaces/srv/StepSimulation`
+  std::string type_hash{};  ///< `RIHS01_…`
+  /// Returns the reply to a request, both in CDR. Throws messages::CdrError if the request is none of this type.
+  std::function<messages::Bytes(messages::ByteView request)> answer;
+};
+
+/// The layout of messages that changed between versions of simulation_interfaces and does not show by itself.
+enum class InterfaceVersion {
+  v1,  ///< as releases up to Kilted have it
+  v2,
+};
+
+/// The services of simulation_interfaces for a run. Their results are the server's, as its operations have the same
+/// numbers. One thread.
+class SimulationServices {
+ public:
+  /// Waits end while `stop` is set. `experiment` is called when a request needs it first. Throws ControlError.
+  SimulationServices(const ControlOptions& options, EntityServices::MakeExperiment experiment, InterfaceVersion version,
+                     const std::atomic<bool>& stop);
+  SimulationServices(const SimulationServices&) = delete;
+  SimulationServices& operator=(const SimulationServices&) = delete;
+
+  /// Returns the services; they are valid as long as this.
+  const std::vector<OfferedService>& all() const { return services_; }
+
+ private:
+  RunControl run_;
+  EntityServices entities_;
+  std::vector<OfferedService> services_;
+};
+
+/// Returns the name of a service in ROS: `/step_simulation` for `simulation_interfaces/srv/StepSimulation`.
+std::string service_name(const std::string& type);
+
+}  // namespace cohort::ros2

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+
+#include "tools/bridges/ros2/service_host.hpp"
+
+namespace cohort::ros2 {
+
+/// The services of simulation_interfaces in the graph of ROS, as one client that controls the run.
+class SimulationControl {
+ public:
+  struct Options {
+    ControlOptions control;
+    EntityServices::MakeExperiment experiment;
+    InterfaceVersion version = InterfaceVersion::v1;
+    ServiceHelper::Options helper;
+  };
+  /// `stop` ends this soon. Throws ControlError or wire::WireError.
+  SimulationControl(RosParticipant& participant, RosGraph& graph, const Options& options, const std::atomic<bool>& stop)
+      : stop_(stop),
+        services_(options.control, options.experiment, options.version, end_),
+        host_(participant, graph, services_.all(), options.helper, stop) {}
+  /// Answers the request that ends the run before it returns, unless `stop` is set.
+  ~SimulationControl() {
+    if (!stop_) host_.wait_for_request(std::chrono::seconds(3));
+    end_ = true;
+  }
+  SimulationControl(const SimulationControl&) = delete;
+  SimulationControl& operator=(const SimulationControl&) = delete;
+
+  /// Tells others of the node of the helper. Any thread.
+  void announce(GidFormat format) { host_.announce(format); }
+
+ private:
+  const std::atomic<bool>& stop_;
+  std::atomic<bool> end_{false};
+  SimulationServices services_;
+  ServiceHost host_;
+};
+
+}  // namespace cohort::ros2

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/parsing/keys/extension.hpp"
+
+/// The elements of worlds and the keys of experiments, by topic.
+namespace cohort::tool {
+
+struct Topic {
+  std::string_view name;
+  std::string_view text;
+};
+
+/// The topics that group elements, and those that are an explanation alone.
+std::span<const Topic> topics();
+
+/// Returns all elements, those of worlds first.
+const std::vector<const parsing::Extension*>& manual_entries();
+
+/// Returns the elements of a topic.
+std::vector<const parsing::Extension*> entries_of(std::string_view topic);
+
+/// Returns whether the element is a part of an experiment and not of a world.
+bool is_of_experiments(const parsing::Extension& entry);
+
+/// Returns the element that `entry` stands in, with its prefix if it is one of ours.
+std::string parent_of(const parsing::Extension& entry);
+
+}  // namespace cohort::tool

@@ -1,0 +1,412 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "client_sdk/math/portable_math.hpp"
+#include "server/core/text.hpp"
+#include "server/description/experiment.hpp"
+#include "server/description/input_error.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/parsing/sdf/file_kind.hpp"
+#include "server/run/in_process.hpp"
+#include "server/run/run_world.hpp"
+#include "server/run/session_snapshot.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
+#include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/cli/shown.hpp"
+#include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/run/run_flags.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
+#include "tools/cohort/running/controller_ends.hpp"
+#include "tools/cohort/running/one_run.hpp"
+#include "tools/cohort/running/run_recording.hpp"
+#include "tools/cohort/running/seed_table.hpp"
+#include "tools/cohort/running/seeds.hpp"
+#include "tools/cohort/running/serving.hpp"
+#include "tools/cohort/running/side_by_side.hpp"
+#include "tools/cohort/running/team_controllers.hpp"
+
+namespace cohort::tool {
+namespace {
+
+using session::RunResult;
+
+double cpu_seconds() {
+  double total = 0.0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    getrusage(who, &usage);
+    for (const timeval& part : {usage.ru_utime, usage.ru_stime})
+      total += static_cast<double>(part.tv_sec) + 1e-6 * static_cast<double>(part.tv_usec);
+  }
+  return total;
+}
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// Returns whether the run has free-running ROS 2 nodes, which need real time.
+bool has_free_nodes(const RunCommand& command, const description::Experiment& experiment) {
+  return command.ros2 && std::ranges::any_of(experiment.teams, [&](const description::Team& team) {
+           return experiment.ros2.of_team(team.name).sync == description::RosSync::free;
+         });
+}
+
+// Returns the speed. People and free-running hardware can follow only real time.
+double speed_of(const RunCommand& command, const description::Experiment& experiment) {
+  const bool has_free = std::ranges::any_of(
+      experiment.teams, [](const description::Team& team) { return team.policy.mode == description::Mode::free; });
+  return command.speed.value_or(
+      has_keyboard(experiment) || has_free || command.view || has_free_nodes(command, experiment) ? 1.0 : 0.0);
+}
+
+// Returns the interval between snapshots, at least one step; 0 for none.
+std::chrono::nanoseconds keep_interval_of(const RunCommand& command, const description::Experiment& experiment) {
+  if (command.keep_interval <= 0.0) return std::chrono::nanoseconds(0);
+  return std::max(experiment.world.step, nanoseconds(command.keep_interval));
+}
+
+void refuse_keyboard(const description::Experiment& experiment) {
+  for (const description::Team& team : experiment.teams)
+    if (team.controller == keyboard_controller)
+      throw description::InputError({{experiment.file, team.controller_line, "team " + team.name,
+                                      "controller 'keyboard' cannot be used with '--controllers inprocess'"}});
+}
+
+// Runs the controllers in this process. If one of them ends the process, `finish` is called with the result.
+RunResult run_here(const description::Experiment& experiment, Simulation& simulation,
+                   const std::vector<TeamController>& controllers, const session::RunOptions& options,
+                   session::RunListener listener, const std::function<int(const RunResult&)>& finish, Log& log,
+                   const std::atomic<bool>& stop) {
+  ControllerEnds ends(log, {.exit_code = exit_failed, .crashes = true});
+  listener.can_fail = [&](const auto& fail) {
+    ends.finish_with([&finish, fail](const std::string& why) { return finish(fail(why)); });
+  };
+  std::vector<ControllerKind> teams;
+  teams.reserve(controllers.size());
+  for (const TeamController& controller : controllers) teams.push_back(controller.kind());
+  return session::run_in_process(experiment, simulation, teams, options, listener, stop);
+}
+
+void warn_if_not_portable(Log& log) {
+  std::string names;
+  for (const std::string& name : functions_not_portable()) names += " " + name;
+  if (!names.empty())
+    log.warning(
+        "the state hash may differ on another CPU: these functions of the C library are used instead of Cohort's:" +
+        names);
+}
+
+// A rosbag2 bag is a folder with one recording.
+void check_rosbag2(const RunCommand& command, std::size_t runs) {
+  if (command.outputs.recording.empty()) throw std::invalid_argument("'--record-rosbag2' needs '--record FILE'");
+  if (runs > 1)
+    throw std::invalid_argument(
+        "'--record-rosbag2' cannot be used with several runs, because their recordings share a folder; move each "
+        "recording to its own folder and use 'cohort recordings rosbag2'");
+  check_rosbag2_metadata(command.outputs.recording);
+}
+
+void refuse_what_needs_a_server(const RunCommand& command) {
+  const auto refuse = [](const std::string& option) {
+    throw std::invalid_argument("'" + option + "' cannot be used with '--controllers inprocess'");
+  };
+  if (command.paused) refuse("--paused");
+  if (command.keep_interval > 0.0) refuse("--keep-snapshots");
+  if (command.view) refuse("--view");
+  if (command.ros2) refuse("--ros2");
+}
+
+void refuse_rewind_without_snapshots(const RunCommand& command, const description::Experiment& experiment) {
+  if (command.keep_interval > 0.0) return;
+  for (const description::Team& team : experiment.teams)
+    if (team.policy.on_lost == description::OnLost::rewind)
+      throw description::InputError(
+          {{experiment.file, 0, "team " + team.name,
+            "'on_lost: rewind' requires snapshots; '--keep-snapshots 10' keeps one every 10 s"}});
+}
+
+std::size_t count_of_runs(const RunCommand& command) {
+  return command.files.size() * std::max<std::size_t>(1, command.seeds.size()) * command.repeat;
+}
+
+// Returns whether the run shows a world or a model without an experiment in a browser.
+bool is_world_looked_at(const RunCommand& command, const std::filesystem::path& file) {
+  return command.view && parsing::kind_of_file(file) == parsing::FileKind::sdf;
+}
+
+using ReadFile = decltype(parsing::read_experiment_with_joint_motors);
+
+description::Experiment read(const RunCommand& command, const std::filesystem::path& file, Log& log) {
+  std::optional<std::chrono::nanoseconds> duration;
+  if (command.duration) duration = nanoseconds(*command.duration);
+  const bool is_looked_at = is_world_looked_at(command, file);
+  if (is_looked_at && !duration && count_of_runs(command) == 1) duration = parsing::without_end;
+  auto* const read_file =
+      is_looked_at ? parsing::read_experiment_with_joint_motors : static_cast<ReadFile*>(parsing::read_experiment);
+  const Stopwatch reading;
+  description::Experiment experiment =
+      read_file(file, command.seed, duration, installed_model_folders(), xacro_of(command.runs_xacro));
+  set_recorded(experiment, command.record);
+  if (!command.is_part) log.warnings(experiment.world.warnings);
+  log.info(
+      fmt::format("read {} and {}: {}, {}, {}, in {:.2f} s", file.string(), experiment.world.file.string(),
+                  counted(experiment.world.instances.size(), "model"), counted(experiment.world.robots.size(), "robot"),
+                  counted(experiment.teams.size(), "team"), reading.seconds()),
+      {{"models", experiment.world.instances.size()},
+       {"robots", experiment.world.robots.size()},
+       {"teams", experiment.teams.size()},
+       {"seconds", reading.seconds()}});
+  return experiment;
+}
+
+using Snapshot = std::shared_ptr<const session::SessionSnapshot>;
+using ExperimentPtr = std::shared_ptr<const description::Experiment>;
+
+session::RunWorld build_world(const RunCommand& command, const ExperimentPtr& experiment, const Snapshot& from,
+                              Log& log) {
+  const unsigned threads = session::threads_for(*experiment, command.threads);
+  const Stopwatch building;
+  session::RunWorld world = session::build_world(experiment, threads, from.get());
+  log.info(fmt::format("built the world for {} in {:.2f} s", counted(threads, "thread"), building.seconds()),
+           {{"threads", threads}, {"seconds", building.seconds()}});
+  return world;
+}
+
+// State that runs share, and that one run leaves to the next.
+struct Runs {
+  const RunCommand& command;
+  std::vector<ExperimentPtr> experiments{};
+  std::vector<TeamController> controllers{};
+  Snapshot from{};
+  session::RunWorld first{};
+  std::optional<Serving> serving{};
+  double cpu_before = 0.0;
+  std::vector<SeedRow> rows{};  // with --seeds: the runs that have succeeded
+};
+
+Outputs outputs_of(const RunCommand& command, std::size_t number, std::size_t count) {
+  return (command.seeds.empty() ? numbered : numbered_by_seed)(command.outputs, number, count);
+}
+
+void add_row(Runs& runs, SeedRow row, std::size_t count, Log& log) {
+  log.notice(fmt::format("run {} of {}: {}, seed {}: {:.2f} s simulated in {:.2f} s, state hash {}", row.run, count,
+                         row.experiment, row.seed, row.sim_time, row.wall, row.state_hash),
+             {{"run", row.run}, {"seed", row.seed}, {"state_hash", row.state_hash}});
+  runs.rows.push_back(std::move(row));
+}
+
+// Prints the table of all seeds, and writes it where it was asked for. Returns the exit code.
+int end_table(const Runs& runs, int code, Log& log) {
+  const RunCommand& command = runs.command;
+  if (command.seeds.empty()) return code;
+  if (!command.quiet && !runs.rows.empty()) show(seed_table(runs.rows));
+  std::fflush(stdout);
+  if (command.outputs.csv.empty()) return code;
+  try {
+    write_file("the table", command.outputs.csv, seed_csv(runs.rows));
+    return code;
+  } catch (const std::exception& error) {
+    log.error(text_of(error));
+    return code == exit_ok ? exit_failed : code;
+  }
+}
+
+// Runs a world, and the worlds that replace it after a reset or a loaded snapshot. Returns the exit code; sets
+// `goes_on` to false if no further run should follow.
+int run_one(Runs& runs, std::size_t number, std::size_t count, session::RunWorld world, Log& log,
+            const std::atomic<bool>& stop, bool& goes_on) {
+  const RunCommand& command = runs.command;
+  const session::RunOptions options = {
+      .speed = speed_of(command, *world.experiment),
+      .state = command.paused || command.view_opens ? session::PlaybackState::paused : session::PlaybackState::playing,
+      .from = runs.from,
+      .keep_interval = keep_interval_of(command, *world.experiment),
+      .needs_recording = command.record_or_stop};
+  using enum recording::Beginning;
+  OneRun one(command, outputs_of(command, number, count), log, stop);
+  one.begin(*world.experiment, *world.simulation, runs.from ? restored : first);
+  const auto finish = [&](const RunResult& result) {
+    const double now = cpu_seconds();
+    const double cpu = now - std::exchange(runs.cpu_before, now);
+    const int code = one.finish(result, cpu);
+    if (!command.seeds.empty() && code == exit_ok && result.end == RunResult::End::finished)
+      add_row(runs, seed_row(number, *world.experiment, result, cpu), count, log);
+    return code;
+  };
+  const auto finish_process = [&](const RunResult& result) { return end_table(runs, finish(result), log); };
+  const RunResult result = session::run_with_resets(
+      world, options, session::threads_for(*world.experiment, command.threads),
+      [&](const session::RunWorld& now, const session::RunOptions& with) {
+        return runs.serving
+                   ? runs.serving->run(*now.experiment, *now.simulation, with, one.listener(), stop, number == count)
+                   : run_here(*now.experiment, *now.simulation, runs.controllers, with, one.listener(), finish_process,
+                              log, stop);
+      },
+      [&](const RunResult& ended, const session::RunWorld& next) {
+        const bool is_reset = ended.end == RunResult::End::reset;
+        log.notice(fmt::format("{} at tick {}: the run continues from tick {} with seed {}",
+                               is_reset ? "reset" : "snapshot loaded", ended.ticks, next.simulation->tick(),
+                               next.experiment->seed));
+        one.begin(*next.experiment, *next.simulation, is_reset ? reset : restored);
+      });
+  goes_on = result.end == RunResult::End::finished;
+  return finish(result);
+}
+
+// Returns the experiment of a run: all experiments in order, then again with the next seed, then all of it again.
+ExperimentPtr experiment_of_run(const Runs& runs, std::size_t number) {
+  const ExperimentPtr& experiment = runs.experiments[(number - 1) % runs.experiments.size()];
+  const std::vector<std::uint64_t>& seeds = runs.command.seeds;
+  if (seeds.empty()) return experiment;
+  return session::with_seed(experiment, seeds[(number - 1) / runs.experiments.size() % seeds.size()]);
+}
+
+// Runs all experiments in order, until one does not finish. Returns the exit code.
+int run_each(Runs& runs, Log& log, const std::atomic<bool>& stop) {
+  const std::size_t count = count_of_runs(runs.command);
+  int code = exit_ok;
+  try {
+    bool goes_on = true;
+    for (std::size_t number = 1; number <= count && code == exit_ok && goes_on; ++number) {
+      const ExperimentPtr experiment = experiment_of_run(runs, number);
+      if (count > 1 && runs.command.seeds.empty())
+        log.notice(fmt::format("run {} of {}: {}, seed {}", number, count, experiment->name, experiment->seed));
+      session::RunWorld world = runs.first.simulation != nullptr
+                                    ? std::exchange(runs.first, {})
+                                    : build_world(runs.command, experiment, runs.from, log);
+      code = run_one(runs, number, count, std::move(world), log, stop, goes_on);
+    }
+  } catch (const std::exception& error) {
+    log.error(text_of(error));
+    return exit_failed;
+  }
+  return code;
+}
+
+// Reads the snapshot from which the runs start, and takes its seed.
+Snapshot snapshot_of(RunCommand& command) {
+  if (command.from.empty()) return nullptr;
+  auto snapshot = std::make_shared<session::SessionSnapshot>(session::read_snapshot(command.from));
+  if (command.seed && *command.seed != snapshot->seed)
+    throw std::invalid_argument(fmt::format("{} has seed {}, which conflicts with '--seed {}'", command.from.string(),
+                                            snapshot->seed, *command.seed));
+  command.seed = snapshot->seed;
+  return snapshot;
+}
+
+int run(RunCommand command, Log& log, const std::atomic<bool>& stop) {
+  Runs runs{command};
+  if (command.jobs > 0 && command.seeds.empty()) throw std::invalid_argument("'--jobs' needs '--seeds'");
+  runs.cpu_before = cpu_seconds();  // the shell that this process replaced may have had children
+  for (std::filesystem::path& file : command.files) {
+    file = experiment_called(file);
+    // The page is on the loopback. With security its user needs the right to drive, which --control asks for.
+    if (command.secure.empty() && is_world_looked_at(command, file)) command.view_controls = true;
+  }
+  if (!command.seeds.empty()) command.seed = command.seeds.front();
+  const std::size_t count = count_of_runs(command);
+  for (std::size_t number = 1; number <= count; ++number) check_writable(outputs_of(command, number, count));
+  if (!command.seeds.empty() && !command.outputs.csv.empty()) check_writable("the table", command.outputs.csv);
+  if (command.record.makes_rosbag2) check_rosbag2(command, count);
+  const bool in_process = command.controllers == Controllers::in_process;
+  if (in_process) refuse_what_needs_a_server(command);
+  runs.from = snapshot_of(command);
+  for (const std::filesystem::path& file : command.files) {
+    runs.experiments.push_back(std::make_shared<description::Experiment>(read(command, file, log)));
+    if (!in_process) refuse_rewind_without_snapshots(command, *runs.experiments.back());
+    if (runs.from) session::expect_same_experiment(*runs.from, *runs.experiments.back());
+  }
+  const description::Experiment& first = *runs.experiments.front();
+  if (in_process) refuse_keyboard(first);
+  std::optional<ControllerEnds> ends_on_trial(std::in_place, log, ControllerEnds::Options{exit_usage, true});
+  if (command.controllers != Controllers::external) runs.controllers = load_controllers(first);
+  runs.first = build_world(command, runs.experiments.front(), runs.from, log);
+  if (command.controllers != Controllers::external) try_controllers(first, *runs.first.simulation, runs.controllers);
+  ends_on_trial.reset();
+  if (!command.is_part) warn_if_not_portable(log);
+  if (!command.seeds.empty())
+    if (const unsigned jobs = jobs_for(command, first, count); jobs > 1) {
+      runs.controllers.clear();
+      runs.first = {};
+      const int code = run_side_by_side(command, first, jobs, log, stop,
+                                        [&](SeedRow row) { add_row(runs, std::move(row), count, log); });
+      return end_table(runs, code, log);
+    }
+
+  if (!in_process) runs.serving.emplace(command, first, log);
+  if (runs.serving && command.view) runs.serving->start_view(first, outputs_of(command, count, count).recording);
+  if (runs.serving) runs.serving->start_controllers(first, runs.controllers);
+  const int code = end_table(runs, run_each(runs, log, stop), log);
+  if (runs.serving && !stop) runs.serving->let_look(stop);
+  return code;
+}
+
+Subcommand running(CommandLine line, const std::shared_ptr<RunCommand>& command, const LogFlags& flags) {
+  return {line, [command, &flags](Log& log, const std::atomic<bool>& stop) {
+            command->quiet = flags.quiet;
+            return run(*command, log, stop);
+          }};
+}
+
+}  // namespace
+
+Subcommand add_run(CommandLine app, LogFlags& flags) {
+  static const std::map<std::string, Controllers> placements = {{"inprocess", Controllers::in_process},
+                                                                {"process", Controllers::process},
+                                                                {"per-robot", Controllers::per_robot},
+                                                                {"external", Controllers::external}};
+  const auto command = std::make_shared<RunCommand>();
+  CommandLine line = app.add_subcommand("run", "Run an experiment with its controllers");
+  line.add_option("FILE", command->files.emplace_back(),
+                  "Experiment (YAML), name of an example, or a world or model, which runs without controllers")
+      .required()
+      .type_name("");
+  add_run_options(line, *command, flags);
+  line.add_option_function<std::string>(
+          "--controllers",
+          [&command = *command](const std::string& where) { command.controllers = placements.at(where); },
+          "Where controllers run: one process per team (process, the default), one per robot (per-robot), the server's "
+          "process (inprocess), or started elsewhere (external)")
+      .check(one_of({"process", "per-robot", "inprocess", "external"}))
+      .type_name("process|per-robot|inprocess|external");
+  line.add_option("--jobs", command->jobs,
+                  "With --seeds: runs at once, each in a process, with the same results (default: by the cores that it "
+                  "may use)")
+      .check(whole_number(1, 1024))
+      .type_name("N");
+  line.add_flag("--is-part", command->is_part).hide();
+  line.footer("Example: cohort run obstacle_avoidance --duration 10 --plot run.svg");
+  return running(line, command, flags);
+}
+
+Subcommand add_serve(CommandLine app, LogFlags& flags) {
+  const auto command = std::make_shared<RunCommand>();
+  command->controllers = Controllers::external;
+  CommandLine line = app.add_subcommand("serve", "Run an experiment's world and wait for controllers to attach");
+  line.add_option("FILE", command->files,
+                  "Experiments (YAML), names of examples, worlds or models, run one after the other")
+      .required()
+      .type_name("");
+  add_run_options(line, *command, flags);
+  line.add_option("--network", command->network, "Address of the network interface to serve on")
+      .envname("COHORT_NETWORK")
+      .capture_default_str()
+      .type_name("ADDRESS");
+  line.footer("Example: cohort serve obstacle_avoidance --domain 7 --network 10.0.0.5");
+  return running(line, command, flags);
+}
+
+}  // namespace cohort::tool

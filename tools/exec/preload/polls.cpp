@@ -1,0 +1,233 @@
+// Waits for descriptors, with a time limit.
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/select.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "tools/exec/preload/virtual_clock.hpp"
+
+using namespace cohort::exec;
+
+#define COHORT_CALLER __builtin_return_address(0)
+
+namespace {
+
+constexpr std::int64_t millisecond = 1'000'000;
+
+bool is_virtual_for(const void* caller) { return !is_real(caller) && page()->is_real == 0; }
+
+int poll_really(pollfd* polled, nfds_t count, const timespec* time, const sigset_t* mask) {
+  COHORT_NEXT(ppoll);
+  return real(polled, count, time, mask);
+}
+
+// Polls until a virtual time, 0 for not at all.
+int poll_until(pollfd* polled, nfds_t count, std::int64_t deadline, const sigset_t* mask) {
+  constexpr timespec at_once{};
+  const int ready = poll_really(polled, count, &at_once, mask);
+  if (ready != 0) return ready;
+  if (deadline <= now()) {
+    count_spin();
+    return 0;
+  }
+  constexpr nfds_t most_on_stack = 64;
+  pollfd few[most_on_stack + 1];
+  pollfd* const all =
+      count <= most_on_stack ? few : static_cast<pollfd*>(__builtin_alloca((count + 1) * sizeof(pollfd)));
+  if (count > 0) ::memcpy(all, polled, count * sizeof(pollfd));
+  const int event = event_of_thread();
+  all[count] = {event, POLLIN, 0};
+  const TimedWait wait(deadline, {.kind = Ending::Kind::write_event, .descriptor = event});
+  const int result = poll_really(all, count + 1, nullptr, mask);
+  if (result < 0) return result;
+  if (count > 0) ::memcpy(polled, all, count * sizeof(pollfd));
+  return result - (all[count].revents != 0 ? 1 : 0);
+}
+
+}  // namespace
+
+COHORT_REPLACES int poll(pollfd* polled, nfds_t count, int time) {
+  COHORT_NEXT(poll);
+  if (time < 0 || !is_virtual_for(COHORT_CALLER)) return real(polled, count, time);
+  return poll_until(polled, count, time == 0 ? 0 : later(now(), time * millisecond), nullptr);
+}
+
+COHORT_REPLACES int ppoll(pollfd* polled, nfds_t count, const timespec* time, const sigset_t* mask) {
+  if (time == nullptr || !is_virtual_for(COHORT_CALLER)) return poll_really(polled, count, time, mask);
+  return poll_until(polled, count, nanoseconds(*time) == 0 ? 0 : later(now(), nanoseconds(*time)), mask);
+}
+
+namespace {
+
+// As poll_until does.
+int select_until(int count, fd_set* reads, fd_set* writes, fd_set* others, std::int64_t deadline,
+                 const sigset_t* mask) {
+  COHORT_NEXT(pselect);
+  constexpr timespec at_once{};
+  fd_set* const given[3] = {reads, writes, others};
+  fd_set wanted[3];
+  for (int i = 0; i < 3; ++i)
+    if (given[i] != nullptr) wanted[i] = *given[i];
+  const int ready = real(count, reads, writes, others, &at_once, mask);
+  if (ready != 0) return ready;
+  if (deadline <= now()) {
+    count_spin();
+    return 0;
+  }
+  const int event = event_of_thread();
+  if (event >= FD_SETSIZE) {
+    errno = EMFILE;
+    return -1;
+  }
+  if (reads == nullptr) FD_ZERO(&wanted[0]);
+  FD_SET(event, &wanted[0]);
+  const TimedWait wait(deadline, {.kind = Ending::Kind::write_event, .descriptor = event});
+  const int result = real(event >= count ? event + 1 : count, &wanted[0], writes != nullptr ? &wanted[1] : nullptr,
+                          others != nullptr ? &wanted[2] : nullptr, nullptr, mask);
+  if (result < 0) return result;
+  const bool is_late = FD_ISSET(event, &wanted[0]);
+  FD_CLR(event, &wanted[0]);
+  for (int i = 0; i < 3; ++i)
+    if (given[i] != nullptr) *given[i] = wanted[i];
+  return result - (is_late ? 1 : 0);
+}
+
+}  // namespace
+
+COHORT_REPLACES int select(int count, fd_set* reads, fd_set* writes, fd_set* others, timeval* time) {
+  COHORT_NEXT(select);
+  if (time == nullptr || !is_virtual_for(COHORT_CALLER)) return real(count, reads, writes, others, time);
+  const std::int64_t limit = nanoseconds(*time);
+  const std::int64_t deadline = later(now(), limit);
+  const int result = select_until(count, reads, writes, others, limit == 0 ? 0 : deadline, nullptr);
+  const std::int64_t left = deadline > now() ? deadline - now() : 0;  // as Linux does
+  *time = {left / second, left % second / 1000};
+  return result;
+}
+
+COHORT_REPLACES int pselect(int count, fd_set* reads, fd_set* writes, fd_set* others, const timespec* time,
+                            const sigset_t* mask) {
+  COHORT_NEXT(pselect);
+  if (time == nullptr || !is_virtual_for(COHORT_CALLER)) return real(count, reads, writes, others, time, mask);
+  return select_until(count, reads, writes, others, nanoseconds(*time) == 0 ? 0 : later(now(), nanoseconds(*time)),
+                      mask);
+}
+
+namespace {
+
+int take_events(int queue, epoll_event* events, int most) {
+  COHORT_NEXT(epoll_wait);
+  return real(queue, events, most, 0);
+}
+
+int wait_for_events(int queue, epoll_event* events, int most, std::int64_t deadline, const sigset_t* mask) {
+  for (;;) {
+    pollfd polled{queue, POLLIN, 0};
+    const int ready = poll_until(&polled, 1, deadline, mask);
+    if (ready <= 0) return ready;
+    const int count = take_events(queue, events, most);
+    if (count != 0) return count;  // else another thread took them
+  }
+}
+
+}  // namespace
+
+COHORT_REPLACES int epoll_wait(int queue, epoll_event* events, int most, int time) {
+  COHORT_NEXT(epoll_wait);
+  if (time < 0 || !is_virtual_for(COHORT_CALLER)) return real(queue, events, most, time);
+  return wait_for_events(queue, events, most, time == 0 ? 0 : later(now(), time * millisecond), nullptr);
+}
+
+COHORT_REPLACES int epoll_pwait(int queue, epoll_event* events, int most, int time, const sigset_t* mask) {
+  COHORT_NEXT(epoll_pwait);
+  if (time < 0 || !is_virtual_for(COHORT_CALLER)) return real(queue, events, most, time, mask);
+  return wait_for_events(queue, events, most, time == 0 ? 0 : later(now(), time * millisecond), mask);
+}
+
+COHORT_REPLACES int epoll_pwait2(int queue, epoll_event* events, int most, const timespec* time, const sigset_t* mask) {
+  COHORT_NEXT(epoll_pwait2);
+  if (time == nullptr || !is_virtual_for(COHORT_CALLER)) return real(queue, events, most, time, mask);
+  return wait_for_events(queue, events, most, nanoseconds(*time) == 0 ? 0 : later(now(), nanoseconds(*time)), mask);
+}
+
+namespace {
+
+// How long a socket waits for what it receives (SO_RCVTIMEO), by descriptor; 0: for ever.
+constexpr int most_descriptors = 4096;
+std::atomic<std::int64_t> receive_times[most_descriptors];
+
+bool has_receive_time(int descriptor) {
+  return page() != nullptr && descriptor >= 0 && descriptor < most_descriptors && receive_times[descriptor] != 0;
+}
+
+// Returns false if nothing came within the socket's time.
+bool await_data(const void* caller, int descriptor) {
+  if (!has_receive_time(descriptor) || !is_virtual_for(caller)) return true;
+  pollfd polled{descriptor, POLLIN, 0};
+  if (poll_until(&polled, 1, later(now(), receive_times[descriptor]), nullptr) > 0) return true;
+  errno = EAGAIN;
+  return false;
+}
+
+// One that finds nothing polls.
+template <class Result>
+Result counted(const void* caller, Result result) {
+  if (result >= 0 || (errno != EAGAIN && errno != EWOULDBLOCK) || !is_virtual_for(caller)) return result;
+  const int error = errno;
+  count_spin();
+  errno = error;
+  return result;
+}
+
+}  // namespace
+
+COHORT_REPLACES int setsockopt(int descriptor, int level, int name, const void* value, socklen_t size) noexcept {
+  COHORT_NEXT(setsockopt);
+  const bool is_time = level == SOL_SOCKET && name == SO_RCVTIMEO && value != nullptr && size >= sizeof(timeval);
+  if (!is_time || descriptor < 0 || descriptor >= most_descriptors || !is_virtual_for(COHORT_CALLER))
+    return real(descriptor, level, name, value, size);
+  receive_times[descriptor] = nanoseconds(*static_cast<const timeval*>(value));
+  return 0;
+}
+
+COHORT_REPLACES int close(int descriptor) {
+  COHORT_NEXT(close);
+  if (descriptor >= 0 && descriptor < most_descriptors) receive_times[descriptor] = 0;
+  return real(descriptor);
+}
+
+COHORT_REPLACES ssize_t read(int descriptor, void* bytes, std::size_t size) {
+  COHORT_NEXT(read);
+  if (!await_data(COHORT_CALLER, descriptor)) return -1;
+  return counted(COHORT_CALLER, real(descriptor, bytes, size));
+}
+
+COHORT_REPLACES ssize_t recv(int descriptor, void* bytes, std::size_t size, int flags) {
+  COHORT_NEXT(recv);
+  if ((flags & MSG_DONTWAIT) == 0 && !await_data(COHORT_CALLER, descriptor)) return -1;
+  return counted(COHORT_CALLER, real(descriptor, bytes, size, flags));
+}
+
+COHORT_REPLACES ssize_t recvfrom(int descriptor, void* bytes, std::size_t size, int flags, sockaddr* from,
+                                 socklen_t* length) {
+  COHORT_NEXT(recvfrom);
+  if ((flags & MSG_DONTWAIT) == 0 && !await_data(COHORT_CALLER, descriptor)) return -1;
+  return counted(COHORT_CALLER, real(descriptor, bytes, size, flags, from, length));
+}
+
+COHORT_REPLACES ssize_t recvmsg(int descriptor, msghdr* message, int flags) {
+  COHORT_NEXT(recvmsg);
+  if ((flags & MSG_DONTWAIT) == 0 && !await_data(COHORT_CALLER, descriptor)) return -1;
+  return counted(COHORT_CALLER, real(descriptor, message, flags));
+}
+
+COHORT_REPLACES int accept(int descriptor, sockaddr* from, socklen_t* length) {
+  COHORT_NEXT(accept);
+  if (!await_data(COHORT_CALLER, descriptor)) return -1;
+  return counted(COHORT_CALLER, real(descriptor, from, length));
+}

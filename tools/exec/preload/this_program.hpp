@@ -1,0 +1,52 @@
+#pragma once
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+
+#include "tools/exec/preload/virtual_clock.hpp"
+
+/// Facts about the program that has loaded this library. None of it is seen outside.
+namespace cohort::exec {
+
+extern ClockPage* the_page;  // nullptr in a program that runs in real time
+extern Process* this_process;
+
+struct Thread {
+  Wait* wait;
+  std::uint64_t order;
+  bool has_order;
+  bool is_of_dds;
+  bool creates_threads_of_dds;
+  bool is_helper;
+  int uses_real_time;  // how many times it was told to
+  std::uint32_t reads;
+  int event;  // descriptor + 1; 0: none
+  std::int64_t overridden;
+  struct Verdict {
+    const void* caller;
+    std::uint8_t what;  // bits: 1 known, 2 DDS, 4 this library, 8 the interpreter
+  } verdicts[256];
+};
+extern __thread Thread self __attribute__((tls_model("initial-exec")));
+
+inline long call_system(long number, long a = 0, long b = 0, long c = 0, long d = 0, long e = 0, long f = 0) {
+  using Function = long (*)(long, ...);
+  static const auto real = next<Function>("syscall");
+  return real(number, a, b, c, d, e, f);
+}
+
+template <class Word>
+long futex(std::atomic<Word>& word, int operation, Word value) {
+  return call_system(SYS_futex, reinterpret_cast<long>(&word), operation, static_cast<long>(value));
+}
+
+/// Enters this process into the page, which also those may have done who started it.
+void enter_process();
+/// Gives the calling thread its place among those whose waits end at the same time, if it has none.
+std::uint64_t order_of_thread();
+/// In the child of a fork: forgets the waits, which are the parent's.
+void forget_waits();
+/// The calling thread ends.
+void leave_thread();
+
+}  // namespace cohort::exec

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <sys/time.h>
+#include <time.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "tools/exec/clock_page.hpp"
+
+/// Shared by the calls that this library replaces: a caller's time, and waits that end in virtual time. The library
+/// runs inside other people's programs: no exceptions, no memory of the heap, no C++ library.
+namespace cohort::exec {
+
+#define COHORT_REPLACES extern "C" __attribute__((visibility("default")))
+
+inline constexpr std::int64_t second = 1'000'000'000;
+
+/// Returns the function that a call would reach without this library.
+template <class Function>
+Function next(const char* name, const char* version = nullptr) {
+  void* found = version != nullptr ? ::dlvsym(RTLD_NEXT, name, version) : nullptr;
+  if (found == nullptr) found = ::dlsym(RTLD_NEXT, name);
+  return reinterpret_cast<Function>(found);
+}
+/// The same of a library that a program may have loaded for itself alone, as Python does: then the one that the library
+/// of `caller` needs.
+template <class Function>
+Function next_for(const void* caller, const char* name) {
+  if (const auto found = next<Function>(name)) return found;
+  Dl_info info{};
+  if (::dladdr(caller, &info) == 0) return nullptr;
+  void* library = ::dlopen(info.dli_fname, RTLD_LAZY | RTLD_NOLOAD);
+  void* found = library != nullptr ? ::dlsym(library, name) : nullptr;
+  if (library != nullptr) ::dlclose(library);
+  return reinterpret_cast<Function>(found);
+}
+
+/// A name as a parameter of a template.
+template <std::size_t size>
+struct Name {
+  constexpr Name(const char (&its_text)[size]) {  // NOLINT(google-explicit-constructor): for literals
+    for (std::size_t i = 0; i < size; ++i) text[i] = its_text[i];
+  }
+  char text[size]{};
+};
+// Found when this library is loaded, if no call was before that. Later, a thread that looks for a function waits for
+// others that load libraries, which may wait for something that it holds.
+template <Name name, class Function, Name version>
+inline Function found_next = next<Function>(name.text, version.text[0] == '\0' ? nullptr : version.text);
+template <Name name, class Function, Name version = "">
+Function next_of() {
+  Function& found = found_next<name, Function, version>;
+  if (found == nullptr) found = next<Function>(name.text, version.text[0] == '\0' ? nullptr : version.text);
+  return found;
+}
+#define COHORT_NEXT(name) const auto real = cohort::exec::next_of<#name, decltype(&::name)>()
+#define COHORT_NEXT_VERSION(name, version) const auto real = cohort::exec::next_of<#name, decltype(&::name), version>()
+
+inline std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * second + time.tv_nsec; }
+inline std::int64_t nanoseconds(const timeval& time) { return time.tv_sec * second + time.tv_usec * 1000; }
+inline timespec to_timespec(std::int64_t time) { return {time / second, time % second}; }
+inline bool is_valid(const timespec& time) { return time.tv_sec >= 0 && time.tv_nsec >= 0 && time.tv_nsec < second; }
+
+/// Returns the sum, or `never`.
+inline std::int64_t later(std::int64_t time, std::int64_t by) { return by >= never - time ? never : time + by; }
+
+/// The page, or nullptr in a program that runs in real time.
+ClockPage* page();
+
+/// Returns whether a caller has the machine's time: a library of DDS, this library, or any caller without a page.
+bool is_real(const void* caller);
+/// Returns whether a caller is the Python interpreter itself, which hands its lock over by real time.
+bool is_interpreter(const void* caller);
+/// Returns whether a caller is a library of DDS.
+bool is_dds(const void* caller);
+
+/// Returns the machine's time.
+std::int64_t real_time(clockid_t clock);
+/// Returns whether the program has virtual time on this clock.
+bool is_virtual(clockid_t clock);
+/// Returns the program's time on a virtual clock.
+std::int64_t virtual_time(clockid_t clock);
+/// Returns a time of a virtual clock as one of CLOCK_MONOTONIC.
+std::int64_t on_page(clockid_t clock, std::int64_t time);
+std::int64_t now();
+
+/// Notes that the calling thread is about to do what may wake another one.
+void stir();
+
+/// Counts a read of the clock or a poll in vain, after many of which in a row the thread waits.
+void count_spin();
+
+/// The helper thread's action at the end of a wait.
+struct Ending {
+  enum class Kind : std::uint8_t { none, write_event, broadcast, wake_futex, call } kind = Kind::none;
+  int descriptor = -1;
+  void* object = nullptr;         // a condition variable, or a futex
+  void (*call)(void*) = nullptr;  // with `object`
+};
+
+/// Sleeps until a virtual time. Returns false if a signal was handled before.
+bool sleep_until(std::int64_t deadline);
+
+/// A wait of the calling thread for something that may come before `deadline`. The helper thread ends it by `ending`,
+/// maybe more than once.
+class TimedWait {
+ public:
+  TimedWait(std::int64_t deadline, const Ending& ending);
+  ~TimedWait();
+  TimedWait(const TimedWait&) = delete;
+  TimedWait& operator=(const TimedWait&) = delete;
+  bool is_over() const;
+
+ private:
+  std::int64_t deadline_;
+  Wait* wait_;
+};
+
+/// A timer: a wait that belongs to no thread. nullptr if there are too many.
+Wait* make_timer(const Ending& ending);
+void set_timer(Wait* timer, std::int64_t deadline);
+void remove_timer(Wait* timer);
+
+/// Returns this thread's event descriptor, which ends its polls; drained.
+int event_of_thread();
+
+/// Overrides the end of this thread's waits that the libraries in between give; `never` if there is no override.
+struct Override {
+  explicit Override(std::int64_t deadline);
+  ~Override();
+  Override(const Override&) = delete;
+  Override& operator=(const Override&) = delete;
+
+ private:
+  std::int64_t before_;
+};
+std::int64_t overridden();
+
+/// True while threads that this thread creates belong to DDS.
+struct CreatesThreadsOfDds {
+  explicit CreatesThreadsOfDds(bool they_do);
+  ~CreatesThreadsOfDds();
+  CreatesThreadsOfDds(const CreatesThreadsOfDds&) = delete;
+  CreatesThreadsOfDds& operator=(const CreatesThreadsOfDds&) = delete;
+
+ private:
+  bool before_;
+};
+/// Returns whether the calling thread belongs to DDS.
+bool is_thread_of_dds();
+
+}  // namespace cohort::exec

@@ -8,8 +8,10 @@ import { Driving } from "./driving";
 import { element } from "./element";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 import { Objects } from "./objects";
+import { Panels } from "./panels";
 import { PhaseCard } from "./phase_card";
 import { clockText, TimeBar } from "./time_bar";
+import { TopBar } from "./top_bar";
 import { Viewer } from "./viewer";
 
 const canvas = element("canvas") as HTMLCanvasElement;
@@ -26,7 +28,9 @@ const viewer = new Viewer(canvas, (robot) => {
   objects.show();
 });
 const commands = new Commands();
-const consolePanel = new ConsolePanel(commands);
+const panels = new Panels();
+const topBar = new TopBar();
+const consolePanel = new ConsolePanel(commands, panels);
 const timeBar = new TimeBar({
   play: () => void consolePanel.run("play"),
   pause: () => void consolePanel.run("pause"),
@@ -67,23 +71,22 @@ const connection: Connection = new Connection(
   },
   (isConnected) => {
     phaseCard.connect(isConnected);
+    topBar.connect(isConnected);
     if (isConnected && viewer.selected !== undefined) viewer.select(viewer.selected);
   },
 );
 for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const)
   connection.want(topic);
-addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, commands, canvas });
+addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, commands, canvas, panels });
 const driving = new Driving(viewer, connection, commands, consolePanel, canvas);
-const objects = new Objects(viewer, connection, consolePanel, canvas);
+const objects = new Objects(viewer, connection, consolePanel, canvas, panels);
 for (const command of [...driving.consoleCommands(), ...objects.consoleCommands()]) commands.add(command);
 
 function showStatus(status: ViewStatus): void {
   timeBar.take(status);
   phaseCard.take(status);
   document.body.classList.toggle("is-server", status.source === "server");
-  element("name").textContent = status.name;
-  document.title = `${status.name} · Cohort`;
-  element("factor").textContent = status.is_playing ? `${status.real_time_factor.toFixed(2)} ×` : "paused";
+  topBar.take(status);
   const waiting = status.awaited.length > 0 ? `waits for ${status.awaited.join(", ")}` : "";
   notes = [status.note, waiting];
   showNotes();
@@ -170,10 +173,11 @@ canvas.addEventListener("dblclick", ({ clientX: x, clientY: y }) => {
   viewer.cameras.choose("follow", entity);
   showPressed(viewer);
 });
-element("tools").addEventListener("click", ({ target }) => {
-  const command = (target as HTMLElement).dataset.command;
-  if (command) void consolePanel.run(command).then(() => showPressed(viewer));
-});
+for (const bar of ["tools", "menu"])
+  element(bar).addEventListener("click", ({ target }) => {
+    const command = (target as Element).closest<HTMLElement>("[data-command]")?.dataset.command;
+    if (command) void consolePanel.run(command).then(() => showPressed(viewer));
+  });
 
 // The picture.
 

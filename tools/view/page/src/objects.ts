@@ -5,6 +5,7 @@ import type { ConsolePanel } from "./console";
 import { element } from "./element";
 import { Ghost, originOf, standingHeight } from "./ghost";
 import { none, type Scene, ShapeKind } from "./messages";
+import type { Panels } from "./panels";
 import type { Viewer } from "./viewer";
 
 interface Dragged {
@@ -29,6 +30,7 @@ export class Objects {
     private readonly connection: Connection,
     private readonly console: ConsolePanel,
     private readonly canvas: HTMLCanvasElement,
+    private readonly panels: Panels,
   ) {
     viewer.stage.add(this.ghost.group);
     this.models.addEventListener("change", () => this.suggestName());
@@ -134,6 +136,7 @@ export class Objects {
       throw new Error(`there is no model '${model}' to add: expected one of ${names.join(", ")}`);
     this.viewer.select(undefined);
     this.card.hidden = false;
+    this.panels.show("right");
     this.offer(model);
   }
 

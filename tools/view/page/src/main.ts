@@ -12,18 +12,22 @@ import { Panels } from "./panels";
 import { PhaseCard } from "./phase_card";
 import { clockText, TimeBar } from "./time_bar";
 import { TopBar } from "./top_bar";
+import "./tree.css";
+import { Tree } from "./tree";
 import { Viewer } from "./viewer";
 
 const canvas = element("canvas") as HTMLCanvasElement;
+const mostWatched = 256; // robots; also in tools/view/web/client_session.hpp
 const clickSlack = 4; // [pixels] that a mouse may move in a click
 
 let bytes = 0;
 let unrecorded = ""; // why the recording of the run has ended, once it has
 let notes: readonly string[] = []; // from the last status
 
-const viewer = new Viewer(canvas, (robot) => {
-  connection.want("/cohort/robots", robot !== undefined);
-  void connection.ask({ operation: "watch", numbers: robot === undefined ? [] : [robot] });
+const viewer: Viewer = new Viewer(canvas, (robots) => {
+  connection.want("/cohort/robots", robots.length > 0);
+  void connection.ask({ operation: "watch", numbers: robots.slice(0, mostWatched) });
+  tree.show();
   driving.show();
   objects.show();
 });
@@ -31,6 +35,7 @@ const commands = new Commands();
 const panels = new Panels();
 const topBar = new TopBar();
 const consolePanel = new ConsolePanel(commands, panels);
+const tree: Tree = new Tree(viewer);
 const timeBar = new TimeBar({
   play: () => void consolePanel.run("play"),
   pause: () => void consolePanel.run("pause"),
@@ -42,7 +47,10 @@ const timeBar = new TimeBar({
   speed: (factor) => void connection.ask({ operation: "speed", number: factor }),
 });
 
-const phaseCard = new PhaseCard(() => void consolePanel.run("replay"));
+const phaseCard = new PhaseCard(
+  () => void consolePanel.run("replay"),
+  () => `${element("tick").textContent} ticks, state hash ${element("hash").textContent}`,
+);
 const connection: Connection = new Connection(
   addressOfServer(location),
   {
@@ -56,7 +64,8 @@ const connection: Connection = new Connection(
       viewer.take(frame);
       element("tick").textContent = String(frame.tick);
       element("hash").textContent = frame.state_hash === 0n ? "–" : frame.state_hash.toString(16).padStart(16, "0");
-      const robots = viewer.robotEntities().filter((entity) => !viewer.poses?.absent.has(entity)).length;
+      const gone = new Set(frame.absent);
+      const robots = viewer.robotEntities().filter((entity) => !gone.has(entity)).length;
       element("robots").textContent = String(robots);
     },
     "/cohort/signals": (signals, size) => {
@@ -72,7 +81,7 @@ const connection: Connection = new Connection(
   (isConnected) => {
     phaseCard.connect(isConnected);
     topBar.connect(isConnected);
-    if (isConnected && viewer.selected !== undefined) viewer.select(viewer.selected);
+    if (isConnected && viewer.selection.size > 0) viewer.selectMany([...viewer.selection]);
   },
 );
 for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const)
@@ -155,7 +164,15 @@ canvas.addEventListener(
   { capture: true },
 );
 canvas.addEventListener("pointermove", ({ clientX: x, clientY: y }) => objects.hover(x, y));
-canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button }) => {
+// With Ctrl an entity is added to the selection, or taken out of it.
+function pick(x: number, y: number, isAdded: boolean): void {
+  const entity = viewer.pickAt(x, y);
+  if (!isAdded) viewer.select(entity);
+  if (!isAdded || entity === undefined) return;
+  const others = [...viewer.selection].filter((each) => each !== entity);
+  viewer.selectMany(viewer.selection.has(entity) ? others : [...others, entity]);
+}
+canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button, ctrlKey, metaKey }) => {
   if (objects.isDragging) {
     viewer.cameras.controls.enabled = viewer.cameras.mode !== "eye";
     void objects.drop(x, y);
@@ -163,7 +180,7 @@ canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button }) => {
   }
   if (Math.hypot(x - pressed.x, y - pressed.y) > clickSlack) return;
   if (button === 0 && objects.place(x, y)) return;
-  if (button === 0) viewer.select(viewer.pickAt(x, y));
+  if (button === 0) pick(x, y, ctrlKey || metaKey);
   else runBound(`mouse${button}`);
 });
 canvas.addEventListener("dblclick", ({ clientX: x, clientY: y }) => {
@@ -192,6 +209,7 @@ function draw(now: number): void {
 }
 requestAnimationFrame(draw);
 setInterval(() => {
+  element("seen").textContent = viewer.describe();
   element("rate").textContent = String(viewer.framesDrawn);
   element("traffic").textContent = (bytes / 1000).toFixed(0);
   viewer.framesDrawn = 0;

@@ -6,6 +6,7 @@ import { element } from "./element";
 import { Ghost, originOf, standingHeight } from "./ghost";
 import { none, type Scene, ShapeKind } from "./messages";
 import type { Panels } from "./panels";
+import { Removal } from "./removal";
 import type { Viewer } from "./viewer";
 
 interface Dragged {
@@ -23,6 +24,7 @@ export class Objects {
   private readonly card = element("adding");
   private readonly models = element("adding-model") as HTMLSelectElement;
   private readonly name = element("adding-name") as HTMLInputElement;
+  private readonly removal: Removal;
   private dragged: Dragged | undefined;
 
   constructor(
@@ -33,9 +35,13 @@ export class Objects {
     private readonly panels: Panels,
   ) {
     viewer.stage.add(this.ghost.group);
+    this.removal = new Removal(viewer, (name) => this.ask({ operation: "remove", name }));
     this.models.addEventListener("change", () => this.suggestName());
     element("adding-close").addEventListener("click", () => this.close());
-    element("remove").addEventListener("click", () => void this.remove());
+    element("remove").addEventListener("click", () => {
+      canvas.focus();
+      this.removal.begin(viewer.selectedEntity?.name);
+    });
     element("light").addEventListener("click", () => void this.switchLight());
     canvas.addEventListener("pointerleave", () => this.ghost.hide());
   }
@@ -187,14 +193,6 @@ export class Objects {
   }
 
   // The selection.
-
-  private async remove(): Promise<void> {
-    const { selectedEntity } = this.viewer;
-    this.canvas.focus();
-    if (!selectedEntity) return;
-    const isDone = await this.ask({ operation: "remove", name: selectedEntity.name });
-    if (isDone && this.viewer.selectedEntity?.name === selectedEntity.name) this.viewer.select(undefined);
-  }
 
   private async switchLight(): Promise<void> {
     const { selectedEntity } = this.viewer;

@@ -8,6 +8,7 @@ interface Card {
   toType?: string;
   recording?: string;
   isWrong?: boolean;
+  hasNumbers?: boolean; // the tick and the hash of the last state
 }
 
 const ends: Record<string, string> = {
@@ -50,6 +51,7 @@ export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Ca
       return {
         title: ends[status.end] ?? "The run has ended",
         text: `At ${at}${status.end_text ? `: ${status.end_text}` : "."}`,
+        hasNumbers: true,
         isWrong: status.end === "failed",
         ...over,
       };
@@ -73,7 +75,11 @@ export class PhaseCard {
   private closed = "";
   private readonly panel = element("phase");
 
-  constructor(replay: () => void) {
+  /** `numbers` returns the tick and the state hash that are shown. */
+  constructor(
+    replay: () => void,
+    private readonly numbers: () => string,
+  ) {
     element("replay").addEventListener("click", replay);
     element("phase-close").addEventListener("click", () => {
       this.closed = element("phase-title").textContent ?? "";
@@ -102,7 +108,7 @@ export class PhaseCard {
     if (!card) return;
     this.panel.classList.toggle("wrong", card.isWrong ?? false);
     element("phase-title").textContent = card.title;
-    element("phase-text").textContent = card.text;
+    element("phase-text").textContent = card.hasNumbers ? `${card.text}\n${this.numbers()}` : card.text;
     element("phase-type").hidden = !card.toType;
     element("to-type").textContent = card.toType ?? "";
     element("replay").hidden = !card.recording;

@@ -60,6 +60,7 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
   return [
     plain("play", "goes on"),
     plain("pause", "stands still"),
+    plain("again", "repeats a run that 'cohort run --view --control' started, once it has ended"),
     plain("replay", "shows the recording of a run that has ended"),
     command(
       "step [TICKS]",

@@ -49,6 +49,7 @@ const timeBar = new TimeBar({
 
 const phaseCard = new PhaseCard(
   () => void consolePanel.run("replay"),
+  () => void consolePanel.run("again"),
   () => `${element("tick").textContent} ticks, state hash ${element("hash").textContent}`,
 );
 const connection: Connection = new Connection(

@@ -7,6 +7,7 @@ interface Card {
   text: string;
   toType?: string;
   recording?: string;
+  canRunAgain?: boolean;
   isWrong?: boolean;
   hasNumbers?: boolean; // the tick and the hash of the last state
 }
@@ -29,7 +30,11 @@ export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Ca
     };
   if (!status) return undefined;
   const at = clockText(Number(status.time_ns) * 1e-9);
-  const over = { toType: status.to_type, recording: isConnected ? status.recording : "" };
+  const over = {
+    toType: status.to_type,
+    recording: isConnected ? status.recording : "",
+    canRunAgain: isConnected && status.can_run_again,
+  };
   switch (status.phase) {
     case "waiting":
       return {
@@ -78,9 +83,11 @@ export class PhaseCard {
   /** `numbers` returns the tick and the state hash that are shown. */
   constructor(
     replay: () => void,
+    runAgain: () => void,
     private readonly numbers: () => string,
   ) {
     element("replay").addEventListener("click", replay);
+    element("again").addEventListener("click", runAgain);
     element("phase-close").addEventListener("click", () => {
       this.closed = element("phase-title").textContent ?? "";
       this.show();
@@ -112,5 +119,6 @@ export class PhaseCard {
     element("phase-type").hidden = !card.toType;
     element("to-type").textContent = card.toType ?? "";
     element("replay").hidden = !card.recording;
+    element("again").hidden = !card.canRunAgain;
   }
 }

@@ -63,6 +63,7 @@ export class TopBar {
     element("state").dataset.phase = isWrong ? "wrong" : "";
     if (!status) return;
     element("name").textContent = status.name;
+    element("seed").textContent = status.seed === "" ? "" : `seed ${status.seed}`;
     document.title = `${status.name} · Cohort`;
     const isRunning = status.phase === "running" && status.is_playing;
     element("clock").textContent =

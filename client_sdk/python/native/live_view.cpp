@@ -166,7 +166,6 @@ void LiveView::show_status() {
   view::ViewStatus status;
   status.source = "program";
   status.name = simulation_.experiment().name;
-  status.seed = std::to_string(simulation_.seed());
   status.is_playing = shown_.is_playing;
   status.speed = 0.0;
   status.real_time_factor = shown_.is_playing ? shown_.real_time_factor : 0.0;

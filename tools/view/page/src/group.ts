@@ -4,7 +4,7 @@ import { element } from "./element";
 import { none, type SceneModel, type SceneRobot } from "./messages";
 import type { Poses } from "./poses";
 
-const drawInterval = 200; // [ms]
+const drawInterval = 150; // [ms]
 const mostRows = 200;
 
 export interface Statistics {
@@ -43,7 +43,8 @@ export class GroupPanel {
   private entities: readonly number[] = [];
   private models: readonly SceneModel[] = []; // by robot
   private modelOf = new Map<number, SceneModel>();
-  private drawn = 0;
+  private robots: readonly SceneRobot[] = []; // as they were last
+  private next: ReturnType<typeof setTimeout> | undefined; // drawing
   private readonly panel = element("group");
   private readonly title = document.createElement("h2");
   private readonly place = document.createElement("p");
@@ -57,7 +58,7 @@ export class GroupPanel {
     this.entities = entities;
     this.panel.hidden = entities.length === 0 || !poses;
     this.table.replaceChildren();
-    this.drawn = 0;
+    this.robots = [];
     this.modelOf = new Map();
     if (!poses || entities.length === 0) return;
     const { scene } = poses;
@@ -95,9 +96,14 @@ export class GroupPanel {
   }
 
   take(robots: readonly SceneRobot[]): void {
-    const now = performance.now();
-    if (this.panel.hidden || now - this.drawn < drawInterval) return;
-    this.drawn = now;
+    this.robots = robots;
+    this.next ??= setTimeout(() => this.draw(), drawInterval);
+  }
+
+  private draw(): void {
+    this.next = undefined;
+    const { robots } = this;
+    if (this.panel.hidden) return;
     const values = new Map<string, { unit: string; values: number[] }>();
     for (const robot of robots) {
       const model = this.modelOf.get(robot.robot);

@@ -138,6 +138,7 @@ function runBound(key: string): boolean {
 }
 
 addEventListener("keydown", (event) => {
+  if (document.querySelector("dialog[open]")) return;
   const isTyping = event.target instanceof HTMLInputElement && event.target.type !== "range";
   if (isTyping || event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
   if (driving.keyDown(event)) {

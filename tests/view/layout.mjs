@@ -155,7 +155,7 @@ async function showsTheWorldAsATree(page) {
   const four = ["sbot_0", "sbot_1", "sbot_2", "sbot_3"].map((name) => `explorers/${name}`);
   assert.deepEqual(await selected(page), four);
 
-  // What is hidden is not drawn, nor found by a click.
+  // Hidden robots are not drawn, also after a step.
   await page.locator("#isolate").click();
   const shown = () =>
     page.evaluate(() => {

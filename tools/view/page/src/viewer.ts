@@ -44,7 +44,7 @@ export class Viewer {
 
   private instances: Instances | undefined;
   private glow: Glow | undefined;
-  private robots: readonly SceneRobot[] = []; // of the selection
+  private robots: readonly SceneRobot[] = []; // the selected ones
   private readonly group = new GroupPanel();
   private readonly outline = new Outline();
   private readonly contacts = new Contacts();

@@ -187,7 +187,7 @@ void Children::handle_end(Child& child, int status) {
   if (!child.line.empty()) listener_.wrote(child.command, std::exchange(child.line, {}));
   close_if_open(child.output);
   close_if_open(child.pidfd);
-  if (listener_.ended) listener_.ended(child.pid);
+  if (listener_.ended) listener_.ended(child.pid, WIFEXITED(status) ? WEXITSTATUS(status) : -1);
   const std::string text = child.command.name + ": " + end_of(std::exchange(child.pid, -1), status);
   // A controller must not end during a run, even without an error.
   if (!restarting_ || finishing_) return;

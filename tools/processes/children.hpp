@@ -28,7 +28,8 @@ class Children {
   /// users.
   struct Listener {
     std::function<void(const Command& command, pid_t pid)> started{};
-    std::function<void(pid_t pid)> ended{};  ///< called before other callbacks for its end
+    /// Called before other callbacks for its end. `exit_code` is -1 if a signal ended it.
+    std::function<void(pid_t pid, int exit_code)> ended{};
     std::function<void(const Command& command, const std::string& text)> restarted{};
     std::function<void(const std::string& text)> gave_up{};  ///< a child died and is not restarted
     std::function<void(const Command& command, const std::string& text)> killed{};  ///< a child did not end on request

@@ -95,7 +95,7 @@ Children::Listener listener_of_controllers(session::Server& server, Log& log) {
   listener.restarted = listener.killed = [&](const Children::Command& command, const std::string& text) {
     log.warning(text, {{"controller_of", command.name}});
   };
-  listener.ended = [&](pid_t pid) { server.note_process_end(static_cast<std::uint32_t>(pid)); };
+  listener.ended = [&](pid_t pid, int) { server.note_process_end(static_cast<std::uint32_t>(pid)); };
   listener.gave_up = [&](const std::string& text) { server.fail(text); };
   listener.may_end_with = [](int exit_code) { return exit_code == exit_superseded; };
   // A host writes JSON itself on request, but its controllers do not, nor does a language runtime that aborts the

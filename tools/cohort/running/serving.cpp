@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -14,6 +16,7 @@
 #include <utility>
 
 #include "server/description/select_robots.hpp"
+#include "tools/cohort/cli/exit_codes.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/running/controller_processes.hpp"
 
@@ -105,13 +108,20 @@ std::string domains_text(const std::vector<std::uint32_t>& domains) {
   return fmt::format("domains {}", fmt::join(domains, ", "));
 }
 
+// Returns the command line of this process.
+std::vector<std::string> own_words() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  return words;
+}
+
 // Returns the command line of this process, quoted for a shell.
 std::string own_command_line() {
-  std::ifstream words("/proc/self/cmdline", std::ios::binary);
   std::string line = "cohort";
-  std::string word;
-  std::getline(words, word, '\0');  // the program's path
-  while (std::getline(words, word, '\0')) {
+  std::vector<std::string> words = own_words();
+  words.erase(words.begin());  // the program's path
+  for (std::string& word : words) {
     constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+@%";
     const bool is_plain = !word.empty() && word.find_first_not_of(plain) == std::string::npos;
     for (std::size_t at = 0; !is_plain && (at = word.find('\'', at)) != std::string::npos; at += 4)
@@ -231,9 +241,28 @@ void Serving::start_view(const description::Experiment& experiment, const std::f
   view.restarts = false;
   Children::Listener listener;
   listener.gave_up = [this](const std::string& text) { log_.warning(text); };
-  listener.ended = [this](pid_t) { has_view_ = false; };
+  listener.wrote = [this](const Children::Command&, const std::string& line) { note_page(line); };
+  listener.ended = [this](pid_t, int exit_code) {
+    is_asked_again_ = exit_code == exit_run_again;
+    has_view_ = false;
+  };
   has_view_ = true;
   view_ = std::make_unique<Children>(std::vector{std::move(view)}, std::move(listener));
+}
+
+// Passes a line of the view on, and reads the port of its page from it.
+void Serving::note_page(const std::string& line) {
+  std::fprintf(stderr, "%s\n", line.c_str());
+  static const std::string scheme = "http://";
+  const std::size_t colon = line.find(':', scheme.size());
+  if (line.starts_with(scheme) && colon != std::string::npos) page_port_ = std::atoi(line.c_str() + colon + 1);
+}
+
+std::vector<std::string> Serving::command_line_to_run_again() const {
+  if (!is_asked_again_) return {};
+  std::vector<std::string> words = own_words();
+  if (!command_.view_port) words.insert(words.end(), {"--port", std::to_string(page_port_)});
+  return words;
 }
 
 void Serving::let_look(const std::atomic<bool>& stop) {

@@ -31,6 +31,9 @@ class Serving {
   void start_view(const description::Experiment& experiment, const std::filesystem::path& recording);
   /// Waits while viewers of an ended run are connected, unless `stop` is set.
   void let_look(const std::atomic<bool>& stop);
+  /// Returns the command line that repeats the run and shows it at the same address, if the view's page has asked for
+  /// it; nothing otherwise. Call after `let_look`.
+  std::vector<std::string> command_line_to_run_again() const;
 
   /// `is_last`: controllers may leave after this run.
   session::RunResult run(const description::Experiment& experiment, Simulation& simulation,
@@ -38,6 +41,7 @@ class Serving {
                          const std::atomic<bool>& stop, bool is_last);
 
  private:
+  void note_page(const std::string& line);
   void tell_of_keyboard(const description::Experiment& experiment);
   description::Experiment without_ros2(const description::Experiment& experiment) const;
   void drive(const description::Experiment& experiment, const std::vector<std::uint32_t>& robots);
@@ -51,6 +55,8 @@ class Serving {
   std::unique_ptr<Children> children_;
   std::vector<std::unique_ptr<Children>> newcomers_;  // processes for added robots of the present run
   std::atomic<bool> has_view_{false};
+  std::atomic<bool> is_asked_again_{false};
+  std::atomic<int> page_port_{0};
   std::unique_ptr<Children> view_;
 };
 

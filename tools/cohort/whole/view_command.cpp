@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <functional>
@@ -109,7 +110,8 @@ class Desertion {
 // `make_source` creates the source that publishes to the server's topics.
 template <class MakeSource>
 int serve(const ViewCommand& command, const std::string& name, Log& log, const std::atomic<bool>& stop,
-          MakeSource make_source, const std::function<bool()>& has_ended = {}) {
+          MakeSource make_source, const std::function<bool()>& has_ended = {},
+          const std::atomic<bool>& is_done = false) {
   view::WebServer* published_to = nullptr;
   view::Topics topics([&] {
     if (published_to != nullptr) published_to->published();
@@ -121,7 +123,7 @@ int serve(const ViewCommand& command, const std::string& name, Log& log, const s
   const std::string address = say_where(command, options, server->port());
   if (command.opens) open_browser(address, log);
   Desertion desertion(topics);
-  serve_until(*server, *source, stop, [&] { return desertion.is_complete() && has_ended && has_ended(); });
+  serve_until(*server, *source, stop, [&] { return is_done || (desertion.is_complete() && has_ended && has_ended()); });
   return stop ? exit_interrupted : exit_ok;
 }
 
@@ -139,6 +141,7 @@ int view_recording(const ViewCommand& command, Log& log, const std::atomic<bool>
 }
 
 int view_server(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
+  std::atomic<bool> again{false};
   const auto& secure_drive = command.secure_drive.empty() ? command.secure_control : command.secure_drive;
   const view::LiveOptions live{.server = command.connection.server,
                                .domain = command.connection.domain(),
@@ -147,16 +150,18 @@ int view_server(const ViewCommand& command, Log& log, const std::atomic<bool>& s
                                .secure_drive = secure_drive.string(),
                                .may_control = command.may_control,
                                .plays_when_seen = command.plays_when_seen,
-                               .again = command.again};
+                               .again = command.again,
+                               .run_again = command.again.empty() ? std::function<void()>() : [&] { again = true; }};
   view::FollowedRun* followed = nullptr;
-  return serve(
+  const int code = serve(
       command, "Cohort at " + command.connection.server, log, stop,
       [&](view::Topics& topics) {
         auto source = std::make_unique<view::FollowedRun>(live, command.written, threads_of(command), topics);
         followed = source.get();
         return source;
       },
-      [&] { return command.while_watched && followed->has_ended(); });
+      [&] { return command.while_watched && followed->has_ended(); }, again);
+  return again ? exit_run_again : code;
 }
 
 }  // namespace

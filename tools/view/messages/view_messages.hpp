@@ -27,10 +27,12 @@ struct ViewStatus {
   /// `waiting`: for a server. `gathering`: for controllers, before the first tick. `running`. `ended`. `gone`: the
   /// server has ended without a message.
   std::string phase = "running";
-  std::string end{};        ///< how it ended: `finished`, `interrupted`, `failed`, `shut_down`
-  std::string end_text{};   ///< why
-  std::string to_type{};    ///< shell command that attaches a controller or runs it again
-  std::string recording{};  ///< name of the file that `replay` shows in its place
+  std::string end{};           ///< how it ended: `finished`, `interrupted`, `failed`, `shut_down`
+  std::string end_text{};      ///< why
+  std::string to_type{};       ///< shell command that attaches a controller or runs it again
+  std::string recording{};     ///< name of the file that `replay` shows in its place
+  std::string seed{};          ///< seed of the run, in decimal; empty if unknown
+  bool can_run_again = false;  ///< `again` repeats the run
   static constexpr const char* type = "cohort_msgs/msg/ViewStatus";
   static constexpr auto fields = std::tuple(
       field("source", &ViewStatus::source), field("name", &ViewStatus::name),
@@ -42,7 +44,8 @@ struct ViewStatus {
       field("seekable_to_ns", &ViewStatus::seekable_to_ns), field("note", &ViewStatus::note),
       field("awaited", &ViewStatus::awaited), field("phase", &ViewStatus::phase), field("end", &ViewStatus::end),
       field("end_text", &ViewStatus::end_text), field("to_type", &ViewStatus::to_type),
-      field("recording", &ViewStatus::recording));
+      field("recording", &ViewStatus::recording), field("seed", &ViewStatus::seed),
+      field("can_run_again", &ViewStatus::can_run_again));
 };
 
 /// Something that happened, perhaps more than once.

@@ -14,6 +14,8 @@ LiveOptions with_recording(LiveOptions options, const std::filesystem::path& rec
 
 FollowedRun::FollowedRun(LiveOptions options, std::filesystem::path recording, unsigned threads, Topics& topics)
     : file_(std::move(recording)),
+      may_control_(options.may_control),
+      run_again_(options.run_again),
       threads_(threads),
       topics_(topics),
       live_(std::make_unique<LiveSource>(with_recording(std::move(options), file_), topics)) {}
@@ -21,6 +23,7 @@ FollowedRun::FollowedRun(LiveOptions options, std::filesystem::path recording, u
 void FollowedRun::ask(const ViewRequest& request, std::function<void(const Answer&)> answer) {
   const std::lock_guard lock(mutex_);
   if (request.operation == "replay") return answer(replay());
+  if (request.operation == "again") return answer(run_again());
   shown().ask(request, std::move(answer));
 }
 
@@ -37,6 +40,14 @@ void FollowedRun::leave(std::uint64_t visitor) {
 bool FollowedRun::has_ended() const {
   const std::lock_guard lock(mutex_);
   return live_ == nullptr || live_->has_ended();
+}
+
+Answer FollowedRun::run_again() const {
+  if (!may_control_) return {false, "this view is read-only: start it with '--control' to run again from the page"};
+  if (!run_again_) return {false, "this view was not started by 'cohort run', which can repeat a run"};
+  if (live_ && !live_->has_ended()) return {false, "the run has not ended yet"};
+  run_again_();
+  return {true, "runs again"};
 }
 
 Answer FollowedRun::replay() {

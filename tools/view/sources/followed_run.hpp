@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -10,7 +11,8 @@
 
 namespace cohort::view {
 
-/// A running server, and when it has ended the recording that it wrote: `replay` shows that from then on.
+/// A running server, and when it has ended the recording that it wrote: `replay` shows that from then on. `again`
+/// repeats the run, if the options say how.
 class FollowedRun final : public Source {
  public:
   /// `recording` is empty where there is none. `threads` replay it. `topics` must outlive this. Throws wire::WireError
@@ -25,9 +27,12 @@ class FollowedRun final : public Source {
 
  private:
   Answer replay();
+  Answer run_again() const;
   Source& shown() { return replayed_ ? static_cast<Source&>(*replayed_) : *live_; }
 
   const std::filesystem::path file_;
+  const bool may_control_;
+  const std::function<void()> run_again_;
   const unsigned threads_;
   Topics& topics_;
   mutable std::mutex mutex_;

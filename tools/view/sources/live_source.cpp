@@ -301,6 +301,7 @@ ViewStatus LiveSource::status_without_run() {
   const std::lock_guard lock(mutex_);
   if (had_run_) {
     status.name = run_.experiment;
+    status.seed = std::to_string(run_.seed);
     status.time_ns = time_.count();
     status.end_ns = end_of(run_, time_.count());
     if (!has_server_) status.phase = "gone";
@@ -314,6 +315,7 @@ ViewStatus LiveSource::status_without_run() {
   has_ended_ = is_over;
   status.to_type = is_over ? options_.again : "cohort run EXPERIMENT --domain " + std::to_string(options_.domain);
   if (is_over) status.recording = options_.recording;
+  status.can_run_again = is_over && options_.may_control && options_.run_again != nullptr;
   return status;
 }
 
@@ -330,6 +332,7 @@ void LiveSource::ask_status(ControlClient& client) {
   if (const auto* const returned = reply ? reply->get<wire::SimulationStatus>() : nullptr) {
     const wire::SimulationStatus& run = *returned;
     status.name = run.experiment;
+    status.seed = std::to_string(run.seed);
     status.phase = run.started ? "running" : "gathering";
     status.is_playing = reply->state == SimulationState::playing;
     status.speed = run.speed;

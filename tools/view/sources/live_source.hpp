@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,9 +26,10 @@ struct LiveOptions {
   std::string secure_control{};  ///< folder of an identity that may control
   std::string secure_drive{};    ///< and of one that may drive robots
   bool may_control = false;
-  bool plays_when_seen = false;  ///< a run that begins paused starts as soon as a visitor looks
-  std::string again{};           ///< shell command that runs it again, shown after the end
-  std::string recording{};       ///< name of the file that it writes; empty: none
+  bool plays_when_seen = false;       ///< a run that begins paused starts as soon as a visitor looks
+  std::string again{};                ///< shell command that runs it again, shown after the end
+  std::function<void()> run_again{};  ///< repeats the run; null: the view cannot. Any thread.
+  std::string recording{};            ///< name of the file that it writes; empty: none
 };
 
 /// Shows a running server, as any observer may. Requests, if it may control: `play`, `pause`, `step`, `speed`, `reset`,

@@ -245,6 +245,7 @@ void RecordingSource::show_status(const Wanted& wanted) {
   ViewStatus status;
   status.source = "recording";
   status.name = recording_.file().filename().string();
+  status.seed = std::to_string(recording_.worlds().front().begins.seed);
   status.may_control = true;
   status.can_seek = true;
   status.is_playing = wanted.is_playing && !is_at_end_;

@@ -21,7 +21,7 @@ class ClientSession {
  public:
   static constexpr std::size_t most_subscriptions = 64;
   static constexpr std::size_t most_replies = 64;
-  static constexpr std::size_t most_watched = 16;
+  static constexpr std::size_t most_watched = 256;
 
   struct Text {
     std::string text;

@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <limits>
 #include <map>
 #include <memory>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "client_sdk/math/portable_math.hpp"
@@ -307,7 +311,8 @@ Snapshot snapshot_of(RunCommand& command) {
   return snapshot;
 }
 
-int run(RunCommand command, Log& log, const std::atomic<bool>& stop) {
+// `again` receives the command line that repeats the run if the page of its view asks for that.
+int run(RunCommand command, Log& log, const std::atomic<bool>& stop, std::vector<std::string>& again) {
   Runs runs{command};
   if (command.jobs > 0 && command.seeds.empty()) throw std::invalid_argument("'--jobs' needs '--seeds'");
   runs.cpu_before = cpu_seconds();  // the shell that this process replaced may have had children
@@ -351,13 +356,26 @@ int run(RunCommand command, Log& log, const std::atomic<bool>& stop) {
   if (runs.serving) runs.serving->start_controllers(first, runs.controllers);
   const int code = end_table(runs, run_each(runs, log, stop), log);
   if (runs.serving && !stop) runs.serving->let_look(stop);
+  if (runs.serving && !stop) again = runs.serving->command_line_to_run_again();
   return code;
+}
+
+// Replaces this process by the program with a command line.
+[[noreturn]] void become(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execv("/proc/self/exe", arguments.data());
+  throw std::system_error(errno, std::generic_category(), "cannot run again");
 }
 
 Subcommand running(CommandLine line, const std::shared_ptr<RunCommand>& command, const LogFlags& flags) {
   return {line, [command, &flags](Log& log, const std::atomic<bool>& stop) {
             command->quiet = flags.quiet;
-            return run(*command, log, stop);
+            std::vector<std::string> again;
+            const int code = run(*command, log, stop, again);
+            if (!again.empty()) become(std::move(again));
+            return code;
           }};
 }
 

@@ -45,7 +45,7 @@ export const defaultKeys: Record<string, string> = {
   "+": "faster",
   "-": "slower",
   "`": "console",
-  "?": "help",
+  "?": "keys",
 };
 
 /** Splits a line into words; quotes keep spaces. */
@@ -137,6 +137,12 @@ export class Commands {
     const alias = this.profile.aliases[name];
     if (alias) return `${name} is an alias of: ${alias}`;
     throw new Error(`there is no command '${name}'`);
+  }
+
+  /** Returns what a line does: the help of its command, or the line itself if it has arguments. */
+  helpOf(line: string): string {
+    const [name, ...args] = words(line);
+    return args.length === 0 ? (this.commands.get(name)?.help ?? line) : line;
   }
 
   exportProfile(): string {

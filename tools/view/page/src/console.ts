@@ -1,5 +1,6 @@
 import type { Commands } from "./commands";
 import { element } from "./element";
+import type { Panels } from "./panels";
 
 const historyKey = "cohort.view.history";
 const longestHistory = 200;
@@ -7,14 +8,16 @@ const callTime = 6000; // [ms]
 
 /** Where commands are typed, with what they said, history and completion. */
 export class ConsolePanel {
-  private readonly panel = element("console");
   private readonly lines = element("lines");
   private readonly input = element("command") as HTMLInputElement;
   private history: string[] = [];
   private place = 0;
   private calling: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(private readonly commands: Commands) {
+  constructor(
+    private readonly commands: Commands,
+    private readonly panels: Panels,
+  ) {
     try {
       this.history = JSON.parse(localStorage.getItem(historyKey) ?? "[]") as string[];
     } catch {
@@ -25,13 +28,17 @@ export class ConsolePanel {
   }
 
   get isOpen(): boolean {
-    return !this.panel.hidden;
+    return this.panels.isShown("console");
   }
 
-  toggle(open = this.panel.hidden): void {
-    this.panel.hidden = !open;
-    if (open) this.input.focus();
-    else this.input.blur();
+  toggle(open = !this.isOpen): void {
+    if (open) {
+      this.panels.show("console");
+      this.input.focus();
+    } else {
+      this.panels.close("console");
+      this.input.blur();
+    }
   }
 
   say(text: string, kind: "said" | "typed" | "wrong" = "said"): void {

@@ -4,6 +4,8 @@ import { type Command, type Commands, command } from "./commands";
 import type { Connection, ViewRequest } from "./connection";
 import type { ConsolePanel } from "./console";
 import { element } from "./element";
+import { keyRows } from "./keys";
+import type { Panels } from "./panels";
 import type { TimeBar } from "./time_bar";
 import type { Layer, Viewer } from "./viewer";
 
@@ -19,6 +21,7 @@ interface Parts {
   timeBar: TimeBar;
   commands: Commands;
   canvas: HTMLCanvasElement;
+  panels: Panels;
 }
 
 function numberOf(text: string | undefined, what: string): number {
@@ -57,14 +60,16 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
   return [
     plain("play", "goes on"),
     plain("pause", "stands still"),
+    plain("again", "repeats a run that 'cohort run --view --control' started, once it has ended"),
     plain("replay", "shows the recording of a run that has ended"),
-    command("step [TICKS]", "steps by a number of ticks (default: 1); negative numbers step back where 'seek' can", ([ticks]) =>
-      ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }),
-    ),
     command(
-      "seek SECONDS",
-      "goes to a time of a recording, or back in a run whose server keeps snapshots",
-      ([time]) => ask(connection, { operation: "seek", number: numberOf(time, "seconds") }),
+      "step [TICKS]",
+      "steps by a number of ticks (default: 1); negative numbers step back where 'seek' can",
+      ([ticks]) =>
+        ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }),
+    ),
+    command("seek SECONDS", "goes to a time of a recording, or back in a run whose server keeps snapshots", ([time]) =>
+      ask(connection, { operation: "seek", number: numberOf(time, "seconds") }),
     ),
     command(
       "speed FACTOR",
@@ -155,7 +160,7 @@ function viewpoint(viewer: Viewer, [first, second]: string[]): string {
   return "";
 }
 
-function pictureCommands({ viewer, connection, console, timeBar, commands, canvas }: Parts): Command[] {
+function pictureCommands({ viewer, connection, console, timeBar, commands, canvas, panels }: Parts): Command[] {
   const film = new Film(canvas);
   const toggleLayer = (name: string | undefined): string => {
     if (name === undefined) {
@@ -200,8 +205,21 @@ function pictureCommands({ viewer, connection, console, timeBar, commands, canva
     }),
     command("console", "opens or closes the console", () => console.toggle()),
     command("events", "shows or hides the events", () => {
-      const panel = element("events");
-      panel.hidden = !panel.hidden;
+      if (panels.isShown("events")) panels.close("events");
+      else panels.show("events");
+    }),
+    command(
+      "panel left|right|dock",
+      "opens or closes a panel",
+      ([name]) => {
+        if (name !== "left" && name !== "right" && name !== "dock") throw new Error("expected left, right or dock");
+        panels.toggle(name);
+      },
+      () => ["left", "right", "dock"],
+    ),
+    command("keys", "shows the keys", () => {
+      element("key-table").replaceChildren(...keyRows(commands));
+      (element("keys") as HTMLDialogElement).showModal();
     }),
     command(
       "profile export|import",
@@ -278,12 +296,15 @@ function worldCommands({ viewer, connection }: Parts): Command[] {
   ];
 }
 
+const isCameraMode = (command: string): boolean => ["orbit", "follow", "top", "eye", "fly"].includes(command);
+
 /** Which of the tools are on. */
 export function showPressed(viewer: Viewer): void {
   for (const button of document.querySelectorAll<HTMLButtonElement>("#tools [data-command]")) {
     const { command = "" } = button.dataset;
     const layer = command.startsWith("toggle ") ? (command.slice(7) as Layer) : undefined;
-    button.classList.toggle("on", layer ? viewer.layers.has(layer) : viewer.cameras.mode === command);
+    const isOn = layer ? viewer.layers.has(layer) : viewer.cameras.mode === command;
+    if (layer || isCameraMode(command)) button.setAttribute("aria-pressed", String(isOn));
   }
 }
 

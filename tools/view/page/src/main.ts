@@ -8,25 +8,34 @@ import { Driving } from "./driving";
 import { element } from "./element";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 import { Objects } from "./objects";
+import { Panels } from "./panels";
 import { PhaseCard } from "./phase_card";
 import { clockText, TimeBar } from "./time_bar";
+import { TopBar } from "./top_bar";
+import "./tree.css";
+import { Tree } from "./tree";
 import { Viewer } from "./viewer";
 
 const canvas = element("canvas") as HTMLCanvasElement;
+const mostWatched = 256; // robots; also in tools/view/web/client_session.hpp
 const clickSlack = 4; // [pixels] that a mouse may move in a click
 
 let bytes = 0;
 let unrecorded = ""; // why the recording of the run has ended, once it has
 let notes: readonly string[] = []; // from the last status
 
-const viewer = new Viewer(canvas, (robot) => {
-  connection.want("/cohort/robots", robot !== undefined);
-  void connection.ask({ operation: "watch", numbers: robot === undefined ? [] : [robot] });
+const viewer: Viewer = new Viewer(canvas, (robots) => {
+  connection.want("/cohort/robots", robots.length > 0);
+  void connection.ask({ operation: "watch", numbers: robots.slice(0, mostWatched) });
+  tree.show();
   driving.show();
   objects.show();
 });
 const commands = new Commands();
-const consolePanel = new ConsolePanel(commands);
+const panels = new Panels();
+const topBar = new TopBar();
+const consolePanel = new ConsolePanel(commands, panels);
+const tree: Tree = new Tree(viewer);
 const timeBar = new TimeBar({
   play: () => void consolePanel.run("play"),
   pause: () => void consolePanel.run("pause"),
@@ -38,7 +47,11 @@ const timeBar = new TimeBar({
   speed: (factor) => void connection.ask({ operation: "speed", number: factor }),
 });
 
-const phaseCard = new PhaseCard(() => void consolePanel.run("replay"));
+const phaseCard = new PhaseCard(
+  () => void consolePanel.run("replay"),
+  () => void consolePanel.run("again"),
+  () => `${element("tick").textContent} ticks, state hash ${element("hash").textContent}`,
+);
 const connection: Connection = new Connection(
   addressOfServer(location),
   {
@@ -52,7 +65,8 @@ const connection: Connection = new Connection(
       viewer.take(frame);
       element("tick").textContent = String(frame.tick);
       element("hash").textContent = frame.state_hash === 0n ? "–" : frame.state_hash.toString(16).padStart(16, "0");
-      const robots = viewer.robotEntities().filter((entity) => !viewer.poses?.absent.has(entity)).length;
+      const gone = new Set(frame.absent);
+      const robots = viewer.robotEntities().filter((entity) => !gone.has(entity)).length;
       element("robots").textContent = String(robots);
     },
     "/cohort/signals": (signals, size) => {
@@ -67,23 +81,22 @@ const connection: Connection = new Connection(
   },
   (isConnected) => {
     phaseCard.connect(isConnected);
-    if (isConnected && viewer.selected !== undefined) viewer.select(viewer.selected);
+    topBar.connect(isConnected);
+    if (isConnected && viewer.selection.size > 0) viewer.selectMany([...viewer.selection]);
   },
 );
 for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const)
   connection.want(topic);
-addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, commands, canvas });
+addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, commands, canvas, panels });
 const driving = new Driving(viewer, connection, commands, consolePanel, canvas);
-const objects = new Objects(viewer, connection, consolePanel, canvas);
+const objects = new Objects(viewer, connection, consolePanel, canvas, panels);
 for (const command of [...driving.consoleCommands(), ...objects.consoleCommands()]) commands.add(command);
 
 function showStatus(status: ViewStatus): void {
   timeBar.take(status);
   phaseCard.take(status);
   document.body.classList.toggle("is-server", status.source === "server");
-  element("name").textContent = status.name;
-  document.title = `${status.name} · Cohort`;
-  element("factor").textContent = status.is_playing ? `${status.real_time_factor.toFixed(2)} ×` : "paused";
+  topBar.take(status);
   const waiting = status.awaited.length > 0 ? `waits for ${status.awaited.join(", ")}` : "";
   notes = [status.note, waiting];
   showNotes();
@@ -125,6 +138,7 @@ function runBound(key: string): boolean {
 }
 
 addEventListener("keydown", (event) => {
+  if (document.querySelector("dialog[open]")) return;
   const isTyping = event.target instanceof HTMLInputElement && event.target.type !== "range";
   if (isTyping || event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
   if (driving.keyDown(event)) {
@@ -152,7 +166,15 @@ canvas.addEventListener(
   { capture: true },
 );
 canvas.addEventListener("pointermove", ({ clientX: x, clientY: y }) => objects.hover(x, y));
-canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button }) => {
+// With Ctrl an entity is added to the selection, or taken out of it.
+function pick(x: number, y: number, isAdded: boolean): void {
+  const entity = viewer.pickAt(x, y);
+  if (!isAdded) viewer.select(entity);
+  if (!isAdded || entity === undefined) return;
+  const others = [...viewer.selection].filter((each) => each !== entity);
+  viewer.selectMany(viewer.selection.has(entity) ? others : [...others, entity]);
+}
+canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button, ctrlKey, metaKey }) => {
   if (objects.isDragging) {
     viewer.cameras.controls.enabled = viewer.cameras.mode !== "eye";
     void objects.drop(x, y);
@@ -160,7 +182,7 @@ canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button }) => {
   }
   if (Math.hypot(x - pressed.x, y - pressed.y) > clickSlack) return;
   if (button === 0 && objects.place(x, y)) return;
-  if (button === 0) viewer.select(viewer.pickAt(x, y));
+  if (button === 0) pick(x, y, ctrlKey || metaKey);
   else runBound(`mouse${button}`);
 });
 canvas.addEventListener("dblclick", ({ clientX: x, clientY: y }) => {
@@ -170,10 +192,11 @@ canvas.addEventListener("dblclick", ({ clientX: x, clientY: y }) => {
   viewer.cameras.choose("follow", entity);
   showPressed(viewer);
 });
-element("tools").addEventListener("click", ({ target }) => {
-  const command = (target as HTMLElement).dataset.command;
-  if (command) void consolePanel.run(command).then(() => showPressed(viewer));
-});
+for (const bar of ["tools", "menu"])
+  element(bar).addEventListener("click", ({ target }) => {
+    const command = (target as Element).closest<HTMLElement>("[data-command]")?.dataset.command;
+    if (command) void consolePanel.run(command).then(() => showPressed(viewer));
+  });
 
 // The picture.
 
@@ -188,6 +211,7 @@ function draw(now: number): void {
 }
 requestAnimationFrame(draw);
 setInterval(() => {
+  element("seen").textContent = viewer.describe();
   element("rate").textContent = String(viewer.framesDrawn);
   element("traffic").textContent = (bytes / 1000).toFixed(0);
   viewer.framesDrawn = 0;

@@ -140,6 +140,8 @@ export interface ViewStatus {
   end_text: string;
   to_type: string;
   recording: string;
+  seed: string;
+  can_run_again: boolean;
 }
 export interface ViewEvent {
   time_ns: bigint;

@@ -5,6 +5,8 @@ import type { ConsolePanel } from "./console";
 import { element } from "./element";
 import { Ghost, originOf, standingHeight } from "./ghost";
 import { none, type Scene, ShapeKind } from "./messages";
+import type { Panels } from "./panels";
+import { Removal } from "./removal";
 import type { Viewer } from "./viewer";
 
 interface Dragged {
@@ -22,6 +24,7 @@ export class Objects {
   private readonly card = element("adding");
   private readonly models = element("adding-model") as HTMLSelectElement;
   private readonly name = element("adding-name") as HTMLInputElement;
+  private readonly removal: Removal;
   private dragged: Dragged | undefined;
 
   constructor(
@@ -29,11 +32,16 @@ export class Objects {
     private readonly connection: Connection,
     private readonly console: ConsolePanel,
     private readonly canvas: HTMLCanvasElement,
+    private readonly panels: Panels,
   ) {
     viewer.stage.add(this.ghost.group);
+    this.removal = new Removal(viewer, (name) => this.ask({ operation: "remove", name }));
     this.models.addEventListener("change", () => this.suggestName());
     element("adding-close").addEventListener("click", () => this.close());
-    element("remove").addEventListener("click", () => void this.remove());
+    element("remove").addEventListener("click", () => {
+      canvas.focus();
+      this.removal.begin(viewer.selectedEntity?.name);
+    });
     element("light").addEventListener("click", () => void this.switchLight());
     canvas.addEventListener("pointerleave", () => this.ghost.hide());
   }
@@ -134,6 +142,7 @@ export class Objects {
       throw new Error(`there is no model '${model}' to add: expected one of ${names.join(", ")}`);
     this.viewer.select(undefined);
     this.card.hidden = false;
+    this.panels.show("right");
     this.offer(model);
   }
 
@@ -184,14 +193,6 @@ export class Objects {
   }
 
   // The selection.
-
-  private async remove(): Promise<void> {
-    const { selectedEntity } = this.viewer;
-    this.canvas.focus();
-    if (!selectedEntity) return;
-    const isDone = await this.ask({ operation: "remove", name: selectedEntity.name });
-    if (isDone && this.viewer.selectedEntity?.name === selectedEntity.name) this.viewer.select(undefined);
-  }
 
   private async switchLight(): Promise<void> {
     const { selectedEntity } = this.viewer;

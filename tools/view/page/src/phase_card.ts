@@ -7,7 +7,9 @@ interface Card {
   text: string;
   toType?: string;
   recording?: string;
+  canRunAgain?: boolean;
   isWrong?: boolean;
+  hasNumbers?: boolean; // the tick and the hash of the last state
 }
 
 const ends: Record<string, string> = {
@@ -28,10 +30,18 @@ export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Ca
     };
   if (!status) return undefined;
   const at = clockText(Number(status.time_ns) * 1e-9);
-  const over = { toType: status.to_type, recording: isConnected ? status.recording : "" };
+  const over = {
+    toType: status.to_type,
+    recording: isConnected ? status.recording : "",
+    canRunAgain: isConnected && status.can_run_again,
+  };
   switch (status.phase) {
     case "waiting":
-      return { title: "Waiting for a server", text: `No server responds at ${status.name}. To start one:`, toType: status.to_type };
+      return {
+        title: "Waiting for a server",
+        text: `No server responds at ${status.name}. To start one:`,
+        toType: status.to_type,
+      };
     case "gathering": {
       const [first, ...others] = status.awaited;
       const more = others.length > 0 ? ` and ${others.length} more` : "";
@@ -46,6 +56,7 @@ export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Ca
       return {
         title: ends[status.end] ?? "The run has ended",
         text: `At ${at}${status.end_text ? `: ${status.end_text}` : "."}`,
+        hasNumbers: true,
         isWrong: status.end === "failed",
         ...over,
       };
@@ -69,8 +80,14 @@ export class PhaseCard {
   private closed = "";
   private readonly panel = element("phase");
 
-  constructor(replay: () => void) {
+  /** `numbers` returns the tick and the state hash that are shown. */
+  constructor(
+    replay: () => void,
+    runAgain: () => void,
+    private readonly numbers: () => string,
+  ) {
     element("replay").addEventListener("click", replay);
+    element("again").addEventListener("click", runAgain);
     element("phase-close").addEventListener("click", () => {
       this.closed = element("phase-title").textContent ?? "";
       this.show();
@@ -98,9 +115,10 @@ export class PhaseCard {
     if (!card) return;
     this.panel.classList.toggle("wrong", card.isWrong ?? false);
     element("phase-title").textContent = card.title;
-    element("phase-text").textContent = card.text;
+    element("phase-text").textContent = card.hasNumbers ? `${card.text}\n${this.numbers()}` : card.text;
     element("phase-type").hidden = !card.toType;
     element("to-type").textContent = card.toType ?? "";
     element("replay").hidden = !card.recording;
+    element("again").hidden = !card.canRunAgain;
   }
 }

@@ -11,11 +11,13 @@ export class Poses {
   orientations: Int16Array = new Int16Array();
   positionsBefore: Float32Array = new Float32Array();
   orientationsBefore: Int16Array = new Int16Array();
+  /** Entities that are not drawn: those that have gone or not yet come, and those that are hidden. */
   absent = new Set<number>();
   frame: SceneFrame | undefined;
   /** 0: at the frame before; 1: at the last one. */
   blend = 1;
 
+  private hidden: ReadonlySet<number> = new Set();
   private readonly firstOfLink: number[][] = [];
   private readonly placeInModel: number[] = [];
   private readonly entitiesOfModel: number[][];
@@ -60,10 +62,10 @@ export class Poses {
     const goesOn = this.frame !== undefined && frame.tick > this.frame.tick && elapsed < longestBlend;
     this.arrival = now;
     if (goesOn) this.interval += 0.2 * (elapsed - this.interval);
-    this.hideAbsent(frame);
-    this.positionsBefore = goesOn ? this.positions : frame.positions;
+    const positions = this.withoutAbsent(frame);
+    this.positionsBefore = goesOn ? this.positions : positions;
     this.orientationsBefore = goesOn ? this.orientations : frame.orientations;
-    this.positions = frame.positions;
+    this.positions = positions;
     this.orientations = frame.orientations;
     this.frame = frame;
     this.blend = 1;
@@ -94,12 +96,21 @@ export class Poses {
       .normalize();
   }
 
-  private hideAbsent(frame: SceneFrame): void {
-    this.absent = new Set(frame.absent);
-    for (const entity of frame.absent) {
+  /** Leaves out these entities from now on. */
+  hide(entities: ReadonlySet<number>): void {
+    this.hidden = entities;
+    if (this.frame) this.positions = this.positionsBefore = this.withoutAbsent(this.frame);
+  }
+
+  private withoutAbsent(frame: SceneFrame): Float32Array {
+    this.absent = new Set([...frame.absent, ...this.hidden]);
+    if (this.absent.size === 0) return frame.positions;
+    const positions = frame.positions.slice();
+    for (const entity of this.absent) {
       const links = this.scene.models[this.scene.entities[entity].model].links.length;
       for (let link = 0; link < links; ++link)
-        frame.positions.fill(farAway, 3 * this.placeOf(entity, link), 3 * this.placeOf(entity, link) + 3);
+        positions.fill(farAway, 3 * this.placeOf(entity, link), 3 * this.placeOf(entity, link) + 3);
     }
+    return positions;
   }
 }

@@ -15,6 +15,7 @@ import type { Instances, LinkShape } from "./instances";
 import type { Poses } from "./poses";
 
 const outlineWidth = 1.06;
+const mostOutlined = 100;
 
 /** Which entity a ray from the camera meets first. */
 export function pick(poses: Poses, instances: Instances, camera: Camera, at: Vector2): number | undefined {
@@ -46,32 +47,31 @@ export function pick(poses: Poses, instances: Instances, camera: Camera, at: Vec
   return found;
 }
 
-/** An outline around the selected entity. */
+/** An outline around the selected entities, up to a number that can be drawn. */
 export class Outline {
   readonly group = new Group();
   private readonly material = new MeshBasicMaterial({ color: 0x1f8fff, side: BackSide });
-  private parts: { mesh: Mesh; link: number }[] = [];
-  private entity: number | undefined;
+  private parts: { mesh: Mesh; entity: number; link: number }[] = [];
 
-  select(entity: number | undefined, poses: Poses | undefined, instances: Instances | undefined): void {
-    this.entity = entity;
+  select(entities: readonly number[], poses: Poses | undefined, instances: Instances | undefined): void {
     this.group.clear();
     this.parts = [];
-    if (entity === undefined || !poses || !instances) return;
-    for (const { model, link, geometry, sphere } of instances.links) {
-      if (model !== poses.scene.entities[entity].model) continue;
-      const mesh = new Mesh(geometry, this.material);
-      mesh.scale.setScalar(outlineWidth);
-      mesh.userData.centre = sphere.center;
-      this.parts.push({ mesh, link });
-      this.group.add(mesh);
-    }
+    if (!poses || !instances) return;
+    for (const entity of entities.slice(0, mostOutlined))
+      for (const { model, link, geometry, sphere } of instances.links) {
+        if (model !== poses.scene.entities[entity].model) continue;
+        const mesh = new Mesh(geometry, this.material);
+        mesh.scale.setScalar(outlineWidth);
+        mesh.userData.centre = sphere.center;
+        this.parts.push({ mesh, entity, link });
+        this.group.add(mesh);
+      }
   }
 
   draw(poses: Poses): void {
-    if (this.entity === undefined || !poses.frame) return;
-    for (const { mesh, link } of this.parts) {
-      poses.read(poses.placeOf(this.entity, link), mesh.position, mesh.quaternion);
+    if (!poses.frame) return;
+    for (const { mesh, entity, link } of this.parts) {
+      poses.read(poses.placeOf(entity, link), mesh.position, mesh.quaternion);
       const centre = (mesh.userData.centre as Vector3).clone().applyQuaternion(mesh.quaternion);
       mesh.position.addScaledVector(centre, 1 - outlineWidth);
     }

@@ -2,6 +2,7 @@ import { Plane, Quaternion, Raycaster, Vector2, Vector3 } from "three";
 import { Cameras } from "./cameras";
 import { element } from "./element";
 import { Glow } from "./glow";
+import { fixed, GroupPanel } from "./group";
 import { Inspector } from "./inspector";
 import { Instances } from "./instances";
 import {
@@ -23,6 +24,7 @@ import { Stage } from "./stage";
 export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sound" | "collisions";
 
 const homeMargin = 0.4; // [m] around robots
+const mostTold = 5; // selected entities
 const manyEntities = 1500; // above, shadows are off unless asked for
 
 /** The picture and sound of the world. */
@@ -33,13 +35,17 @@ export class Viewer {
   readonly sound = new Sound();
   readonly inspector: Inspector;
   poses: Poses | undefined;
-  selected: number | undefined;
+  /** Selected entities, in the order of their selection. */
+  selection: ReadonlySet<number> = new Set();
+  /** Entities that the user has hidden. */
+  hidden: ReadonlySet<number> = new Set();
   signals: SceneSignals | undefined;
   framesDrawn = 0;
 
   private instances: Instances | undefined;
   private glow: Glow | undefined;
-  private robot: SceneRobot | undefined;
+  private robots: readonly SceneRobot[] = []; // the selected ones
+  private readonly group = new GroupPanel();
   private readonly outline = new Outline();
   private readonly contacts = new Contacts();
   private readonly rays = new Rays();
@@ -50,7 +56,7 @@ export class Viewer {
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
-    private readonly onSelect: (robot: number | undefined) => void,
+    private readonly onSelect: (robots: number[]) => void,
   ) {
     this.stage = new Stage(canvas);
     this.cameras = new Cameras(this.stage.camera, canvas);
@@ -62,7 +68,9 @@ export class Viewer {
   // Data from the server.
 
   show(scene: Scene): void {
-    const selected = this.selectedEntity?.name;
+    const nameOf = (entity: number): string | undefined => this.poses?.scene.entities[entity].name;
+    const [selected, hidden] = [this.selection, this.hidden].map((set) => new Set([...set].map(nameOf)));
+    const followedName = this.selectedEntity?.name;
     const followed = this.cameras.followedEntity !== undefined ? this.cameras.mode : undefined;
     if (this.instances) this.stage.remove(this.instances.group);
     if (this.glow) this.stage.remove(this.glow.group);
@@ -74,8 +82,11 @@ export class Viewer {
     this.stage.add(this.glow.group);
     this.stage.lay(scene);
     this.trails.clear();
-    const again = scene.entities.findIndex(({ name }) => name === selected);
-    this.select(again >= 0 ? again : undefined);
+    const known = (names: ReadonlySet<string | undefined>): number[] =>
+      scene.entities.flatMap(({ name }, entity) => (names.has(name) ? [entity] : []));
+    this.hide(known(hidden));
+    const again = scene.entities.findIndex(({ name }) => name === followedName);
+    this.selectMany([...known(selected).filter((each) => each !== again), ...(again >= 0 ? [again] : [])]);
     if (followed) this.cameras.choose(again >= 0 ? followed : "orbit", again);
     if (scene.entities.length > manyEntities && scene.world !== this.world) this.layers.delete("shadows");
     this.apply();
@@ -93,7 +104,7 @@ export class Viewer {
       this.home();
     }
     if (this.layers.has("trails"))
-      this.trails.add(this.poses, this.selected === undefined ? this.robotEntities() : [this.selected]);
+      this.trails.add(this.poses, this.selection.size === 0 ? this.robotEntities() : [...this.selection]);
   }
 
   takeSignals(signals: SceneSignals): void {
@@ -107,24 +118,74 @@ export class Viewer {
   }
 
   takeRobots(robots: readonly SceneRobot[]): void {
-    const id = this.selectedEntity?.robot ?? none;
-    this.robot = robots.find(({ robot }) => robot === id);
+    const ids = this.selectedRobots();
+    this.robots = robots.filter(({ robot }) => ids.has(robot));
     if (this.robot) this.inspector.take(this.robot, seconds(this.robot.time_ns));
+    this.group.take(this.robots);
   }
 
   // User input.
 
   select(entity: number | undefined): void {
-    this.selected = entity;
-    this.robot = undefined;
-    this.outline.select(entity, this.poses, this.instances);
-    const chosen = this.selectedEntity;
-    this.inspector.select(chosen, chosen && this.poses?.scene.models[chosen.model]);
-    this.onSelect(chosen && chosen.robot !== none ? chosen.robot : undefined);
+    this.selectMany(entity === undefined ? [] : [entity]);
   }
 
+  selectMany(entities: readonly number[]): void {
+    this.selection = new Set(entities);
+    this.robots = [];
+    this.outline.select(entities, this.poses, this.instances);
+    const isOne = this.selection.size === 1;
+    const chosen = isOne ? this.selectedEntity : undefined;
+    this.inspector.select(chosen, chosen && this.poses?.scene.models[chosen.model]);
+    this.group.select(isOne ? [] : entities, this.poses);
+    this.onSelect([...this.selectedRobots()]);
+  }
+
+  /** The entity that was selected last. */
+  get selected(): number | undefined {
+    return [...this.selection].at(-1);
+  }
   get selectedEntity(): SceneEntity | undefined {
     return this.selected === undefined ? undefined : this.poses?.scene.entities[this.selected];
+  }
+  private selectedRobots(): Set<number> {
+    const robots = [...this.selection].map((entity) => this.poses?.scene.entities[entity].robot ?? none);
+    return new Set(robots.filter((robot) => robot !== none));
+  }
+  // The state of the robot that was selected last.
+  private get robot(): SceneRobot | undefined {
+    const id = this.selectedEntity?.robot ?? none;
+    return id === none ? undefined : this.robots.find(({ robot }) => robot === id);
+  }
+
+  follow(): void {
+    if (this.selected !== undefined) this.cameras.choose("follow", this.selected);
+  }
+
+  /** Hides all that can move but the selection. */
+  isolate(): void {
+    const { models, entities } = this.poses?.scene ?? { models: [], entities: [] };
+    const isOther = (entity: number): boolean =>
+      !models[entities[entity].model].is_static && !this.selection.has(entity);
+    this.hide(entities.flatMap((_, entity) => (isOther(entity) ? [entity] : [])));
+    this.selectMany([...this.selection]);
+  }
+  hideSelection(): void {
+    this.hide([...this.hidden, ...this.selection]);
+    this.selectMany([]);
+  }
+  unhide(entity: number): void {
+    this.hide([...this.hidden].filter((each) => each !== entity));
+    this.selectMany([...this.selection]);
+  }
+  showAll(): void {
+    this.hide([]);
+    this.selectMany([...this.selection]);
+  }
+  private hide(entities: readonly number[]): void {
+    this.hidden = new Set(entities);
+    this.poses?.hide(this.hidden);
+    this.instances?.update();
   }
 
   pickAt(x: number, y: number): number | undefined {
@@ -169,6 +230,27 @@ export class Viewer {
     this.cameras.frame(centre, homeMargin + 0.5 * low.distanceTo(high));
   }
 
+  /** Says in a few sentences what is seen. */
+  describe(): string {
+    const { poses } = this;
+    if (!poses?.frame) return "There is no world yet.";
+    const { scene, frame, absent } = poses;
+    const counts = new Map<string, number>();
+    scene.entities.forEach(({ robot, team, model }, entity) => {
+      if (absent.has(entity) || (robot === none && scene.models[model].is_static)) return;
+      const kind = robot === none ? "movable objects" : `robots${team ? ` of team ${team}` : ""}`;
+      counts.set(kind, (counts.get(kind) ?? 0) + 1);
+    });
+    const what = [...counts].map(([kind, count]) => `${count} ${kind}`).join(", ") || "nothing that can move";
+    const chosen = [...this.selection].slice(0, mostTold).map((entity) => {
+      const { position, heading } = this.poseOf(entity);
+      const [x, y] = position.map((each) => fixed(each, 2));
+      return `${scene.entities[entity].name} at x ${x} m, y ${y} m, heading ${fixed((180 * heading) / Math.PI, 0)} degrees`;
+    });
+    const selected = chosen.length > 0 ? ` Selected: ${chosen.join("; ")}.` : "";
+    return `At ${fixed(seconds(frame.time_ns), 1)} s: ${what}. Camera: ${this.cameras.mode}.${selected}`;
+  }
+
   toggle(layer: Layer): boolean {
     const isOn = !this.layers.has(layer);
     if (isOn) this.layers.add(layer);
@@ -211,7 +293,7 @@ export class Viewer {
     }
     this.cameras.advance(poses, elapsed);
     stage.draw(this.cameras.target);
-    const named = this.layers.has("labels") ? this.robotEntities() : this.selected === undefined ? [] : [this.selected];
+    const named = this.layers.has("labels") ? this.robotEntities() : [...this.selection];
     this.labels.draw(
       poses?.frame ? poses : undefined,
       named,
@@ -223,10 +305,11 @@ export class Viewer {
   }
 
   private showPose(): void {
-    if (this.selected === undefined) return;
+    if (this.selection.size > 1) this.group.showPoses(this.poses);
+    if (this.selection.size !== 1 || this.selected === undefined) return;
     const { position, heading } = this.poseOf(this.selected);
-    const [x, y, z] = position.map((each) => each.toFixed(3));
-    this.inspector.showPose(`x ${x}  y ${y}  z ${z} m · ${((180 * heading) / Math.PI).toFixed(0)}°`);
+    const [x, y, z] = position.map((each) => fixed(each, 3));
+    this.inspector.showPose(`x ${x}  y ${y}  z ${z} m · ${fixed((180 * heading) / Math.PI, 0)}°`);
   }
 
   private build(poses: Poses): void {
@@ -244,7 +327,7 @@ export class Viewer {
       this.stage.remove(this.instances.group);
       this.instances.dispose();
       this.build(this.poses);
-      this.outline.select(this.selected, this.poses, this.instances);
+      this.outline.select([...this.selection], this.poses, this.instances);
     }
   }
 }

@@ -1,0 +1,141 @@
+import { Quaternion, Vector3 } from "three";
+import { channelValues } from "./channels";
+import { element } from "./element";
+import { none, type SceneModel, type SceneRobot } from "./messages";
+import type { Poses } from "./poses";
+
+const drawInterval = 150; // [ms]
+const mostRows = 200;
+
+export interface Statistics {
+  count: number;
+  mean: number;
+  spread: number; // standard deviation
+  sum: number;
+}
+
+/** Returns mean, population standard deviation and sum; nothing for no values. */
+export function statisticsOf(values: readonly number[]): Statistics | undefined {
+  if (values.length === 0) return undefined;
+  const sum = values.reduce((total, each) => total + each, 0);
+  const mean = sum / values.length;
+  const variance = values.reduce((total, each) => total + (each - mean) ** 2, 0) / values.length;
+  return { count: values.length, mean, spread: Math.sqrt(variance), sum };
+}
+
+/** Returns a number of four digits, never "-0". */
+export function shortNumber(value: number): string {
+  if (!Number.isFinite(value)) return String(value);
+  const text = Math.abs(value) >= 1e6 ? value.toExponential(3) : String(Number(value.toPrecision(4)));
+  return text === "-0" ? "0" : text;
+}
+
+/** Returns a number with so many decimals, never "-0". */
+export function fixed(value: number, decimals: number): string {
+  const text = value.toFixed(decimals);
+  return Number(text) === 0 ? text.replace("-", "") : text;
+}
+
+const withUnit = (name: string, unit: string): string => (unit === "1" || unit === "" ? name : `${name} [${unit}]`);
+
+/** Mean, spread and sum of the channels of several selected robots. */
+export class GroupPanel {
+  private entities: readonly number[] = [];
+  private models: readonly SceneModel[] = []; // by robot
+  private modelOf = new Map<number, SceneModel>();
+  private robots: readonly SceneRobot[] = []; // as they were last
+  private next: ReturnType<typeof setTimeout> | undefined; // drawing
+  private readonly panel = element("group");
+  private readonly title = document.createElement("h2");
+  private readonly place = document.createElement("p");
+  private readonly table = document.createElement("table");
+
+  constructor() {
+    this.panel.append(this.title, this.place, this.table);
+  }
+
+  select(entities: readonly number[], poses: Poses | undefined): void {
+    this.entities = entities;
+    this.panel.hidden = entities.length === 0 || !poses;
+    this.table.replaceChildren();
+    this.robots = [];
+    this.modelOf = new Map();
+    if (!poses || entities.length === 0) return;
+    const { scene } = poses;
+    for (const entity of entities) {
+      const { robot, model } = scene.entities[entity];
+      if (robot !== none) this.modelOf.set(robot, scene.models[model]);
+    }
+    this.models = [...new Set(this.modelOf.values())];
+    const robots = this.modelOf.size;
+    const kinds = this.models.map(({ name }) => name).join(", ");
+    this.title.textContent =
+      robots === entities.length
+        ? `${robots} robots (${kinds})`
+        : `${entities.length} objects, ${robots} of them robots`;
+  }
+
+  /** Shows where their middle is and how far they are spread. */
+  showPoses(poses: Poses | undefined): void {
+    if (!poses || this.panel.hidden) return;
+    const [at, turn, sum] = [new Vector3(), new Quaternion(), new Vector3()];
+    const shown = this.entities.filter((each) => !poses.absent.has(each));
+    for (const entity of shown) {
+      poses.read(poses.placeOf(entity), at, turn);
+      sum.add(at);
+    }
+    if (shown.length === 0) return;
+    sum.divideScalar(shown.length);
+    let squares = 0;
+    for (const entity of shown) {
+      poses.read(poses.placeOf(entity), at, turn);
+      squares += at.distanceToSquared(sum);
+    }
+    const [x, y, z] = sum.toArray().map((each) => fixed(each, 3));
+    this.place.textContent = `mean x ${x} y ${y} z ${z} m · spread ${fixed(Math.sqrt(squares / shown.length), 3)} m`;
+  }
+
+  take(robots: readonly SceneRobot[]): void {
+    this.robots = robots;
+    this.next ??= setTimeout(() => this.draw(), drawInterval);
+  }
+
+  private draw(): void {
+    this.next = undefined;
+    const { robots } = this;
+    if (this.panel.hidden) return;
+    const values = new Map<string, { unit: string; values: number[] }>();
+    for (const robot of robots) {
+      const model = this.modelOf.get(robot.robot);
+      if (!model) continue;
+      for (const { name, unit, value } of channelValues(model, robot)) {
+        const found = values.get(name) ?? { unit, values: [] };
+        found.values.push(value);
+        values.set(name, found);
+      }
+    }
+    const head = rowOf("th", ["channel", "mean", "spread", "sum"]);
+    const rows = [...values].slice(0, mostRows).flatMap(([name, { unit, values: all }]) => {
+      const found = statisticsOf(all);
+      if (!found) return [];
+      const { mean, spread, sum } = found;
+      return [rowOf("td", [withUnit(name, unit), ...[mean, spread, sum].map(shortNumber)])];
+    });
+    this.table.replaceChildren(head, ...rows);
+    const missing = this.modelOf.size - robots.length;
+    this.table.title = missing > 0 ? `of ${robots.length} of ${this.modelOf.size} robots` : "";
+  }
+}
+
+function rowOf(kind: "td" | "th", texts: readonly string[]): HTMLTableRowElement {
+  const row = document.createElement("tr");
+  row.append(
+    ...texts.map((text) => {
+      const cell = document.createElement(kind);
+      // Long names may break after a slash.
+      cell.append(...text.split(/(?<=\/)/).flatMap((part) => [part, document.createElement("wbr")]));
+      return cell;
+    }),
+  );
+  return row;
+}

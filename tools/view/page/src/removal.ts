@@ -1,0 +1,48 @@
+import { element } from "./element";
+import type { Viewer } from "./viewer";
+
+const graceTime = 5000; // [ms]
+
+/** Removes an object a few seconds after it was asked to, so that the user can undo it. It is hidden meanwhile. */
+export class Removal {
+  private pending: { name: string; timer: ReturnType<typeof setTimeout> } | undefined;
+
+  constructor(
+    private readonly viewer: Viewer,
+    private readonly remove: (name: string) => Promise<boolean>,
+  ) {
+    element("undo-button").addEventListener("click", () => this.undo());
+  }
+
+  begin(name: string | undefined): void {
+    if (name === undefined) return;
+    if (this.pending) void this.finish();
+    element("undo-text").textContent = `${name} will be removed.`;
+    element("undo").hidden = false;
+    this.pending = { name, timer: setTimeout(() => void this.finish(), graceTime) };
+    this.viewer.hideSelection();
+  }
+
+  private undo(): void {
+    const found = this.end();
+    if (found === undefined) return;
+    this.viewer.unhide(found);
+    this.viewer.select(found);
+  }
+
+  private async finish(): Promise<void> {
+    const { name } = this.pending ?? {};
+    const found = this.end();
+    if (name !== undefined && !(await this.remove(name)) && found !== undefined) this.viewer.unhide(found);
+  }
+
+  // Returns the entity that was to be removed, if it is still there.
+  private end(): number | undefined {
+    if (!this.pending) return undefined;
+    clearTimeout(this.pending.timer);
+    const found = this.viewer.find(this.pending.name);
+    this.pending = undefined;
+    element("undo").hidden = true;
+    return found;
+  }
+}

@@ -251,7 +251,7 @@ INSTANTIATE_TEST_SUITE_P(
     Mistakes, MistypedCommand,
     ::testing::Values(
         Typed{{},
-              "expected a command; known: run, serve, host, teleop, exec, ctl, record, view, examples, check, export, "
+              "expected a command; known: run, serve, host, teleop, exec, ctl, record, view, page, examples, check, export, "
               "models, samples, security, doctor, recordings, replay, diff, export-data, plot, recover, help, "
               "completion, "
               "man-page, bench. Try 'cohort --help'"},

@@ -79,7 +79,7 @@ async function stateAt(page, { time, tick: wanted }, robot) {
   return page.evaluate(() => {
     const { poses, signals, robot: channels, contacts } = window.cohort.viewer;
     const { positions, orientations, state_hash, run: number, time_ns } = poses.frame;
-    const round = (values) => [...new Float32Array(values)];
+    const round = (values) => [...values].map((value) => Number(value.toPrecision(4)));
     return {
       positions: [...positions],
       orientations: [...orientations],
@@ -98,7 +98,7 @@ async function stateAt(page, { time, tick: wanted }, robot) {
 // The view of the same recording is at `file`.
 async function equalsView(page, file) {
   const { view, moments } = JSON.parse(readFileSync(file, "utf8"));
-  const other = await page.context().newPage();
+  const other = await page.context().browser().newPage();
   await other.goto(view);
   await until(other, () => window.cohort?.viewer.poses?.frame);
   await run(page, "toggle contacts");

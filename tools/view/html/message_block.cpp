@@ -3,6 +3,7 @@
 #include <openssl/evp.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <new>
@@ -32,6 +33,15 @@ std::uint32_t folded(std::uint32_t difference) {
   return (difference << 1) ^ (0u - (difference >> sign_bit));
 }
 
+// Appends the entries, the bytes of equal significance adjacent.
+void append_by_significance(std::string& to, const std::vector<std::uint32_t>& entries) {
+  const std::size_t begin = to.size();
+  to.resize(begin + word_size * entries.size());
+  for (std::size_t byte = 0; byte < word_size; ++byte)
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      to[begin + byte * entries.size() + i] = static_cast<char>((entries[i] >> (8 * byte)) & 0xffu);
+}
+
 std::string compressed(std::string_view bytes) {
   uLongf size = compressBound(bytes.size());
   std::string packed(size, '\0');
@@ -45,26 +55,49 @@ std::string compressed(std::string_view bytes) {
 }  // namespace
 
 void MessageBlock::add(Topic topic, const recording::Bytes& data) {
-  append_number(raw_, static_cast<std::uint32_t>(topic));
-  append_number(raw_, static_cast<std::uint32_t>(data.size()));
-  std::vector<std::uint32_t> words = words_of(data);
-  std::vector<std::uint32_t>& last = last_[topic];
-  if (last.size() != words.size()) last.assign(words.size(), 0);
-  const std::size_t begin = raw_.size();
-  raw_.resize(begin + word_size * words.size());
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::uint32_t difference = folded(words[i] - last[i]);
-    for (std::size_t byte = 0; byte < word_size; ++byte)
-      raw_[begin + byte * words.size() + i] = static_cast<char>((difference >> (8 * byte)) & 0xffu);
+  messages_.push_back({topic, data.size(), words_of(data)});
+  raw_size_ += data.size();
+}
+
+std::vector<MessageBlock::Series> MessageBlock::series() const {
+  std::vector<Series> all;
+  for (const Message& message : messages_) {
+    const auto found = std::ranges::find_if(all, [&](const Series& each) {
+      return each.front()->topic == message.topic && each.front()->size == message.size;
+    });
+    if (found != all.end())
+      found->push_back(&message);
+    else
+      all.push_back({&message});
   }
-  last = std::move(words);
+  return all;
 }
 
 std::string MessageBlock::take_text() {
-  std::string text = packed_text(raw_);
-  raw_.clear();
-  last_.clear();
-  return text;
+  std::string raw;
+  append_number(raw, static_cast<std::uint32_t>(messages_.size()));
+  for (const Message& message : messages_) {
+    append_number(raw, static_cast<std::uint32_t>(message.topic));
+    append_number(raw, static_cast<std::uint32_t>(message.size));
+  }
+  for (const Series& each : series()) {
+    const bool has_differences = each.front()->topic != Topic::robots;
+    append_number(raw, has_differences ? 1 : 0);
+    std::vector<std::uint32_t> entries;
+    entries.reserve(each.size() * each.front()->words.size());
+    for (std::size_t word = 0; word < each.front()->words.size(); ++word) {
+      std::uint32_t left = 0;
+      for (const Message* const message : each) {
+        const std::uint32_t value = message->words[word];
+        entries.push_back(has_differences ? folded(value - left) : value);
+        left = value;
+      }
+    }
+    append_by_significance(raw, entries);
+  }
+  messages_.clear();
+  raw_size_ = 0;
+  return packed_text(raw);
 }
 
 std::string packed_text(std::string_view bytes) {

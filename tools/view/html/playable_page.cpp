@@ -1,6 +1,7 @@
 #include "tools/view/html/playable_page.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -15,16 +16,20 @@ using Nanoseconds = std::chrono::nanoseconds;
 constexpr std::size_t most_frames = 64;
 constexpr std::size_t largest_chunk = std::size_t{2} << 20;  // before compression [bytes]
 
-// Rounds the values, which are only displayed, so that they compress to half of their size.
+// Rounds to 17 significant bits (5 digits), by adding half of the last one that remains.
+double rounded(double value) {
+  if (!std::isfinite(value)) return value;
+  constexpr int cleared = 36;  // of the 52 bits of the mantissa
+  const auto bits = std::bit_cast<std::uint64_t>(value) + (std::uint64_t{1} << (cleared - 1));
+  return std::bit_cast<double>(bits >> cleared << cleared);
+}
+
+// Rounds the values, which are only displayed: most of their last bits are noise, which does not compress.
 recording::Bytes rounded(const recording::Bytes& data) {
   auto robots = messages::decode<messages::SceneRobots>(data);
-  const auto round = [](std::vector<double>& values) {
-    for (double& value : values) value = static_cast<double>(static_cast<float>(value));
-  };
-  for (messages::SceneRobot& robot : robots.robots) {
-    round(robot.observation);
-    round(robot.command);
-  }
+  for (messages::SceneRobot& robot : robots.robots)
+    for (std::vector<double>* const values : {&robot.observation, &robot.command})
+      std::ranges::transform(*values, values->begin(), [](double value) { return rounded(value); });
   return messages::encode(robots);
 }
 

@@ -32,28 +32,43 @@ export async function readTable(blocks: readonly HTMLElement[]): Promise<Table> 
   return JSON.parse(new TextDecoder().decode(await inflated(blocks[blocks.length - 1]))) as Table;
 }
 
+const bytesOf = (numbers: number): number => 4 * numbers;
+
 /** Returns the messages of a block in their order. message_block.hpp describes how they are packed. */
 export async function readMessages(block: HTMLElement): Promise<Packed[]> {
   const buffer = await inflated(block);
-  const view = new DataView(buffer);
-  const bytes = new Uint8Array(buffer);
-  const last = new Map<number, Uint32Array>();
+  const numbers = new DataView(buffer);
+  const count = numbers.getUint32(0, true);
   const messages: Packed[] = [];
-  for (let at = 0; at < buffer.byteLength; ) {
-    const topic = view.getUint32(at, true);
-    const size = view.getUint32(at + 4, true);
-    const count = Math.ceil(size / 4);
-    const words = new Uint32Array(count);
-    const before = last.get(topic);
-    const isDifference = before?.length === count;
-    const [a, b, c, d] = [0, 1, 2, 3].map((byte) => at + 8 + byte * count);
-    for (let i = 0; i < count; ++i) {
-      const folded = bytes[a + i] | (bytes[b + i] << 8) | (bytes[c + i] << 16) | (bytes[d + i] << 24);
-      words[i] = ((folded >>> 1) ^ -(folded & 1)) + (isDifference ? before[i] : 0);
-    }
-    last.set(topic, words);
+  const series = new Map<string, Uint32Array[]>();
+  for (let i = 0; i < count; ++i) {
+    const [topic, size] = [1, 2].map((number) => numbers.getUint32(bytesOf(2 * i + number), true));
+    const words = new Uint32Array(Math.ceil(size / 4));
     messages.push({ topic, data: new Uint8Array(words.buffer, 0, size) });
-    at += 8 + 4 * count;
+    const key = `${topic} ${size}`;
+    const known = series.get(key);
+    if (known) known.push(words);
+    else series.set(key, [words]);
+  }
+  let at = bytesOf(1 + 2 * count);
+  for (const each of series.values()) {
+    fill(each, new Uint8Array(buffer, at + bytesOf(1)), numbers.getUint32(at, true) === 1);
+    at += bytesOf(1 + each.length * each[0].length);
   }
   return messages;
+}
+
+function fill(series: readonly Uint32Array[], bytes: Uint8Array, hasDifferences: boolean): void {
+  const [columns, rows] = [series.length, series[0].length];
+  const size = columns * rows;
+  let at = 0;
+  for (let row = 0; row < rows; ++row) {
+    let left = 0;
+    for (let column = 0; column < columns; ++column, ++at) {
+      const entry =
+        bytes[at] | (bytes[at + size] << 8) | (bytes[at + 2 * size] << 16) | (bytes[at + 3 * size] << 24);
+      left = hasDifferences ? (left + ((entry >>> 1) ^ -(entry & 1))) | 0 : entry;
+      series[column][row] = left;
+    }
+  }
 }

@@ -60,9 +60,10 @@ TEST_F(AnHtmlFile, PlaysARecordingWithoutANetwork) {
   run_script("html.mjs", {"plays", address_of(scratch / "run.html"), scratch / "expected.json"});
 }
 
-// Chunks have 64 frames, so there are several.
+// Chunks have 64 frames, so there are several. Something is gripped.
 TEST_F(AnHtmlFile, ShowsToTheBitWhatTheViewShows) {
-  run_demo({"--duration", "4", "--record", scratch / "run.mcap"});
+  run_experiment(COHORT_SOURCE_DIR "/tests/view/exhibits/experiment.yaml",
+                 {"--controllers", "inprocess", "--record", scratch / "run.mcap", "--record-snapshots", "1"});
   write_page_or_fail(scratch / "run.mcap", scratch / "run.html", {"--contacts", "--fps", "100"});
   const View view({scratch / "run.mcap"});
   write_file(scratch / "expected.json",

@@ -19,7 +19,7 @@ constexpr std::size_t largest_chunk = std::size_t{2} << 20;  // before compressi
 // Rounds to 17 significant bits (5 digits), by adding half of the last one that remains.
 double rounded(double value) {
   if (!std::isfinite(value)) return value;
-  constexpr int cleared = 36;  // of the 52 bits of the mantissa
+  constexpr int cleared = 36;  // number of bits, in a mantissa of 52
   const auto bits = std::bit_cast<std::uint64_t>(value) + (std::uint64_t{1} << (cleared - 1));
   return std::bit_cast<double>(bits >> cleared << cleared);
 }
@@ -60,7 +60,7 @@ void PlayablePage::visit() {
 bool PlayablePage::is_due(Nanoseconds log_time) {
   if (frame_count_ == 0) return true;
   const double elapsed = std::chrono::duration<double>(log_time - options_.from).count();
-  constexpr double slack = 1e-6;  // of the interval, for the rounding of times
+  constexpr double slack = 1e-6;  // share of the interval, for the rounding of times
   const auto frames = static_cast<std::uint64_t>(std::max(0.0, elapsed * options_.frame_rate + slack));
   const bool is_next = frames > due_frames_;
   due_frames_ = frames;

@@ -31,7 +31,7 @@ class PlayablePage {
 
   /// Takes the state of the replay, which is at a boundary, if a frame is due there. To be called for each boundary.
   void visit();
-  /// Writes the table. Returns nothing; the file then has to be committed.
+  /// Writes the remaining frames, the events and the table. The file is not committed.
   void finish();
 
   std::size_t frame_count() const { return frame_count_; }

@@ -22,7 +22,7 @@ export class FileConnection implements Connection {
   private time = 0; // log time [ns]
   private at = 0; // the frame to show
   private lastLook = performance.now();
-  // What the page shows.
+  // State of the page.
   private shownFrame = -1;
   private shownScene = -1;
   private shownSignals: Uint8Array | undefined;

@@ -12,7 +12,7 @@ export interface Table {
   note: string;
   events: number; // block
   contacts: boolean;
-  robots: number[]; // ids of those that have channels
+  robots: number[]; // ids of the robots whose channels the file has
   topics: { name: string; schema: string }[];
   chunks: { block: number; scene: number; times: number[]; ticks: number[] }[]; // times [ns]
 }

@@ -1,7 +1,7 @@
 // Opens HTML files that contain a recording, without a network: node html.mjs SCENARIO ADDRESS [FILE].
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { atTick, drawCoarsely, expectRobots, run, runScenario, tick, until } from "./in_page.mjs";
+import { atTick, drawCoarsely, expectRobots, run, runScenario, until } from "./in_page.mjs";
 
 const asked = []; // addresses
 const complaints = []; // in the browser's console
@@ -29,8 +29,10 @@ const shownNote = (page) => page.evaluate(() => document.getElementById("note").
 async function plays(page, file) {
   await drawCoarsely(page);
   const { moments, last } = JSON.parse(readFileSync(file, "utf8"));
-  const start = await tick(page);
-  await until(page, (from) => Number(window.cohort.viewer.poses.frame.tick) > from, start);
+  await run(page, "pause; seek 0");
+  await atTick(page, 0);
+  await run(page, "play");
+  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 0);
   await run(page, "pause");
   for (const expected of moments) {
     await run(page, `seek ${expected.time}`);
@@ -65,7 +67,7 @@ async function plays(page, file) {
   await run(page, "speed max; play");
   await atTick(page, last);
   await until(page, () => document.getElementById("factor").textContent === "paused");
-  await run(page, "speed 1; play");
+  await run(page, "speed 0.1; play");
   await until(page, (end) => Number(window.cohort.viewer.poses.frame.tick) < end, last);
   await assert.rejects(run(page, "reset"), /'reset': unknown operation; a recording offers play/);
   expectNoRequests();
@@ -109,7 +111,10 @@ async function equalsView(page, file) {
   await page.goto(view);
   await until(page, () => window.cohort?.viewer.poses?.frame);
   assert.deepEqual(states, await statesAt());
-  assert.ok(states.some(({ contacts }) => contacts.some((points) => points.length > 0)), "there are contacts");
+  assert.ok(
+    states.some(({ contacts }) => contacts.some((points) => points.length > 0)),
+    "there are contacts",
+  );
 }
 
 // The world's name, which the file holds, is code that must not be run.

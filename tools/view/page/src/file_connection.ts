@@ -147,7 +147,10 @@ export class FileConnection implements Connection {
   }
 
   private advance(frames: RecordedFrames, elapsed: number): void {
-    if (this.speed === 0) return this.goTo(this.at + 1);
+    if (this.speed === 0) {
+      this.goTo(this.at + 1);
+      return;
+    }
     this.time = Math.min(this.time + 1e6 * elapsed * this.speed, frames.times[frames.times.length - 1]);
     this.at = frames.notAfter(this.time);
   }

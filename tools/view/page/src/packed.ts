@@ -65,8 +65,7 @@ function fill(series: readonly Uint32Array[], bytes: Uint8Array, hasDifferences:
   for (let row = 0; row < rows; ++row) {
     let left = 0;
     for (let column = 0; column < columns; ++column, ++at) {
-      const entry =
-        bytes[at] | (bytes[at + size] << 8) | (bytes[at + 2 * size] << 16) | (bytes[at + 3 * size] << 24);
+      const entry = bytes[at] | (bytes[at + size] << 8) | (bytes[at + 2 * size] << 16) | (bytes[at + 3 * size] << 24);
       left = hasDifferences ? (left + ((entry >>> 1) ^ -(entry & 1))) | 0 : entry;
       series[column][row] = left;
     }

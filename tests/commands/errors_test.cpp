@@ -251,7 +251,8 @@ INSTANTIATE_TEST_SUITE_P(
     Mistakes, MistypedCommand,
     ::testing::Values(
         Typed{{},
-              "expected a command; known: run, serve, host, teleop, exec, ctl, record, view, examples, check, export, "
+              "expected a command; known: run, serve, host, teleop, exec, ctl, record, view, page, examples, check, "
+              "export, "
               "models, samples, security, doctor, recordings, replay, diff, export-data, plot, recover, help, "
               "completion, "
               "man-page, bench. Try 'cohort --help'"},
@@ -277,6 +278,9 @@ INSTANTIATE_TEST_SUITE_P(
               {{"COHORT_LOG", "loud"}}},
         Typed{{"serve", "x", "--netwrk", "y"}, "there is no option '--netwrk'; did you mean '--network'?"},
         Typed{{"host", "x"}, "--robots is required"}, Typed{{"check"}, "FILE is required"},
+        Typed{{"page"}, "FILE is required"}, Typed{{"page", "run.mcap"}, "--output is required"},
+        Typed{{"page", "run.mcap", "-o", "run.html", "--fps", "0"}, "--fps: expected a number above 0"},
+        Typed{{"page", "/nowhere/run.mcap", "-o", "run.html"}, "/nowhere/run.mcap"},
         Typed{{"bench", "--scene", "crowd,crwd"}, "--scene: there is no 'crwd'; did you mean 'crowd'?"},
         Typed{{"bench", "--engines", "mujocko"}, "--engines: there is no 'mujocko'; did you mean 'mujoco'?"},
         Typed{{"bench", "--robots", "0"}, "--robots: expected a whole number from 1 to 100000, not '0'"},
@@ -294,7 +298,7 @@ TEST(Errors, ReportAViewThatWasNotBuilt) {
 }
 
 TEST(Help, ShowsAnExampleForEveryCommand) {
-  for (const char* command : {"", "run", "serve", "host", "check", "view", "bench"}) {
+  for (const char* command : {"", "run", "serve", "host", "check", "view", "page", "bench"}) {
     std::vector<std::string> arguments = {cohort_program(), command, "--help"};
     if (*command == '\0') arguments.erase(arguments.begin() + 1);
     const Ended help = run_to_end(arguments);

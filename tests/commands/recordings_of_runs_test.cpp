@@ -145,6 +145,7 @@ TEST_F(Recordings, ExplainHowToRecordAnExperiment) {
   const std::string picture = *this / "run.svg";
   for (const std::vector<std::string>& command : {std::vector<std::string>{"replay", field.file()},
                                                   {"view", field.file()},
+                                                  {"page", field.file(), "--output", *this / "run.html"},
                                                   {"plot", field.file(), "--output", picture}}) {
     const Ended refused = cohort(command);
     EXPECT_EQ(refused.exit_code, 2) << command[0] << refused.err;

@@ -6,6 +6,7 @@ import {
   coloursIn,
   drawCoarsely,
   drawn,
+  expectRobots,
   patience,
   pausedTick,
   pixelsAt,
@@ -21,24 +22,8 @@ async function draws(page, file) {
   const expected = JSON.parse(readFileSync(file, "utf8"));
   await run(page, `pause; seek ${expected.time}; toggle shadows`);
   await atTick(page, expected.tick);
-  const { poses, shown } = await page.evaluate(
-    (names) => {
-      const { viewer } = window.cohort;
-      viewer.draw(performance.now() + 1000); // past the blend of the last two frames
-      return {
-        poses: names.map((name) => viewer.poseOf(viewer.find(name))),
-        shown: ["tick", "hash", "robots"].map((id) => document.getElementById(id).textContent),
-      };
-    },
-    expected.robots.map(({ name }) => name),
-  );
-  assert.equal(poses.length, 16);
-  expected.robots.forEach(({ name, x, y, heading }, i) => {
-    const { position, heading: found } = poses[i];
-    assert.ok(Math.hypot(position[0] - x, position[1] - y) < 1e-4, `${name} is at ${position}, not at ${x} ${y}`);
-    assert.ok(Math.cos(found - heading) > 0.99999, `${name} heads ${found}, not ${heading}`);
-  });
-  assert.deepEqual(shown, [String(expected.tick), expected.hash, "16"]);
+  assert.equal(expected.robots.length, 16);
+  await expectRobots(page, expected);
   await run(page, "home; top");
   await drawn(page, 2);
   const turretHeight = 0.1; // [m]

@@ -109,8 +109,31 @@ export const coloursIn = (page, bytes, type) =>
     [bytes.toString("base64"), type],
   );
 
-/** Opens the page for the scenario that the command line names: SCENARIO ADDRESS [FILE]. */
-export async function runScenario(scenarios) {
+/** Checks that the page, at its present frame, has robots where a test expects them, and the tick and the hash. */
+export async function expectRobots(page, expected) {
+  const { poses, shown } = await page.evaluate(
+    (names) => {
+      const { viewer } = window.cohort;
+      viewer.draw(performance.now() + 1000); // past the blend of the last two frames
+      return {
+        poses: names.map((name) => viewer.poseOf(viewer.find(name))),
+        shown: ["tick", "hash", "robots"].map((id) => document.getElementById(id).textContent),
+      };
+    },
+    expected.robots.map(({ name }) => name),
+  );
+  expected.robots.forEach(({ name, x, y, heading }, i) => {
+    const { position, heading: found } = poses[i];
+    assert.ok(Math.hypot(position[0] - x, position[1] - y) < 1e-4, `${name} is at ${position}, not at ${x} ${y}`);
+    assert.ok(Math.cos(found - heading) > 0.99999, `${name} heads ${found}, not ${heading}`);
+  });
+  assert.deepEqual(shown, [String(expected.tick), expected.hash, String(expected.robots.length)]);
+}
+
+/**
+ * Opens the page for the scenario that the command line names: SCENARIO ADDRESS [FILE]. `prepare` is called before.
+ */
+export async function runScenario(scenarios, prepare = async () => undefined) {
   const [, , scenario, address, file] = process.argv;
   const browser = await chromium.launch({
     executablePath: process.env.COHORT_CHROMIUM,
@@ -130,6 +153,7 @@ export async function runScenario(scenarios) {
     page.setDefaultTimeout(patience);
     const errors = [];
     page.on("pageerror", (error) => errors.push(error.message));
+    await prepare(page);
     await page.goto(address);
     await until(page, () => window.cohort?.viewer.poses?.frame);
     try {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "server/recording/replay.hpp"
 #include "tests/support/http.hpp"
+#include "tests/view/robots_at.hpp"
 #include "tests/view/viewing.hpp"
 
 namespace cohort::view {
@@ -18,26 +18,6 @@ using nlohmann::json;
 // The demo's first seconds, recorded with a snapshot every second.
 void record_demo(const std::filesystem::path& file, const std::string& seconds) {
   run_demo({"--duration", seconds, "--record", file, "--record-snapshots", "1"});
-}
-
-// Where the demo's robots are at a time, by the recording.
-json robots_at(const std::filesystem::path& file, double seconds) {
-  const recording::Recording recording(file);
-  recording::Replay replay(recording, 1);
-  EXPECT_TRUE(replay.seek(std::chrono::nanoseconds(std::llround(seconds * 1e9))));
-  const Simulation& simulation = replay.simulation();
-  json robots = json::array();
-  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
-    const Pose X_WL = simulation.robot_pose(robot);
-    const Eigen::Vector3d forward = X_WL.orientation * Eigen::Vector3d::UnitX();
-    robots.push_back({{"name", simulation.robot_name(robot)},
-                      {"x", X_WL.position.x()},
-                      {"y", X_WL.position.y()},
-                      {"heading", std::atan2(forward.y(), forward.x())}});
-  }
-  std::array<char, 17> hash{};
-  std::snprintf(hash.data(), hash.size(), "%016llx", static_cast<unsigned long long>(simulation.state_hash()));
-  return {{"time", seconds}, {"tick", simulation.tick()}, {"hash", hash.data()}, {"robots", robots}};
 }
 
 class InTheBrowser : public InABrowser {

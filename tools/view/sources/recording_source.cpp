@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "server/recording/run_messages.hpp"
+#include "tools/view/messages/view_messages.hpp"
 
 namespace cohort::view {
 namespace {
@@ -24,10 +24,11 @@ std::chrono::nanoseconds nanoseconds_of(double seconds) {
 }  // namespace
 
 RecordingSource::RecordingSource(const recording::Recording& recording, Topics& topics, unsigned threads)
-    : recording_(recording), replay_(recording, threads), publisher_(topics), topics_(topics) {
-  const recording::Channel* const boundaries = recording.reader().channel(recording::Boundary::topic);
-  for (const recording::Block& block : recording.reader().blocks())
-    if (boundaries != nullptr) end_ = std::max(end_, Nanoseconds(block.end_time));
+    : recording_(recording),
+      replay_(recording, threads),
+      publisher_(recording, replay_, topics),
+      topics_(topics),
+      end_(end_of(recording)) {
   wanted_.is_playing = true;
   thread_ = std::thread([this] { run(); });
 }
@@ -100,7 +101,7 @@ void RecordingSource::watch(const std::vector<std::uint32_t>& robots) {
 
 void RecordingSource::run() {
   go_to(Nanoseconds(0));
-  show_events();
+  if (std::string problem = publish_events(recording_, topics_); !problem.empty()) problem_ = std::move(problem);
   std::uint64_t arrivals = topics_.arrivals();
   while (!is_stopping_) {
     const Clock::time_point next = Clock::now() + frame_interval;
@@ -117,7 +118,7 @@ void RecordingSource::run() {
     watched_ = wanted.watched;
     const bool is_moving = wanted.is_playing && !is_at_end_;
     act(wanted);
-    if (has_requests || is_moving || arrivals != topics_.arrivals()) show();
+    if (has_requests || is_moving || arrivals != topics_.arrivals()) publisher_.show(log_time_, state_hash_, watched_);
     arrivals = topics_.arrivals();
     show_status(wanted);
     std::unique_lock lock(mutex_);
@@ -155,15 +156,14 @@ RecordingSource::Nanoseconds RecordingSource::start_before(Nanoseconds log_time)
 void RecordingSource::go_to(Nanoseconds log_time) {
   const Nanoseconds target = std::min(log_time, end_);
   const Nanoseconds start = start_before(target);
-  const bool is_ahead = maker_ && log_time_ <= target && start <= log_time_;
+  const bool is_ahead = publisher_.has_scene() && log_time_ <= target && start <= log_time_;
   try {
     if (!is_ahead) {
       problem_.clear();
-      maker_.reset();
-      is_new_world_ = false;
+      publisher_.forget_world();
       is_at_end_ = !replay_.seek(start);
       if (is_at_end_) return;
-      is_new_world_ = true;
+      publisher_.begin_world();
       log_time_ = replay_.recorded().log_time;
       step_ = replay_.experiment().world.step;
       state_hash_ = replay_.simulation().state_hash();
@@ -204,41 +204,19 @@ bool RecordingSource::advance() {
   try {
     is_at_end_ = !replay_.advance();
   } catch (const std::exception& error) {
-    maker_.reset();  // there may be no simulation
-    is_new_world_ = false;
+    publisher_.forget_world();
     problem_ = error.what();
     is_at_end_ = true;
   }
   if (is_at_end_) return false;
   const recording::RecordedTick& recorded = replay_.recorded();
   if (recorded.begins) {
-    is_new_world_ = true;
+    publisher_.begin_world();
     step_ = replay_.experiment().world.step;
-    run_ = recorded.begins->run;
   }
   log_time_ = recorded.log_time;
   state_hash_ = recorded.state_hash.value_or(0);
   return true;
-}
-
-void RecordingSource::show_scene() {
-  const Simulation& simulation = replay_.simulation();
-  is_new_world_ = false;
-  const std::uint32_t revision = publisher_.show(viewing::SceneMaker(simulation, 0).scene(), log_time_);
-  maker_.emplace(simulation, revision);
-}
-
-void RecordingSource::show() {
-  if (is_new_world_ || (maker_ && maker_->is_outdated())) show_scene();
-  if (!maker_) return;
-  publisher_.show(maker_->frame(run_, state_hash_), log_time_);
-  publisher_.show(maker_->signals(), log_time_);
-  if (publisher_.is_read(Topic::contacts)) publisher_.publish(Topic::contacts, maker_->contacts(), log_time_);
-  messages::SceneRobots robots;
-  robots.robots.reserve(watched_.size());
-  for (const std::uint32_t robot : watched_)
-    if (robot < replay_.simulation().robot_count()) robots.robots.push_back(maker_->robot(robot));
-  if (publisher_.is_read(Topic::robots)) publisher_.publish(Topic::robots, robots, log_time_);
 }
 
 void RecordingSource::show_status(const Wanted& wanted) {
@@ -257,26 +235,7 @@ void RecordingSource::show_status(const Wanted& wanted) {
   status.seekable_from_ns = status.begin_ns;
   status.seekable_to_ns = status.end_ns;
   status.note = problem_.empty() ? recording_.damage() : problem_;
-  publisher_.publish(Topic::status, status, log_time_);
-}
-
-void RecordingSource::show_events() {
-  ViewEvents events;
-  const recording::Channel* const channel = recording_.reader().channel(recording::RecordedEvent::topic);
-  if (channel != nullptr) {
-    recording::MessageStream messages = recording_.reader().messages({.channels = {channel->id}});
-    try {
-      while (const auto message = messages.next()) {
-        if (events.events.size() == ViewEvents::most) break;
-        const auto event = messages::decode<recording::RecordedEvent>(message->data);
-        const auto time = static_cast<std::int64_t>(message->log_time.count());
-        events.events.push_back({time, event.tick, event.kind, event.text, event.count, time});
-      }
-    } catch (const std::exception& error) {
-      problem_ = error.what();
-    }
-  }
-  publisher_.publish(Topic::events, events, log_time_);
+  topics_.publish(Topic::status, log_time_, messages::encode(status));
 }
 
 }  // namespace cohort::view

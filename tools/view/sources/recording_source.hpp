@@ -8,9 +8,8 @@
 #include <thread>
 
 #include "server/recording/replay.hpp"
-#include "server/viewing/scene_maker.hpp"
-#include "tools/view/messages/scene_publisher.hpp"
 #include "tools/view/source.hpp"
+#include "tools/view/sources/replay_publisher.hpp"
 
 namespace cohort::view {
 
@@ -49,15 +48,12 @@ class RecordingSource final : public Source {
   void step_back(std::int64_t ticks);
   void play(const Wanted& wanted);
   bool advance();
-  void show();
-  void show_scene();
   void show_status(const Wanted& wanted);
-  void show_events();
   Nanoseconds start_before(Nanoseconds log_time) const;
 
   const recording::Recording& recording_;
   recording::Replay replay_;
-  ScenePublisher publisher_;
+  ReplayPublisher publisher_;
   Topics& topics_;
 
   std::mutex mutex_;
@@ -70,14 +66,11 @@ class RecordingSource final : public Source {
   // State of the thread.
   std::uint64_t requests_taken_ = 0;
   std::uint64_t interruptions_taken_ = 0;
-  std::optional<viewing::SceneMaker> maker_;
-  bool is_new_world_ = false;
   bool is_at_end_ = false;
   std::string problem_;
   Nanoseconds log_time_{0};
   Nanoseconds step_{0};  // step size of the last world that could be built; a replay may have none
   std::uint64_t state_hash_ = 0;
-  std::uint32_t run_ = 0;
   Nanoseconds end_{0};
   std::vector<std::uint32_t> watched_;
   // The pace is counted from here.

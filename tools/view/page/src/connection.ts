@@ -1,7 +1,9 @@
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
 import { type Channel, FoxgloveClient, type Service } from "@foxglove/ws-protocol";
+import { FileConnection } from "./file_connection";
 import type { Messages, Topic } from "./messages";
+import { blocksOf } from "./packed";
 
 export interface ViewRequest {
   operation: string;
@@ -15,7 +17,7 @@ export interface Answer {
   text: string;
 }
 
-type Handlers = { [T in Topic]?: (message: Messages[T], bytes: number) => void };
+export type Handlers = { [T in Topic]?: (message: Messages[T], bytes: number) => void };
 interface Subscribed {
   topic: Topic;
   reader: MessageReader;
@@ -24,8 +26,23 @@ interface Subscribed {
 const firstWait = 250; // [ms]
 const longestWait = 4000;
 
+/** The source of what the page shows. */
+export interface Connection {
+  /** Passes messages of a topic to its handler from now on, or no longer; also after the connection was lost. */
+  want(topic: Topic, isWanted?: boolean): void;
+  ask(request: ViewRequest): Promise<Answer>;
+}
+
+/** Returns the recording that the document contains, or else a connection to the server of this address. */
+export function connect(url: string, handlers: Handlers, changed: (isConnected: boolean) => void): Connection {
+  const blocks = blocksOf(document);
+  return blocks.length > 0
+    ? new FileConnection(blocks, handlers, changed)
+    : new ServerConnection(url, handlers, changed);
+}
+
 /** A client of the server that the page came from; connects again when the connection is lost. */
-export class Connection {
+class ServerConnection implements Connection {
   private client: FoxgloveClient | undefined;
   private channels = new Map<string, Channel>();
   private subscribed = new Map<number, Subscribed>();
@@ -43,7 +60,6 @@ export class Connection {
     this.connect();
   }
 
-  /** From now on, also after the connection was lost. */
   want(topic: Topic, isWanted = true): void {
     if (isWanted === this.wanted.has(topic)) return;
     if (isWanted) {

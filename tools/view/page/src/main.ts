@@ -1,7 +1,7 @@
 import "uplot/dist/uPlot.min.css";
 import "./page.css";
 import { Commands } from "./commands";
-import { addressOfServer, Connection } from "./connection";
+import { addressOfServer, type Connection, connect } from "./connection";
 import { ConsolePanel } from "./console";
 import { addConsoleCommands, preferredTheme, showPressed } from "./console_commands";
 import { Driving } from "./driving";
@@ -52,7 +52,7 @@ const phaseCard = new PhaseCard(
   () => void consolePanel.run("again"),
   () => `${element("tick").textContent} ticks, state hash ${element("hash").textContent}`,
 );
-const connection: Connection = new Connection(
+const connection: Connection = connect(
   addressOfServer(location),
   {
     "/cohort/scene": (scene, size) => {

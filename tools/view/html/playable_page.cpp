@@ -110,6 +110,7 @@ void PlayablePage::finish() {
   events.add(Topic::events, topics_.newest(Topic::events)->data);
   nlohmann::json table = {{"version", 1},
                           {"name", recording_.file().filename().string()},
+                          {"seed", std::to_string(recording_.worlds().front().begins.seed)},
                           {"note", note},
                           {"events", file_.add(events.take_text())},
                           {"contacts", options_.has_contacts},

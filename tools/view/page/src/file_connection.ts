@@ -228,6 +228,8 @@ export class FileConnection implements Connection {
       end_text: "",
       to_type: "",
       recording: "",
+      seed: table?.seed ?? "",
+      can_run_again: false,
     };
   }
 

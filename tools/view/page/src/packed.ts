@@ -9,6 +9,7 @@ export interface Packed {
 export interface Table {
   version: number;
   name: string;
+  seed: string;
   note: string;
   events: number; // block
   contacts: boolean;

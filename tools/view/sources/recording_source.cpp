@@ -24,7 +24,14 @@ std::chrono::nanoseconds nanoseconds_of(double seconds) {
 }  // namespace
 
 RecordingSource::RecordingSource(const recording::Recording& recording, Topics& topics, unsigned threads)
-    : recording_(recording), replay_(recording, threads), publisher_(topics), topics_(topics) {
+    : recording_(recording),
+      replay_(recording, threads),
+      publisher_(topics),
+      topics_(topics),
+      values_(recording),
+      histories_([this](const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled) {
+        return values_.read(request, is_cancelled);
+      }) {
   const recording::Channel* const boundaries = recording.reader().channel(recording::Boundary::topic);
   for (const recording::Block& block : recording.reader().blocks())
     if (boundaries != nullptr) end_ = std::max(end_, Nanoseconds(block.end_time));
@@ -43,6 +50,7 @@ RecordingSource::~RecordingSource() {
 }
 
 void RecordingSource::ask(const ViewRequest& request, std::function<void(const Answer&)> answer) {
+  if (request.operation == "history") return histories_.ask(request, std::move(answer));
   answer(take(request));
 }
 
@@ -86,8 +94,8 @@ Answer RecordingSource::take(const ViewRequest& request) {
     wanted_.steps = 0;
     return done(fmt::format("at {:.3f} s", request.number));
   }
-  return {false, fmt::format("'{}': unknown operation; a recording offers play, pause, step, seek "
-                             "and speed",
+  return {false, fmt::format("'{}': unknown operation; a recording offers play, pause, step, seek, "
+                             "speed and history",
                              request.operation)};
 }
 

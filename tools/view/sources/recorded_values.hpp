@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "server/recording/replay.hpp"
+#include "tools/view/history/history_collector.hpp"
+#include "tools/view/history/history_thread.hpp"
+
+namespace cohort::view {
+
+/// Values of robots over the time of a recording.
+///
+/// Commands are in every recording, and observations in one that was asked to have them: those are read from the file.
+/// Otherwise the recording is replayed, apart from the replay that is shown. That takes time, so an answer may be only
+/// a first part. The next request, from `next` on, continues the same replay.
+///
+/// Times are log times, as those of the time bar. A commanded value is the one with which the robot has come to that
+/// time, as in `/cohort/robots`.
+class RecordedValues {
+ public:
+  /// `recording` must outlive this.
+  explicit RecordedValues(const recording::Recording& recording);
+
+  /// One thread. Throws McapError and the exceptions of Simulation if there is nothing that can be read.
+  Answer read(const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled);
+
+ private:
+  using Nanoseconds = std::chrono::nanoseconds;
+
+  void read_rosters();
+  bool are_recorded(const HistoryRequest& request) const;
+  Answer read_records(const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled) const;
+  Answer replay(const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled);
+  void start_before(Nanoseconds time);
+
+  const recording::Recording& recording_;
+  Nanoseconds end_{0};
+  bool has_rosters_ = false;
+  std::vector<Nanoseconds> rosters_;            // their log times
+  std::map<std::uint32_t, std::string> names_;  // of robots, by id
+  std::optional<recording::Replay> replay_;     // at a boundary, to be continued
+};
+
+}  // namespace cohort::view

@@ -4,6 +4,8 @@ import { type Command, type Commands, command } from "./commands";
 import type { Connection, ViewRequest } from "./connection";
 import type { ConsolePanel } from "./console";
 import { element } from "./element";
+import { fixed } from "./numbers";
+import type { Plots } from "./plots";
 import type { TimeBar } from "./time_bar";
 import type { Layer, Viewer } from "./viewer";
 
@@ -17,6 +19,7 @@ interface Parts {
   connection: Connection;
   console: ConsolePanel;
   timeBar: TimeBar;
+  plots: Plots;
   commands: Commands;
   canvas: HTMLCanvasElement;
 }
@@ -58,13 +61,14 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
     plain("play", "goes on"),
     plain("pause", "stands still"),
     plain("replay", "shows the recording of a run that has ended"),
-    command("step [TICKS]", "steps by a number of ticks (default: 1); negative numbers step back where 'seek' can", ([ticks]) =>
-      ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }),
-    ),
     command(
-      "seek SECONDS",
-      "goes to a time of a recording, or back in a run whose server keeps snapshots",
-      ([time]) => ask(connection, { operation: "seek", number: numberOf(time, "seconds") }),
+      "step [TICKS]",
+      "steps by a number of ticks (default: 1); negative numbers step back where 'seek' can",
+      ([ticks]) =>
+        ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }),
+    ),
+    command("seek SECONDS", "goes to a time of a recording, or back in a run whose server keeps snapshots", ([time]) =>
+      ask(connection, { operation: "seek", number: numberOf(time, "seconds") }),
     ),
     command(
       "speed FACTOR",
@@ -77,7 +81,7 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
   ];
 }
 
-function cameraCommands({ viewer }: Parts): Command[] {
+function cameraCommands({ viewer, plots }: Parts): Command[] {
   const names = (): string[] => viewer.poses?.scene.entities.map(({ name }) => name) ?? [];
   const entityOf = (name: string | undefined): number => {
     const found = name === undefined ? viewer.selected : viewer.find(name);
@@ -124,13 +128,18 @@ function cameraCommands({ viewer }: Parts): Command[] {
       "prints a position and heading",
       ([name]) => {
         const { position, heading } = viewer.poseOf(entityOf(name));
-        return `${position.map((each) => each.toFixed(4)).join(" ")} m, heading ${heading.toFixed(3)} rad`;
+        return `${position.map((each) => fixed(each, 4)).join(" ")} m, heading ${fixed(heading, 3)} rad`;
       },
       names,
     ),
-    command("plot CHANNEL", "plots a channel of the selected robot", ([name]) => {
-      if (!viewer.inspector.plot(name ?? "")) throw new Error(`the selected robot has no channel '${name ?? ""}'`);
-    }),
+    command(
+      "plot CHANNEL|UNIT",
+      "plots a channel of the selected robots, or all channels of a unit",
+      (words) => {
+        if (!plots.add(words.join(" "))) throw new Error(`the selected robot has no channel '${words.join(" ")}'`);
+      },
+      () => plots.names(),
+    ),
   ];
 }
 

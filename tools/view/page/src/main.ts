@@ -9,6 +9,7 @@ import { element } from "./element";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 import { Objects } from "./objects";
 import { PhaseCard } from "./phase_card";
+import { Plots } from "./plots";
 import { clockText, TimeBar } from "./time_bar";
 import { Viewer } from "./viewer";
 
@@ -19,9 +20,10 @@ let bytes = 0;
 let unrecorded = ""; // why the recording of the run has ended, once it has
 let notes: readonly string[] = []; // from the last status
 
-const viewer = new Viewer(canvas, (robot) => {
+const viewer: Viewer = new Viewer(canvas, (robot) => {
   connection.want("/cohort/robots", robot !== undefined);
   void connection.ask({ operation: "watch", numbers: robot === undefined ? [] : [robot] });
+  plots.show(robot === undefined ? [] : [robot]);
   driving.show();
   objects.show();
 });
@@ -37,6 +39,11 @@ const timeBar = new TimeBar({
       : connection.ask({ operation: "seek", number: time })),
   speed: (factor) => void connection.ask({ operation: "speed", number: factor }),
 });
+const plots = new Plots({
+  ask: (request) => connection.ask(request),
+  seek: (time) => void consolePanel.run(`seek ${time}`),
+});
+viewer.inspector.onPlot = (name) => plots.add(name);
 
 const phaseCard = new PhaseCard(() => void consolePanel.run("replay"));
 const connection: Connection = new Connection(
@@ -44,6 +51,7 @@ const connection: Connection = new Connection(
   {
     "/cohort/scene": (scene, size) => {
       bytes += size;
+      plots.setScene(scene);
       viewer.show(scene);
       showPressed(viewer);
     },
@@ -61,24 +69,29 @@ const connection: Connection = new Connection(
       objects.showLight();
     },
     "/cohort/contacts": (contacts) => viewer.takeContacts(contacts),
-    "/cohort/robots": ({ robots }) => viewer.takeRobots(robots),
+    "/cohort/robots": ({ robots }) => {
+      viewer.takeRobots(robots);
+      plots.take(robots);
+    },
     "/cohort/status": showStatus,
     "/cohort/events": ({ events }) => showEvents(events),
   },
   (isConnected) => {
     phaseCard.connect(isConnected);
+    plots.forget();
     if (isConnected && viewer.selected !== undefined) viewer.select(viewer.selected);
   },
 );
 for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const)
   connection.want(topic);
-addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, commands, canvas });
+addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, plots, commands, canvas });
 const driving = new Driving(viewer, connection, commands, consolePanel, canvas);
 const objects = new Objects(viewer, connection, consolePanel, canvas);
 for (const command of [...driving.consoleCommands(), ...objects.consoleCommands()]) commands.add(command);
 
 function showStatus(status: ViewStatus): void {
   timeBar.take(status);
+  plots.takeStatus(status);
   phaseCard.take(status);
   document.body.classList.toggle("is-server", status.source === "server");
   element("name").textContent = status.name;
@@ -196,5 +209,5 @@ setInterval(() => {
 
 /** For tests and for the browser's console. */
 Object.assign(window, {
-  cohort: { viewer, commands, connection, driving, objects, run: (line: string) => commands.run(line) },
+  cohort: { viewer, commands, connection, driving, objects, plots, run: (line: string) => commands.run(line) },
 });

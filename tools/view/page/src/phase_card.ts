@@ -31,7 +31,11 @@ export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Ca
   const over = { toType: status.to_type, recording: isConnected ? status.recording : "" };
   switch (status.phase) {
     case "waiting":
-      return { title: "Waiting for a server", text: `No server responds at ${status.name}. To start one:`, toType: status.to_type };
+      return {
+        title: "Waiting for a server",
+        text: `No server responds at ${status.name}. To start one:`,
+        toType: status.to_type,
+      };
     case "gathering": {
       const [first, ...others] = status.awaited;
       const more = others.length > 0 ? ` and ${others.length} more` : "";

@@ -61,7 +61,8 @@ export class TimeBar {
     const share = (time: number): string => `${(100 * (time - begin)) / Math.max(1e-9, end - begin)}%`;
     this.bar.style.setProperty("--done", share(now));
     this.bar.style.setProperty("--from", share(status.can_seek ? seconds(status.seekable_from_ns) : begin));
-    this.bar.title = status.can_seek && status.loses_what_follows ? "Going back discards the later part of the run" : "";
+    this.bar.title =
+      status.can_seek && status.loses_what_follows ? "Going back discards the later part of the run" : "";
     element("now").textContent = clockText(now);
     element("whole").textContent = end > 0 ? clockText(end) : "";
     const speed = String(status.speed);

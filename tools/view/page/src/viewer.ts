@@ -12,8 +12,8 @@ import {
   type SceneFrame,
   type SceneRobot,
   type SceneSignals,
-  seconds,
 } from "./messages";
+import { fixed } from "./numbers";
 import { Contacts, Labels, Rays, Trails } from "./overlays";
 import { Poses } from "./poses";
 import { Outline, pick } from "./selection";
@@ -109,7 +109,7 @@ export class Viewer {
   takeRobots(robots: readonly SceneRobot[]): void {
     const id = this.selectedEntity?.robot ?? none;
     this.robot = robots.find(({ robot }) => robot === id);
-    if (this.robot) this.inspector.take(this.robot, seconds(this.robot.time_ns));
+    if (this.robot) this.inspector.take(this.robot);
   }
 
   // User input.
@@ -225,8 +225,8 @@ export class Viewer {
   private showPose(): void {
     if (this.selected === undefined) return;
     const { position, heading } = this.poseOf(this.selected);
-    const [x, y, z] = position.map((each) => each.toFixed(3));
-    this.inspector.showPose(`x ${x}  y ${y}  z ${z} m · ${((180 * heading) / Math.PI).toFixed(0)}°`);
+    const [x, y, z] = position.map((each) => fixed(each, 3));
+    this.inspector.showPose(`x ${x}  y ${y}  z ${z} m · ${fixed((180 * heading) / Math.PI, 0)}°`);
   }
 
   private build(poses: Poses): void {

@@ -64,7 +64,10 @@ async function drivesByKeys(page) {
   await run(page, "select people/keys");
   await page.locator("#drive").click();
   await drives(page, robot);
-  assert.match(await page.locator("#driven").textContent(), /drives people\/keys · arrows or w a s d · Escape releases/);
+  assert.match(
+    await page.locator("#driven").textContent(),
+    /drives people\/keys · arrows or w a s d · Escape releases/,
+  );
   await goesAhead(page, robot, ...key(page, "ArrowUp"));
 
   // The server reports the command: half of full speed, and the other way round.

@@ -18,7 +18,7 @@ struct ViewRequest {
   std::string name{};  ///< name of an object
   std::string text{};
   std::vector<double> numbers{};
-  std::vector<std::string> names{};  ///< of channels
+  std::vector<std::string> names{};  ///< names of channels
   std::optional<double> from{};      ///< [s]
   std::optional<double> to{};        ///< [s]
   std::uint64_t visitor = 0;         ///< id of the viewer

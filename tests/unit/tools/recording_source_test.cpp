@@ -186,7 +186,7 @@ TEST(RecordingSource, StepsAndSeeksInBothDirections) {
   EXPECT_EQ(viewing.request("seek", 0.33).note, "");
 }
 
-// Of the robot's command, and an observation if it has one, at each boundary: by a replay.
+// Returns the robot's observation and then its command at each boundary, by a replay.
 std::map<double, std::vector<double>> values_by_replay(const recording::Recording& recording) {
   std::map<double, std::vector<double>> values;
   recording::Replay replay(recording, 1);
@@ -219,7 +219,7 @@ ValueSeries whole_history(RecordedValues& values, ViewRequest asked) {
 
 void expect_history_of_replay(const recording::Recording& recording) {
   const auto expected = values_by_replay(recording);
-  ASSERT_EQ(expected.size(), 2 * ticks_of_a_world + 1U);
+  ASSERT_EQ(expected.size(), 2U * (ticks_of_a_world + 1));
   RecordedValues values(recording);
   const ValueSeries position =
       whole_history(values, {.operation = "history", .numbers = {0}, .names = {"encoder/0/position"}});

@@ -18,13 +18,13 @@ struct HistoryRequest {
   static constexpr std::size_t most_names = 32;
   static constexpr std::size_t most_series = 128;     ///< robots times names
   static constexpr std::size_t longest_name = 256;    ///< [bytes]
-  static constexpr std::size_t most_points = 16'000;  ///< of all series: an answer has less than 1 MiB
+  static constexpr std::size_t most_points = 16'000;  ///< in all series: an answer has less than 1 MiB
 
   std::vector<std::uint32_t> robots{};  ///< ids
-  std::vector<std::string> names{};     ///< of values
+  std::vector<std::string> names{};     ///< names of values
   std::chrono::nanoseconds from{0};
   std::chrono::nanoseconds to{0};
-  std::size_t points = 0;  ///< of each series, at most
+  std::size_t points = 0;  ///< limit for each series
   std::uint64_t visitor = 0;
 };
 
@@ -41,8 +41,8 @@ struct ValuePlace {
 /// The name of a commanded value begins with this.
 inline constexpr std::string_view commanded_prefix = "→ ";
 
-/// Returns the index within its channel of a value: 0 in a channel of one value that has this name, and `i` in a larger
-/// one if the name is `CHANNEL[i]`. Returns nothing if it is of another channel.
+/// Returns the index of a value within its channel, or nothing if it belongs to another channel. A value is named as
+/// its channel if that has one value, and `CHANNEL[i]` otherwise.
 std::optional<std::size_t> index_in_channel(std::string_view value, std::string_view channel, std::size_t size);
 
 /// Returns the place of a value among those of channels, which have a `name`, a `unit` and a `size`.

@@ -45,7 +45,7 @@ class HistoryThread {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Pending> pending_;
-  std::uint64_t visitor_ = 0;  // whose request is read
+  std::uint64_t visitor_ = 0;  // visitor whose request is read
   bool is_reading_ = false;
   std::atomic<bool> is_cancelled_{false};
   std::atomic<bool> is_stopping_{false};

@@ -50,7 +50,7 @@ std::vector<Sample> Reduction::samples() const {
   }
   if (!parts_.empty()) result.push_back(last_);
   std::ranges::stable_sort(result, is_earlier);
-  // Of several samples at one time, such as the end of a world and the beginning of the next, the last one counts.
+  // Several samples may have one time, such as the end of a world and the beginning of the next: the last one counts.
   std::vector<Sample> distinct;
   distinct.reserve(result.size());
   for (const Sample& each : result) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/recording/mcap/format/mcap_error.hpp"
-
 namespace cohort::view {
 namespace {
 
@@ -108,16 +106,20 @@ Answer RecordedValues::read(const HistoryRequest& request, const HistoryThread::
   return are_recorded(request) ? read_records(clamped, is_cancelled) : replay(clamped, is_cancelled);
 }
 
-// A robot keeps its name and its id.
+// A robot keeps its name and its id. Without rosters that can be read, a replay has the values.
 void RecordedValues::read_rosters() {
   if (std::exchange(has_rosters_, true)) return;
   const recording::Channel* const channel = recording_.reader().channel(Roster::topic);
   if (channel == nullptr) return;
-  recording::MessageStream messages = recording_.reader().messages({.channels = {channel->id}});
-  while (const auto message = messages.next()) {
-    rosters_.emplace_back(message->log_time);
-    const auto roster = messages::decode<Roster>(message->data);
-    for (std::uint32_t id = 0; id < roster.robots.size(); ++id) names_[id] = roster.robots[id].name;
+  try {
+    recording::MessageStream messages = recording_.reader().messages({.channels = {channel->id}});
+    while (const auto message = messages.next()) {
+      rosters_.emplace_back(message->log_time);
+      const auto roster = messages::decode<Roster>(message->data);
+      for (std::uint32_t id = 0; id < roster.robots.size(); ++id) names_[id] = roster.robots[id].name;
+    }
+  } catch (const std::exception&) {
+    rosters_.clear();
   }
 }
 

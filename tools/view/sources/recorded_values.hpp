@@ -22,7 +22,7 @@ class RecordedValues {
   /// `recording` must outlive this.
   explicit RecordedValues(const recording::Recording& recording);
 
-  /// One thread. Throws McapError and the exceptions of Simulation if there is nothing that can be read.
+  /// For one thread. If a part cannot be read, the answer has the part before it, and says why.
   Answer read(const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled);
 
  private:
@@ -38,7 +38,7 @@ class RecordedValues {
   Nanoseconds end_{0};
   bool has_rosters_ = false;
   std::vector<Nanoseconds> rosters_;            // their log times
-  std::map<std::uint32_t, std::string> names_;  // of robots, by id
+  std::map<std::uint32_t, std::string> names_;  // names of robots, by id
   std::optional<recording::Replay> replay_;     // at a boundary, to be continued
 };
 

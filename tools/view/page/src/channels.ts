@@ -22,7 +22,7 @@ export const commandedPrefix = "→ ";
 
 /** A value of a robot. */
 export interface Value {
-  name: string; // of its channel, with its place if there are several
+  name: string; // name of its channel, with its place if there are several
   unit: string;
   isCommanded: boolean;
   index: number; // among the observed or the commanded ones

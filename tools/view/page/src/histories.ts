@@ -2,8 +2,8 @@ import { commandedPrefix } from "./channels";
 import type { Answer, ViewRequest } from "./connection";
 import { between, type Curve, firstAt, joined, reduced } from "./curve";
 
-const mostPoints = 4000; // of a series
-const mostAnswered = 16_000; // of all series of a request: HistoryRequest::most_points
+const mostPoints = 4000; // in a series
+const mostAnswered = 16_000; // in all series of a request: HistoryRequest::most_points
 const mostRobots = 16;
 const mostNames = 32;
 const mostSeries = 128;
@@ -15,7 +15,7 @@ export interface Track {
   unit: string;
   whole: Curve;
   isReduced: boolean;
-  detail: { from: number; to: number; curve: Curve } | undefined; // of the time that is zoomed to
+  detail: { from: number; to: number; curve: Curve } | undefined; // samples of the interval that is zoomed to
 }
 
 export const keyOf = (robot: number, name: string): string => `${robot} ${name}`;

@@ -8,7 +8,7 @@ const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9
 const dashes = [[], [6, 3], [2, 3]];
 const clickSlack = 4; // [pixels] that a mouse may move in a click
 const doubleClick = 250; // [ms] to wait whether a click becomes one
-const retainNulls = 1; // of uPlot.join
+const retainNulls = 1; // mode of uPlot.join
 
 export interface Line {
   key: string;
@@ -171,7 +171,7 @@ export class PlotChart {
           sync: { key: "plots", scales: ["x", null] },
           drag: { x: true, y: false, dist: clickSlack, setScale: false },
           points: { size: 6 },
-          bind: { dblclick: () => () => (this.reset(), null) },
+          bind: { dblclick: () => () => this.reset() },
         },
         scales: { x: { time: false }, y: { range: (_, low, high) => rangeAround(low, high) } },
         axes: [
@@ -204,9 +204,10 @@ export class PlotChart {
     });
   }
 
-  private reset(): void {
+  private reset(): null {
     window.clearTimeout(this.clicked);
     this.actions.zoom(undefined);
+    return null;
   }
 
   private selected(u: uPlot): void {

@@ -22,7 +22,7 @@ export function csvOf(lines: readonly Line[], [from, to]: readonly [number, numb
 }
 
 const width = 900;
-const height = 230; // of a plot
+const height = 230; // each plot's
 const margin = { left: 70, right: 20, top: 26, bottom: 36 };
 const ticks = 6;
 

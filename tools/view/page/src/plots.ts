@@ -11,9 +11,9 @@ import { csvOf, svgOf } from "./plot_export";
 
 const mostRobots = 16;
 const mostCharts = 12;
-const mostLines = 24; // of a chart
+const mostLines = 24; // in a chart
 const mostAddable = 400; // names
-const leastHeight = 110; // of a chart [pixels]
+const leastHeight = 110; // each chart's [pixels]
 const headHeight = 24;
 const drawInterval = 100; // [ms]; nobody reads faster, and without a graphics processor a plot takes longer than the scene
 const detailDelay = 200; // [ms] without zooming before the detail is asked for
@@ -43,7 +43,7 @@ export class Plots {
   private readonly robotOf = new Map<number, Robot>();
   private robots: number[] = [];
   private charts: Shown[] = [];
-  private wanted: string[][] | undefined; // names in each plot, once somebody has chosen
+  private wanted: string[][] | undefined; // names in each plot, once the user has chosen
   private readonly removed = new Set<string>(); // lines of single robots
   private status: ViewStatus | undefined;
   private now = 0;
@@ -71,7 +71,7 @@ export class Plots {
     );
     this.container.replaceChildren(make("div", { className: "plot-tools" }, this.told, this.all, csv, svg), this.list);
     new ResizeObserver(() => this.resize()).observe(this.container);
-    new MutationObserver(() => this.charts.forEach(({ chart }) => chart.redraw())).observe(document.documentElement, {
+    new MutationObserver(() => this.redraw()).observe(document.documentElement, {
       attributeFilter: ["data-theme"],
     });
     this.arrange();
@@ -110,7 +110,7 @@ export class Plots {
     if (robots.length > 0) this.drawSoon();
   }
 
-  /** What is known is of another run, or of a connection that was lost. */
+  /** Drops all values: another run is shown, or the connection was lost. */
   forget(): void {
     this.histories.forget();
     this.zoomed = undefined;
@@ -299,6 +299,10 @@ export class Plots {
       return [begin, Math.max(end, begin + 1e-3)];
     }
     return [this.first, Math.max(this.now, this.first + 1e-3)];
+  }
+
+  private redraw(): void {
+    for (const { chart } of this.charts) chart.redraw();
   }
 
   private drawSoon(): void {

@@ -26,6 +26,23 @@ void HistoryCollector::add(std::uint32_t robot, std::chrono::nanoseconds time, s
   }
 }
 
+void HistoryCollector::copy_to(HistoryCollector& other) const {
+  for (Wanted& to : other.wanted_) {
+    const auto from = std::ranges::find_if(
+        wanted_, [&](const Wanted& each) { return each.robot == to.robot && *each.name == *to.name; });
+    if (from == wanted_.end() || !from->is_known) continue;
+    to.is_known = true;
+    to.unit = from->unit;
+    to.was_reduced = from->reduction.is_reduced();
+    for (const Sample& sample : from->reduction.samples()) to.reduction.add(sample);
+  }
+}
+
+bool HistoryCollector::is_reduced() const {
+  return std::ranges::any_of(wanted_,
+                             [](const Wanted& each) { return each.was_reduced || each.reduction.is_reduced(); });
+}
+
 ValueHistory HistoryCollector::history() const {
   ValueHistory history;
   for (const Wanted& each : wanted_) {
@@ -38,9 +55,9 @@ ValueHistory HistoryCollector::history() const {
       series.times.push_back(seconds_of(sample.time));
       series.values.push_back(sample.value);
     }
-    history.is_reduced = history.is_reduced || each.reduction.is_reduced();
     history.series.push_back(std::move(series));
   }
+  history.is_reduced = is_reduced();
   return history;
 }
 

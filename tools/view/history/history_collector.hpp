@@ -28,6 +28,11 @@ class HistoryCollector {
   void add(std::uint32_t robot, std::chrono::nanoseconds time, std::span<const double> observation,
            std::span<const double> command);
 
+  /// Adds the samples that this has to those of another one that wants them.
+  void copy_to(HistoryCollector& other) const;
+  /// Returns true if samples were left out.
+  bool is_reduced() const;
+
   /// Returns the series of the values that robots have had.
   ValueHistory history() const;
   /// Answers with the history, or that no robot has such a value.
@@ -41,6 +46,7 @@ class HistoryCollector {
     std::optional<ValuePlace> place{};
     std::string unit{};
     bool is_known = false;
+    bool was_reduced = false;  // before its samples were copied
   };
   std::vector<Wanted> wanted_;
 };

@@ -13,6 +13,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds longest_part{400};  // wall time that is spent on samples before an answer
 constexpr std::uint32_t ticks_between_looks = 16;
+constexpr std::size_t points_of_sweep = 4000;  // of each value: as many as the page asks for
+constexpr std::size_t most_swept = 600;        // values; of more, only those that are asked for
 
 std::string topic_of_observations(const std::string& robot) { return "/" + robot + recording::observation_topic_end; }
 
@@ -92,7 +94,57 @@ class RecordReader {
   std::map<std::uint32_t, std::vector<double>> commanded_;  // by robot
 };
 
+void add_names(std::vector<std::string>& names, const std::vector<recording::RecordedChannel>& channels,
+               std::string_view prefix) {
+  for (const recording::RecordedChannel& channel : channels)
+    for (std::uint32_t i = 0; i < channel.size && names.size() <= most_swept; ++i)
+      names.push_back(std::string(prefix) + channel.name + (channel.size == 1 ? "" : "[" + std::to_string(i) + "]"));
+}
+
+// Takes the values at the boundary where a replay is, and at the following ones, as long as that does not take too
+// long after `from`. Returns the time where it is to be continued, or nothing if it is at the end.
+std::optional<std::chrono::nanoseconds> collect(recording::Replay& replay, const HistoryRequest& request,
+                                                HistoryCollector& collector, std::chrono::nanoseconds from,
+                                                const HistoryThread::IsCancelled& is_cancelled) {
+  std::uint32_t known = 0;  // robots
+  Clock::time_point begin = Clock::now();
+  for (std::uint32_t ticks = 0;; ++ticks) {
+    const Simulation& simulation = replay.simulation();
+    const std::chrono::nanoseconds time = replay.recorded().log_time;
+    if (time > request.to) return std::nullopt;
+    if (replay.recorded().begins) known = 0;
+    if (known != simulation.robot_count()) {
+      known = simulation.robot_count();
+      for (const std::uint32_t robot : request.robots)
+        if (robot < known) {
+          const RobotKind& kind = simulation.kinds()[simulation.kind_of(robot)];
+          collector.set_channels(robot, kind.observation, kind.command);
+        }
+    }
+    if (time < from) begin = Clock::now();
+    for (const std::uint32_t robot : request.robots)
+      if (robot < known && simulation.is_present(robot))
+        collector.add(robot, time, simulation.observation(robot), simulation.command(robot));
+    const bool is_late = ticks % ticks_between_looks == 0 && Clock::now() - begin > longest_part;
+    if (time < request.to && (is_late || is_cancelled())) return time + std::chrono::nanoseconds(1);
+    if (!replay.advance()) return std::nullopt;
+  }
+}
+
 }  // namespace
+
+// A replay of the whole recording, and what it has so far.
+struct RecordedValues::Sweep {
+  explicit Sweep(const HistoryRequest& of) : request(of), collector(request) {}
+
+  const HistoryRequest request;
+  HistoryCollector collector;
+  std::optional<recording::Replay> replay{};  // nothing at the end
+  Nanoseconds next{0};
+  std::string problem{};
+};
+
+RecordedValues::~RecordedValues() = default;
 
 RecordedValues::RecordedValues(const recording::Recording& recording) : recording_(recording) {
   for (const recording::Block& block : recording.reader().blocks()) end_ = std::max(end_, Nanoseconds(block.end_time));
@@ -103,7 +155,8 @@ Answer RecordedValues::read(const HistoryRequest& request, const HistoryThread::
   HistoryRequest clamped = request;
   clamped.from = std::max(clamped.from, recording_.worlds().front().log_time);
   clamped.to = std::max(clamped.from, std::min(clamped.to, end_));
-  return are_recorded(request) ? read_records(clamped, is_cancelled) : replay(clamped, is_cancelled);
+  if (are_recorded(request)) return read_records(clamped, is_cancelled);
+  return is_as_coarse_as_sweep(clamped) ? sweep(clamped, is_cancelled) : replay(clamped, is_cancelled);
 }
 
 // A robot keeps its name and its id. Without rosters that can be read, a replay has the values.
@@ -116,7 +169,15 @@ void RecordedValues::read_rosters() {
     while (const auto message = messages.next()) {
       rosters_.emplace_back(message->log_time);
       const auto roster = messages::decode<Roster>(message->data);
-      for (std::uint32_t id = 0; id < roster.robots.size(); ++id) names_[id] = roster.robots[id].name;
+      std::vector<std::vector<std::string>> values(roster.kinds.size());
+      for (std::size_t kind = 0; kind < values.size(); ++kind) {
+        add_names(values[kind], roster.kinds[kind].observation, "");
+        add_names(values[kind], roster.kinds[kind].command, commanded_prefix);
+      }
+      for (std::uint32_t id = 0; id < roster.robots.size(); ++id) {
+        names_[id] = roster.robots[id].name;
+        values_[id] = values.at(roster.robots[id].kind);
+      }
     }
   } catch (const std::exception&) {
     rosters_.clear();
@@ -179,36 +240,70 @@ Answer RecordedValues::replay(const HistoryRequest& request, const HistoryThread
   std::optional<Nanoseconds> next;
   try {
     start_before(request.from);
-    const auto set_channels = [&](std::uint32_t robots) {
-      for (const std::uint32_t robot : request.robots)
-        if (robot < robots) {
-          const RobotKind& kind = replay_->simulation().kinds()[replay_->simulation().kind_of(robot)];
-          collector.set_channels(robot, kind.observation, kind.command);
-        }
-    };
-    std::uint32_t known = 0;  // robots
-    Clock::time_point begin = Clock::now();
-    for (std::uint32_t ticks = 0; replay_ && !is_cancelled(); ++ticks) {
-      const Simulation& simulation = replay_->simulation();
-      const Nanoseconds time = replay_->recorded().log_time;
-      if (time > request.to) break;
-      if (replay_->recorded().begins) known = 0;
-      if (known != simulation.robot_count()) set_channels(known = simulation.robot_count());
-      if (time < request.from) begin = Clock::now();
-      for (const std::uint32_t robot : request.robots)
-        if (robot < known && simulation.is_present(robot))
-          collector.add(robot, time, simulation.observation(robot), simulation.command(robot));
-      if (time < request.to && ticks % ticks_between_looks == 0 && Clock::now() - begin > longest_part) {
-        next = time + Nanoseconds(1);
-        break;
-      }
-      if (!replay_->advance()) break;
-    }
+    if (replay_) next = collect(*replay_, request, collector, request.from, is_cancelled);
   } catch (const std::exception& error) {
     problem = error.what();
   }
   if (!next) replay_.reset();  // it holds a world
   return collector.answer(problem, next);
+}
+
+bool RecordedValues::is_as_coarse_as_sweep(const HistoryRequest& request) const {
+  constexpr double tolerance = 0.9;
+  const auto interval = [](Nanoseconds from, Nanoseconds to, std::size_t points) {
+    return static_cast<double>((to - from).count()) / static_cast<double>(points);
+  };
+  return interval(request.from, request.to, request.points) >=
+         tolerance * interval(recording_.worlds().front().log_time, end_, points_of_sweep);
+}
+
+// Robots and values that were asked for before remain, unless they are too many.
+void RecordedValues::begin_sweep(const HistoryRequest& request) {
+  HistoryRequest wanted = request;
+  wanted.from = recording_.worlds().front().log_time;
+  wanted.to = end_;
+  wanted.points = points_of_sweep;
+  const auto add = [](auto& to, const auto& values) {
+    for (const auto& value : values)
+      if (std::ranges::find(to, value) == to.end()) to.push_back(value);
+  };
+  std::vector<std::uint32_t> robots = request.robots;
+  std::vector<std::string> names = request.names;
+  if (sweep_ != nullptr) add(robots, sweep_->request.robots);
+  if (robots.size() <= HistoryRequest::most_robots) wanted.robots = robots;
+  for (const std::uint32_t robot : wanted.robots)
+    if (const auto known = values_.find(robot); known != values_.end()) add(names, known->second);
+  if (wanted.robots.size() * names.size() <= most_swept) wanted.names = std::move(names);
+  sweep_ = std::make_unique<Sweep>(wanted);
+  sweep_->next = wanted.from;
+  sweep_->replay.emplace(recording_, 1);
+  if (!sweep_->replay->seek(wanted.from)) sweep_->replay.reset();
+}
+
+Answer RecordedValues::sweep(const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled) {
+  const auto has_all = [](const auto& all, const auto& wanted) {
+    return std::ranges::all_of(wanted, [&](const auto& each) { return std::ranges::find(all, each) != all.end(); });
+  };
+  try {
+    if (sweep_ == nullptr || !has_all(sweep_->request.robots, request.robots) ||
+        !has_all(sweep_->request.names, request.names))
+      begin_sweep(request);
+    if (sweep_->replay && sweep_->next <= request.to) {
+      const auto next = collect(*sweep_->replay, sweep_->request, sweep_->collector, request.from, is_cancelled);
+      if (next)
+        sweep_->next = *next;
+      else
+        sweep_->replay.reset();  // it holds a world
+    }
+  } catch (const std::exception& error) {
+    if (sweep_ == nullptr) throw;
+    sweep_->replay.reset();
+    sweep_->problem = error.what();
+  }
+  HistoryCollector collector(request);
+  sweep_->collector.copy_to(collector);
+  const bool is_part = sweep_->replay && sweep_->next <= request.to;
+  return collector.answer(sweep_->problem, is_part ? std::optional(sweep_->next) : std::nullopt);
 }
 
 }  // namespace cohort::view

@@ -16,9 +16,12 @@ export function firstAt(times: readonly number[], time: number): number {
   return low;
 }
 
-/** The value that is nearest in time; nothing in an empty curve. */
+/** The value that is nearest in time; nothing far beyond the ends of the curve. */
 export function valueAt({ times, values }: Curve, time: number): number | undefined {
   if (times.length === 0) return undefined;
+  const spacing = times.length > 1 ? (times[times.length - 1] - times[0]) / (times.length - 1) : 0;
+  const slack = 5 * spacing + 1e-6;
+  if (time < times[0] - slack || time > times[times.length - 1] + slack) return undefined;
   const after = Math.min(firstAt(times, time), times.length - 1);
   const before = Math.max(0, after - 1);
   return values[time - times[before] < times[after] - time ? before : after];

@@ -4,6 +4,7 @@ import { between, type Curve, firstAt, joined, reduced } from "./curve";
 
 const mostPoints = 4000; // in a series
 const mostAnswered = 16_000; // in all series of a request: HistoryRequest::most_points
+const gathering = 20; // [ms] in which values gather that are asked for together
 const mostRobots = 16;
 const mostNames = 32;
 const mostSeries = 128;
@@ -33,6 +34,7 @@ export class Histories {
   private readonly tracks = new Map<string, Track>();
   private generation = 0;
   private pending = 0;
+  private readonly missing = new Set<Track>(); // asked for soon, all together
   problem = "";
 
   constructor(
@@ -41,7 +43,7 @@ export class Histories {
   ) {}
 
   get isReading(): boolean {
-    return this.pending > 0;
+    return this.pending > 0 || this.missing.size > 0;
   }
 
   get(robot: number, name: string): Track | undefined {
@@ -59,18 +61,13 @@ export class Histories {
   want(wanted: readonly { robot: number; name: string; unit: string }[]): void {
     const keys = new Set(wanted.map(({ robot, name }) => keyOf(robot, name)));
     for (const key of [...this.tracks.keys()]) if (!keys.has(key)) this.tracks.delete(key);
-    const missing: Track[] = [];
     for (const { robot, name, unit } of wanted) {
       if (this.tracks.has(keyOf(robot, name))) continue;
       const track = { robot, name, unit, whole: { times: [], values: [] }, isReduced: false, detail: undefined };
       this.tracks.set(keyOf(robot, name), track);
-      missing.push(track);
+      if (this.missing.size === 0) window.setTimeout(() => this.readMissing(), gathering);
+      this.missing.add(track);
     }
-    if (missing.length === 0) return;
-    void this.read(missing, undefined, (track, part, isReduced) => {
-      track.whole = reduced(insertedInto(track.whole, part), 2 * mostPoints);
-      track.isReduced ||= isReduced;
-    });
   }
 
   /** Asks for the detail of an interval where values were left out; of none without one. */
@@ -111,6 +108,19 @@ export class Histories {
     }
   }
 
+  private readMissing(): void {
+    const tracks = [...this.missing].filter((track) => this.isWanted(track));
+    this.missing.clear();
+    void this.read(tracks, undefined, (track, part, isReduced) => {
+      track.whole = reduced(insertedInto(track.whole, part), 2 * mostPoints);
+      track.isReduced ||= isReduced;
+    });
+  }
+
+  private isWanted(track: Track): boolean {
+    return this.tracks.get(keyOf(track.robot, track.name)) === track;
+  }
+
   // Series of the same values are asked for together, in as many parts as the server answers.
   private async read(
     tracks: readonly Track[],
@@ -118,7 +128,6 @@ export class Histories {
     put: (track: Track, part: Curve, isReduced: boolean) => void,
   ): Promise<void> {
     const { generation } = this;
-    const isWanted = (track: Track): boolean => this.tracks.get(keyOf(track.robot, track.name)) === track;
     ++this.pending;
     this.problem = "";
     this.changed();
@@ -137,7 +146,7 @@ export class Histories {
         }
         from = answer.next;
         this.changed();
-      } while (from !== undefined && tracks.some(isWanted));
+      } while (from !== undefined && tracks.some((track) => this.isWanted(track)));
     }
     --this.pending;
     this.changed();

@@ -23,7 +23,9 @@ export function csvOf(lines: readonly Line[], [from, to]: readonly [number, numb
 
 const width = 900;
 const height = 230; // each plot's
-const margin = { left: 70, right: 20, top: 26, bottom: 36 };
+const margin = { left: 70, right: 20, top: 10, bottom: 36 };
+const rowHeight = 16; // in a legend
+const columns = 3;
 const ticks = 6;
 
 const escaped = (text: string): string => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/"/g, "&quot;");
@@ -63,7 +65,11 @@ function linePath(
   return path;
 }
 
+const legendHeight = (lines: readonly Line[]): number => rowHeight * Math.ceil(lines.length / columns);
+const heightOf = (lines: readonly Line[]): number => height + legendHeight(lines);
+
 function plotOf(lines: readonly Line[], range: readonly [number, number], top: number): string {
+  const above = legendHeight(lines);
   const finite = lines.flatMap(({ curve }) => between(curve, range[0], range[1]).values.filter(Number.isFinite));
   const least = finite.reduce((a, b) => Math.min(a, b), Infinity);
   const greatest = finite.reduce((a, b) => Math.max(a, b), -Infinity);
@@ -88,25 +94,35 @@ function plotOf(lines: readonly Line[], range: readonly [number, number], top: n
   }
   const middle = 0.5 * (margin.top + bottom);
   parts.push(text([16, middle], unitsOf(lines), `text-anchor="middle" transform="rotate(-90 16 ${middle})"`));
-  const share = (right - margin.left) / Math.max(1, lines.length);
-  lines.forEach((line, i) => {
-    const dash = dashOf(i).length > 0 ? ` stroke-dasharray="${dashOf(i).join(" ")}"` : "";
-    const pen = `fill="none" stroke="${colorOf(i)}" stroke-width="1.5"${dash}`;
-    parts.push(`<path d="${linePath(line, range, x, y)}" ${pen} clip-path="url(#inside)"/>`);
-    const left = margin.left + i * share;
-    parts.push(`<path d="M${left.toFixed(1)} 12h16" ${pen}/>`, text([left + 22, 16], line.label));
+  const share = (right - margin.left) / columns;
+  const legend = lines.map((line, i) => {
+    const at = [margin.left + (i % columns) * share, 4 - above + rowHeight * Math.floor(i / columns)];
+    return `<path d="M${at[0].toFixed(1)} ${at[1]}h16" ${penOf(i)}/>${text([at[0] + 22, at[1] + 4], line.label)}`;
   });
-  return `<g transform="translate(0 ${top})">${parts.join("")}</g>`;
+  const curves = lines.map(
+    (line, i) => `<path d="${linePath(line, range, x, y)}" ${penOf(i)} clip-path="url(#inside)"/>`,
+  );
+  parts.push(...curves, ...legend);
+  return `<g transform="translate(0 ${top + above})">${parts.join("")}</g>`;
+}
+
+function penOf(index: number): string {
+  const dash = dashOf(index).length > 0 ? ` stroke-dasharray="${dashOf(index).join(" ")}"` : "";
+  return `fill="none" stroke="${colorOf(index)}" stroke-width="1.5"${dash}`;
 }
 
 /** All plots, one below the other, as a picture for papers. */
 export function svgOf(plots: readonly (readonly Line[])[], range: readonly [number, number]): string {
   const inside = `<clipPath id="inside"><rect x="${margin.left}" y="${margin.top}" width="${width - margin.left - margin.right}" height="${height - margin.top - margin.bottom}"/></clipPath>`;
-  const drawn = plots.map((lines, i) => plotOf(lines, range, i * height)).join("\n");
-  const size = `width="${width}" height="${plots.length * height}" viewBox="0 0 ${width} ${plots.length * height}"`;
+  let top = rowHeight;
+  const drawn = plots.map((lines) => {
+    top += heightOf(lines);
+    return plotOf(lines, range, top - heightOf(lines));
+  });
+  const size = `width="${width}" height="${top}" viewBox="0 0 ${width} ${top}"`;
   return `<svg xmlns="http://www.w3.org/2000/svg" ${size} font-family="sans-serif" font-size="11">
 ${inside}<rect width="100%" height="100%" fill="white"/>
-${drawn}
+${drawn.join("\n")}
 </svg>
 `;
 }

@@ -55,7 +55,10 @@ export class Plots {
   private world = "";
 
   constructor(private readonly options: PlotsOptions) {
-    this.histories = new Histories(options.ask, () => this.drawSoon());
+    // A program that shows its world has no histories.
+    const ask = (request: ViewRequest): Promise<Answer> =>
+      this.status?.source === "program" ? Promise.resolve({ done: true, text: "" }) : options.ask(request);
+    this.histories = new Histories(ask, () => this.drawSoon());
     const button = (text: string, label: string, run: () => void): HTMLButtonElement => {
       const made = make("button", { textContent: text, title: label });
       made.setAttribute("aria-label", label);

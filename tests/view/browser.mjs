@@ -145,6 +145,190 @@ async function steersRecording(page) {
   assert.ok(colours > 50, `the picture has ${colours} colours`);
 }
 
+/** Opens the panel of the plots if the page has them in one. */
+const openPlots = (page) =>
+  page.evaluate(() => {
+    if (!document.getElementById("plots").checkVisibility()) document.querySelector('[data-tab="plotting"]')?.click();
+  });
+
+/** The plotted line of a value, in the page. */
+const lineOf = (page, name) =>
+  until(
+    page,
+    (each) => {
+      const found = window.cohort.plots.lines().find((line) => line.name === each && line.curve.times.length > 0);
+      return found && { unit: found.unit, times: found.curve.times, values: found.curve.values };
+    },
+    name,
+  );
+
+const fileOf = async (page, button) => {
+  const [download] = await Promise.all([
+    page.waitForEvent("download", { timeout: patience }),
+    page.getByRole("button", { name: button }).click(),
+  ]);
+  return readFileSync(await download.path(), "utf8");
+};
+
+/** Puts the mouse on a time of the first plot. */
+async function hoverAt(page, time, range) {
+  const over = await page.locator("#plots .u-over").first().boundingBox();
+  const x = over.x + ((time - range[0]) / (range[1] - range[0])) * over.width;
+  await page.mouse.move(x - 3, over.y + 0.5 * over.height);
+  await page.mouse.move(x, over.y + 0.5 * over.height);
+  return { x, y: over.y + 0.5 * over.height };
+}
+
+async function plots(page, file) {
+  const { name: robot, samples } = JSON.parse(readFileSync(file, "utf8"));
+  const names = Object.keys(samples[0].values);
+  await drawCoarsely(page);
+  await run(page, "pause; seek 1");
+  await atTick(page, 100);
+  await run(page, `select ${robot}`);
+  await openPlots(page);
+  // By default the two commands of the tracks, in one plot as they have one unit.
+  await lineOf(page, "→ treel/left/velocity");
+  await lineOf(page, "→ treel/right/velocity");
+  assert.equal(await page.locator("#plots .plot").count(), 1);
+  await run(page, "plot treel/left/velocity");
+  assert.equal(await page.locator("#plots .plot").count(), 1);
+  await run(page, "plot treel/left/position [m]");
+  await run(page, "plot proximity/3/reading");
+  assert.equal(await page.locator("#plots .plot").count(), 3);
+  await assert.rejects(run(page, "plot nothing"), /no channel 'nothing'/);
+  const allIsThere = async () => {
+    for (const name of names) {
+      const { times, values } = await lineOf(page, name);
+      assert.equal(times.length, 401, name);
+      assert.deepEqual([times[0], times.at(-1)], [0, 4]);
+      for (const { time, values: expected } of samples)
+        assert.equal(values[times.indexOf(time)], expected[name], `${name} at ${time} s`);
+    }
+  };
+  await allIsThere();
+  const nowAt = () => page.evaluate(() => Number.parseFloat(document.querySelector("#plots .plot-now").style.left));
+  await until(
+    page,
+    () => Math.abs(Number.parseFloat(document.querySelector("#plots .plot-now").style.left) - 25) < 0.1,
+  );
+  await run(page, "seek 3");
+  await atTick(page, 300);
+  await until(
+    page,
+    () => Math.abs(Number.parseFloat(document.querySelector("#plots .plot-now").style.left) - 75) < 0.1,
+  );
+  await allIsThere();
+
+  // The mouse shows values with units, in all plots.
+  const legend = (label) =>
+    page.evaluate((text) => {
+      const rows = [...document.querySelectorAll("#plots .plot-legend li")];
+      return rows.find((row) => row.querySelector("span").textContent === text)?.querySelector("output").textContent;
+    }, label);
+  await hoverAt(page, 2, [0, 4]);
+  const hovered = await until(page, () => {
+    const time = Number.parseFloat(document.querySelector("#plots .plot-tools output").textContent);
+    return Math.abs(time - 2) < 0.03 && time;
+  });
+  for (const name of names) {
+    const { times, values, unit } = await lineOf(page, name);
+    const value = values[times.indexOf(hovered)];
+    const shown = await legend(name);
+    assert.ok(Math.abs(Number.parseFloat(shown) - value) < 6e-4, `${name} is ${value}, not ${shown}`);
+    assert.ok(unit === "1" ? /^[-\d.]+$/.test(shown) : shown.endsWith(` ${unit}`), shown);
+    assert.ok(!/^-0\.?0*( |$)/.test(shown), shown);
+  }
+
+  // A click seeks, dragging zooms, a double click shows the whole again.
+  await page.mouse.down();
+  await page.mouse.up();
+  await until(page, () => Math.abs(Number(window.cohort.viewer.poses.frame?.tick) - 200) < 4);
+  assert.ok(Math.abs((await nowAt()) - 50) < 2);
+  const from = await hoverAt(page, 1, [0, 4]);
+  await page.mouse.down();
+  await page.mouse.move(from.x + 40, from.y, { steps: 3 });
+  const to = await hoverAt(page, 3, [0, 4]);
+  await page.mouse.up();
+  assert.ok(to.x > from.x);
+  await until(page, () => {
+    const rows = window.cohort.plots.csv().split("\r\n");
+    return Math.abs(Number(rows[1].split(",")[0]) - 1) < 0.05 && Math.abs(Number(rows.at(-2).split(",")[0]) - 3) < 0.05;
+  });
+  await page.mouse.dblclick(to.x - 20, to.y);
+  await until(page, () => window.cohort.plots.csv().split("\r\n").length === 403);
+  await run(page, "seek 2.5");
+  await atTick(page, 250);
+
+  // The files have what is plotted.
+  const csv = await fileOf(page, "Export the plotted values as CSV");
+  const [head, ...rows] = csv.trimEnd().split("\r\n");
+  const columns = head.split(",");
+  assert.equal(columns[0], "time [s]");
+  assert.ok(columns.includes("→ treel/left/velocity [m/s]"));
+  assert.ok(columns.includes("treel/left/position [m]"));
+  assert.equal(rows.length, 401);
+  for (const { time, values: expected } of samples) {
+    const cells = rows.find((row) => Number(row.split(",")[0]) === time).split(",");
+    for (const name of names)
+      assert.equal(Number(cells[columns.findIndex((column) => column.startsWith(`${name} [`))]), expected[name]);
+  }
+  assert.ok(!/(^|,)-0(,|$)/m.test(csv));
+  const svg = await fileOf(page, "Export the plots as SVG");
+  const picture = await page.evaluate((text) => {
+    const parsed = new DOMParser().parseFromString(text, "image/svg+xml");
+    return { root: parsed.documentElement.nodeName, lines: parsed.querySelectorAll("path[clip-path]").length };
+  }, svg);
+  assert.deepEqual(picture, { root: "svg", lines: columns.length - 1 });
+  assert.ok(svg.includes("m/s") && svg.includes("treel/left/position"));
+
+  // Several robots at once, and lines that are removed.
+  await page.evaluate(() => window.cohort.plots.show([3, 5]));
+  await until(page, () => window.cohort.plots.lines().filter(({ curve }) => curve.times.length === 401).length === 10);
+  await page.evaluate(() => window.cohort.plots.show([3]));
+  await page.getByRole("button", { name: "Remove treel/left/position" }).click();
+  await until(page, () => !window.cohort.plots.lines().some(({ name }) => name === "treel/left/position"));
+
+  // The inspector lists values with units.
+  const cells = await until(page, () => {
+    const rows = [...document.querySelectorAll("#values tr")].map((row) =>
+      [...row.cells].map((cell) => cell.textContent),
+    );
+    const found = rows.find(([name]) => name === "treel/left/position");
+    return found && found[1] !== "–" && found;
+  });
+  const { times, values } = await (async () => {
+    await run(page, "plot treel/left/position");
+    return lineOf(page, "treel/left/position");
+  })();
+  assert.ok(Math.abs(Number(cells[1]) - values[times.indexOf(2.5)]) < 6e-4);
+  assert.equal(cells[2], "m");
+  assert.ok(!/-0\.000/.test(await page.evaluate(() => document.body.innerText)));
+}
+
+async function plotsServer(page) {
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 150);
+  await run(page, "select sbot_3");
+  await openPlots(page);
+  await run(page, "plot treel/left/position");
+  // From before it was selected, and on.
+  await until(page, () => {
+    const [line] = window.cohort.plots.lines().filter(({ name }) => name === "treel/left/position");
+    const times = line?.curve.times ?? [];
+    return times.length > 20 && times[0] < 1.2 && times.at(-1) > 2;
+  });
+  const before = await page.evaluate(() => window.cohort.plots.lines()[0].curve.times.at(-1));
+  await until(page, (time) => window.cohort.plots.lines()[0].curve.times.at(-1) > time + 0.5, before);
+  assert.equal(
+    await page.evaluate(() => {
+      const { times } = window.cohort.plots.lines()[0].curve;
+      return times.every((time, i) => i === 0 || time > times[i - 1]);
+    }),
+    true,
+  );
+  assert.equal(await page.locator("#plots .plot-tools .wrong").count(), 0);
+}
+
 async function keepsProfile(page) {
   await run(page, "pause");
   await run(page, 'bind k "seek 0.2"; alias hop "step 4"; script tour "seek 0.1; hop"');
@@ -332,6 +516,8 @@ await runScenario({
   draws,
   draws_many: drawsMany,
   steers_recording: steersRecording,
+  plots,
+  plots_server: plotsServer,
   keeps_profile: keepsProfile,
   is_found_again: isFoundAgain,
   sees_the_end: seesTheEnd,

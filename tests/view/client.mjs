@@ -88,6 +88,74 @@ async function reads() {
   client.close();
 }
 
+// The values of a robot over a whole recording, while it plays, and what is refused.
+async function histories() {
+  const { id, samples } = JSON.parse(readFileSync(argument, "utf8"));
+  const { client, services } = connect();
+  const [service] = await services;
+  const ask = (request) => call(client, service, { operation: "history", numbers: [id], ...request });
+  const whole = async (request) => {
+    const found = new Map();
+    for (let from = 0; from !== undefined; ) {
+      const { done, text, series, next } = await ask({ ...request, from });
+      assert.ok(done, text);
+      for (const { robot, name, unit, times, values } of series) {
+        const key = `${robot} ${name}`;
+        if (!found.has(key)) found.set(key, { unit, times: [], values: [] });
+        found.get(key).times.push(...times);
+        found.get(key).values.push(...values);
+      }
+      from = next;
+    }
+    return found;
+  };
+  const names = Object.keys(samples[0].values);
+  const all = await whole({ names: [...names, "nothing"] });
+  assert.deepEqual(
+    [...all.keys()],
+    names.map((name) => `${id} ${name}`),
+  );
+  for (const [key, { unit, times, values }] of all) {
+    assert.equal(times.length, 401);
+    assert.deepEqual([times[0], times.at(-1)], [0, 4]);
+    assert.ok(!values.some((value) => Object.is(value, -0)));
+    assert.equal(unit, key.endsWith("velocity") ? "m/s" : key.endsWith("position") ? "m" : "1");
+    for (const { time, values: expected } of samples)
+      assert.equal(values[times.indexOf(time)], expected[key.slice(String(id).length + 1)], `${key} at ${time}`);
+  }
+  // Commands alone are read from the file; the values are the same.
+  const commands = names.filter((name) => name.startsWith("→"));
+  for (const [key, { values }] of await whole({ names: commands })) assert.deepEqual(values, all.get(key).values);
+  // A part of it, and few points.
+  const { series: parts } = await ask({ names, from: 1, to: 1.5 });
+  assert.deepEqual([parts[0].times[0], parts[0].times.at(-1)], [1, 1.5]);
+  const few = await ask({ names, number: 20 });
+  assert.equal(few.reduced, true);
+  for (const { name, times, values } of few.series) {
+    assert.ok(times.length <= 20, `${times.length} points`);
+    const { values: exact } = all.get(`${id} ${name}`);
+    assert.equal(Math.max(...values), Math.max(...exact), `the peak of ${name}`);
+    assert.equal(Math.min(...values), Math.min(...exact));
+  }
+  const refused = [
+    { names: [] },
+    { names: ["nothing"] },
+    { names, numbers: [] },
+    { names, numbers: [1e9] },
+    { names, numbers: Array(17).fill(0) },
+    { names: Array(33).fill("a") },
+    { names: Array(9).fill("a"), numbers: Array(16).fill(0) },
+    { names, number: 1 },
+    { names, from: 2, to: 1 },
+  ];
+  for (const request of refused) {
+    const { done, text } = await ask(request);
+    assert.equal(done, false, JSON.stringify(request));
+    assert.notEqual(text, "");
+  }
+  client.close();
+}
+
 async function sendsNonsense() {
   const socket = new WebSocket(address, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
   let complaints = 0;
@@ -134,6 +202,9 @@ async function sendsNonsense() {
     '{"operation": 4}',
     '{"operation": "seek", "number": "x"}',
     '{"operation": "seek", "more": 1}',
+    '{"operation": "history", "names": [1]}',
+    '{"operation": "history", "names": "a"}',
+    '{"operation": "history", "from": "a"}',
   ];
   for (const each of failed) socket.send(request(each));
   const deadline = Date.now() + patience;
@@ -223,6 +294,12 @@ async function isRefused() {
   assert.equal((await fetch(http, { method: "POST" })).status, 405);
 }
 
-const scenarios = { reads, sends_nonsense: sendsNonsense, reads_nothing: readsNothing, is_refused: isRefused };
+const scenarios = {
+  reads,
+  histories,
+  sends_nonsense: sendsNonsense,
+  reads_nothing: readsNothing,
+  is_refused: isRefused,
+};
 await scenarios[scenario]();
 process.exit(0);

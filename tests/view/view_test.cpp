@@ -20,6 +20,36 @@ void record_demo(const std::filesystem::path& file, const std::string& seconds) 
   run_demo({"--duration", seconds, "--record", file, "--record-snapshots", "1"});
 }
 
+// Returns the number of a value among those of all channels.
+std::size_t place_of(const std::vector<cohort::Channel>& channels, const std::string& name) {
+  std::size_t place = 0;
+  for (const cohort::Channel& channel : channels) {
+    if (channel.name == name) return place;
+    place += channel.size;
+  }
+  ADD_FAILURE() << "there is no channel " << name;
+  return 0;
+}
+
+// Returns values of the demo's fourth robot at three times, by a replay.
+json values_of_a_robot(const std::filesystem::path& file) {
+  constexpr std::uint32_t robot = 3;
+  const recording::Recording recording(file);
+  recording::Replay replay(recording, 1);
+  json samples = json::array();
+  for (const double seconds : {0.5, 2.0, 3.5}) {
+    EXPECT_TRUE(replay.seek(std::chrono::nanoseconds(std::llround(seconds * 1e9))));
+    const Simulation& simulation = replay.simulation();
+    const RobotKind& kind = simulation.kinds()[simulation.kind_of(robot)];
+    json values;
+    for (const char* name : {"treel/left/position", "treel/left/velocity", "proximity/3/reading"})
+      values[name] = simulation.observation(robot)[place_of(kind.observation, name)];
+    values["→ treel/left/velocity"] = simulation.command(robot)[place_of(kind.command, "treel/left/velocity")];
+    samples.push_back({{"time", seconds}, {"values", values}});
+  }
+  return {{"id", robot}, {"name", replay.simulation().robot_name(robot)}, {"samples", samples}};
+}
+
 class InTheBrowser : public InABrowser {
  protected:
   ScratchFolder scratch;
@@ -74,6 +104,21 @@ TEST_F(InTheBrowser, ARecordingIsSteeredByMouseKeysAndConsole) {
   record_demo(scratch / "run.mcap", "4");
   const View view({scratch / "run.mcap"});
   run_script("browser.mjs", {"steers_recording", view.address()});
+}
+
+TEST_F(InTheBrowser, PlotsShowTheWholeHistoryAfterASeek) {
+  record_demo(scratch / "run.mcap", "4");
+  write_file(scratch / "expected.json", values_of_a_robot(scratch / "run.mcap").dump());
+  const View view({scratch / "run.mcap"});
+  run_script("browser.mjs", {"plots", view.address(), scratch / "expected.json"});
+}
+
+TEST_F(InTheBrowser, PlotsOfAServerShowWhatTheViewHasSeen) {
+  const ReservedDomain domain;
+  Process run(
+      {cohort_program(), "run", demo_experiment(), "--domain", domain.text(), "--speed", "1", "--duration", "600"});
+  const View view({"--domain", domain.text()});
+  run_script("browser.mjs", {"plots_server", view.address()});
 }
 
 TEST_F(InTheBrowser, KeyBindingsCanBeChangedAndPersist) {
@@ -155,6 +200,14 @@ TEST_F(ByItsProtocol, ItsOwnClientReadsWhatIsShown) {
   record_demo(scratch / "run.mcap", "2");
   const View view({scratch / "run.mcap"});
   run_script("client.mjs", {"reads", view.address()});
+}
+
+TEST_F(ByItsProtocol, HistoriesAreThoseOfTheRecording) {
+  const ScratchFolder scratch;
+  record_demo(scratch / "run.mcap", "4");
+  write_file(scratch / "expected.json", values_of_a_robot(scratch / "run.mcap").dump());
+  const View view({scratch / "run.mcap"});
+  run_script("client.mjs", {"histories", view.address(), scratch / "expected.json"});
 }
 
 TEST_F(ByItsProtocol, MalformedFramesAreToldAndNothingElse) {

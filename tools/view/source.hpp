@@ -2,8 +2,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "tools/view/value_history.hpp"
 
 namespace cohort::view {
 
@@ -14,12 +18,16 @@ struct ViewRequest {
   std::string name{};  ///< name of an object
   std::string text{};
   std::vector<double> numbers{};
-  std::uint64_t visitor = 0;  ///< id of the viewer
+  std::vector<std::string> names{};  ///< names of channels
+  std::optional<double> from{};      ///< [s]
+  std::optional<double> to{};        ///< [s]
+  std::uint64_t visitor = 0;         ///< id of the viewer
 };
 
 struct Answer {
   bool is_done = false;
   std::string text;  ///< a sentence: what was done, or why not
+  std::shared_ptr<const ValueHistory> history{};
 };
 
 /// Where scenes come from: publishes to Topics on a thread of its own, from its construction to its destruction.

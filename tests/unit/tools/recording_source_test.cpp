@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <map>
 #include <memory>
 #include <random>
+#include <span>
 
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/recording/mcap/format/mcap_error.hpp"
@@ -37,7 +40,7 @@ void record_world(recording::Recorder& recorder, const description::Experiment& 
 }
 
 /// Two worlds with a robot that turns a wheel, and snapshots.
-Bytes small_run() {
+Bytes small_run(const std::string& also_recorded = "") {
   const test::ScratchFolder folder;
   test::write_file(folder / "world.sdf", R"(<sdf version="1.9" xmlns:cohort="https://cohort-sim.org/sdf/1">
   <world name="w">
@@ -51,6 +54,7 @@ Bytes small_run() {
       <joint name="hinge" type="revolute">
         <parent>hull</parent><child>wheel</child><axis><xyz>0 0 1</xyz></axis>
       </joint>
+      <cohort:joint_encoder name="encoder"><cohort:joint>hinge</cohort:joint></cohort:joint_encoder>
       <cohort:velocity_motor name="motor">
         <cohort:joint>hinge</cohort:joint><cohort:max_velocity>5</cohort:max_velocity><cohort:max_effort>1</cohort:max_effort>
       </cohort:velocity_motor>
@@ -58,9 +62,10 @@ Bytes small_run() {
   </world>
 </sdf>
 )");
-  test::write_file(folder / "run.yaml",
-                   "world: world.sdf\nduration: 9\nrecord: {poses: 100, snapshots: 0.05}\n"
-                   "teams: [{name: all, robots: all, controller: none}]\n");
+  test::write_file(folder / "run.yaml", "world: world.sdf\nduration: 9\nrecord: {poses: 100, snapshots: 0.05" +
+                                            also_recorded +
+                                            "}\n"
+                                            "teams: [{name: all, robots: all, controller: none}]\n");
   const description::Experiment experiment = parsing::read_experiment(folder / "run.yaml");
   recording::Recorder recorder(folder / "run.mcap", experiment);
   record_world(recorder, experiment, recording::Beginning::first);
@@ -161,6 +166,9 @@ bool look_at(const Bytes& bytes) {
     viewing.request("step", -1);
     viewing.request("play");
     viewing.request("step", -2);
+    RecordedValues values(recording);
+    for (const char* name : {"encoder/0/position", "→ motor/0/velocity"})
+      values.read(history_request_of({.operation = "history", .numbers = {0}, .names = {name}}), [] { return false; });
     return true;
   } catch (const recording::McapError&) {
     return false;
@@ -176,6 +184,104 @@ TEST(RecordingSource, StepsAndSeeksInBothDirections) {
   EXPECT_EQ(viewing.request("step", 5).time_ns, 120'000'000);
   EXPECT_EQ(viewing.request("step", -1e6).time_ns, 0);
   EXPECT_EQ(viewing.request("seek", 0.33).note, "");
+}
+
+// Returns the robot's observation and then its command at each boundary, by a replay.
+std::map<double, std::vector<double>> values_by_replay(const recording::Recording& recording) {
+  std::map<double, std::vector<double>> values;
+  recording::Replay replay(recording, 1);
+  while (replay.advance()) {
+    const auto command = replay.simulation().command(0);
+    const auto observation = replay.simulation().observation(0);
+    std::vector<double>& here = values[static_cast<double>(replay.recorded().log_time.count()) / 1e9];
+    here.assign(observation.begin(), observation.end());
+    here.insert(here.end(), command.begin(), command.end());
+  }
+  return values;
+}
+
+// The whole history of a value, by as many requests as it takes.
+ValueSeries whole_history(RecordedValues& values, ViewRequest asked) {
+  ValueSeries whole;
+  while (true) {
+    const Answer answer = values.read(history_request_of(asked), [] { return false; });
+    EXPECT_TRUE(answer.is_done) << answer.text;
+    if (!answer.is_done) return whole;
+    for (const ValueSeries& part : answer.history->series) {
+      whole.unit = part.unit;
+      whole.times.insert(whole.times.end(), part.times.begin(), part.times.end());
+      whole.values.insert(whole.values.end(), part.values.begin(), part.values.end());
+    }
+    if (!answer.history->next) return whole;
+    asked.from = answer.history->next;
+  }
+}
+
+void expect_history_of_replay(const recording::Recording& recording) {
+  const auto expected = values_by_replay(recording);
+  ASSERT_EQ(expected.size(), 2U * (ticks_of_a_world + 1));
+  RecordedValues values(recording);
+  const ValueSeries position =
+      whole_history(values, {.operation = "history", .numbers = {0}, .names = {"encoder/0/position"}});
+  const ValueSeries command =
+      whole_history(values, {.operation = "history", .numbers = {0}, .names = {"→ motor/0/velocity"}});
+  EXPECT_EQ(position.unit, "rad");
+  EXPECT_EQ(command.unit, "rad/s");
+  for (const ValueSeries* series : {&position, &command}) ASSERT_EQ(series->times.size(), expected.size());
+  std::size_t i = 0;
+  for (const auto& [time, all] : expected) {
+    EXPECT_EQ(position.times[i], time);
+    EXPECT_EQ(command.times[i], time);
+    EXPECT_EQ(position.values[i], all.front()) << time;
+    EXPECT_EQ(command.values[i], all.back()) << time;
+    ++i;
+  }
+  EXPECT_NE(position.values[10], position.values[20]);
+}
+
+TEST(RecordedValues, AreThoseOfAReplayIfTheFileHasNone) {
+  const test::TemporaryFile file(small_run());
+  expect_history_of_replay(recording::Recording(file.path()));
+}
+
+TEST(RecordedValues, AreThoseOfTheFileIfItHasThem) {
+  const test::TemporaryFile file(small_run(", observations: 100"));
+  expect_history_of_replay(recording::Recording(file.path()));
+}
+
+TEST(RecordedValues, OfAnIntervalAreThoseOfTheWhole) {
+  const test::TemporaryFile file(small_run());
+  const recording::Recording recording(file.path());
+  RecordedValues values(recording);
+  for (const char* name : {"encoder/0/position", "→ motor/0/velocity"}) {
+    ViewRequest asked{.operation = "history", .numbers = {0}, .names = {name}};
+    const ValueSeries whole = whole_history(values, asked);
+    asked.from = 0.08;
+    asked.to = 0.31;
+    const ValueSeries part = whole_history(values, asked);
+    EXPECT_EQ(part.times.front(), 0.08);
+    EXPECT_EQ(part.times.back(), 0.31);
+    const auto begin = std::ranges::find(whole.times, 0.08) - whole.times.begin();
+    ASSERT_EQ(part.values.size(), 24U);
+    EXPECT_TRUE(std::ranges::equal(part.values, std::span(whole.values).subspan(begin, 24)));
+  }
+}
+
+TEST(RecordingSource, AnswersHistoriesWhileItPlays) {
+  const test::TemporaryFile file(small_run());
+  const recording::Recording recording(file.path());
+  Topics topics;
+  RecordingSource source(recording, topics, 1);
+  std::atomic<bool> is_answered = false;
+  source.ask({.operation = "history", .numbers = {0}, .names = {"encoder/0/position"}}, [&](const Answer& answer) {
+    EXPECT_TRUE(answer.is_done) << answer.text;
+    EXPECT_EQ(answer.history->series.size(), 1U);
+    is_answered = true;
+    is_answered.notify_all();
+  });
+  is_answered.wait(false);
+  source.ask({.operation = "history", .numbers = {7}, .names = {"encoder/0/position"}},
+             [](const Answer& answer) { EXPECT_FALSE(answer.is_done); });
 }
 
 TEST(RecordingSource, ShowsNothingOfAWorldThatCannotBeBuiltHoweverOneStepsThere) {

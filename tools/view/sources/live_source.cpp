@@ -56,7 +56,10 @@ LiveSource::LiveSource(const LiveOptions& options, Topics& topics)
       descriptions_(participant_,
                     {[this](const wire::SceneDescription& each, const wire::Sender&) { on_scene(each); }, {}}, "view"),
       updates_(participant_, {[this](const wire::SceneUpdate& each, const wire::Sender&) { on_update(each); }, {}},
-               "view") {
+               "view"),
+      histories_([this](const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled) {
+        return seen_.read(request, is_cancelled);
+      }) {
   show_status(status_without_run());
   shower_ = std::thread([this] { show_what_arrives(); });
   steward_ = std::thread([this] { serve_requests(); });
@@ -119,6 +122,7 @@ void LiveSource::show(Arrived& arrived) {
     }
     links_ = viewing::check_scene(scene);
     revision_ = scene.revision;
+    seen_.set_scene(scene);
     publisher_.show_as_it_is(std::move(scene), time_);
     begin();
   }
@@ -136,6 +140,7 @@ void LiveSource::show(Arrived& arrived) {
   publisher_.show(messages::decode<messages::SceneSignals>(arrived.signals), time_);
   contacts_ = std::move(arrived.contacts);
   robots_ = std::move(arrived.robots);
+  seen_.add(time_, robots_);
   show_extras();
 }
 
@@ -178,6 +183,7 @@ void LiveSource::watch(const std::vector<std::uint32_t>& robots) {
 }
 
 void LiveSource::ask(const ViewRequest& request, std::function<void(const Answer&)> answer) {
+  if (request.operation == "history") return histories_.ask(request, std::move(answer));
   if (!options_.may_control) return answer({false, "this view is read-only: start it by 'cohort view --control'"});
   if (request.operation == "drive") return drive(request, std::move(answer));
   if (request.operation == "release") return answer(drivers_.release(request));
@@ -199,7 +205,10 @@ void LiveSource::drive(const ViewRequest& request, std::function<void(const Answ
   drivers_.drive(request, std::move(answer));
 }
 
-void LiveSource::leave(std::uint64_t visitor) { drivers_.leave(visitor); }
+void LiveSource::leave(std::uint64_t visitor) {
+  histories_.leave(visitor);
+  drivers_.leave(visitor);
+}
 
 // Asks for one thing after the other, and in between how the run is.
 void LiveSource::serve_requests() {

@@ -13,6 +13,8 @@
 #include "client_sdk/src/control/control_client.hpp"
 #include "idl/dds/transport.hpp"
 #include "tools/view/driving/drivers.hpp"
+#include "tools/view/history/history_thread.hpp"
+#include "tools/view/history/seen_values.hpp"
 #include "tools/view/messages/scene_publisher.hpp"
 #include "tools/view/source.hpp"
 #include "tools/view/sources/live_history.hpp"
@@ -32,10 +34,11 @@ struct LiveOptions {
   std::string recording{};            ///< name of the file that it writes; empty: none
 };
 
-/// Shows a running server, as any observer may. Requests, if it may control: `play`, `pause`, `step`, `speed`, `reset`,
-/// `spawn`, `remove`, `move`, `light` and `push`; the server says whether they are done. Where it keeps snapshots also
-/// `seek` and steps back: to the last snapshot before, and if the run is paused on from there to the very tick. And
-/// `drive` and `release`, by which the page's user becomes the controller of a robot (Drivers).
+/// Shows a running server, as any observer may, with the `history` of what it has seen. Requests, if it may control:
+/// `play`, `pause`, `step`, `speed`, `reset`, `spawn`, `remove`, `move`, `light` and `push`; the server says whether
+/// they are done. Where it keeps snapshots also `seek` and steps back: to the last snapshot before, and if the run is
+/// paused on from there to the very tick. And `drive` and `release`, by which the page's user becomes the controller of
+/// a robot (Drivers).
 class LiveSource final : public Source {
  public:
   /// Does not wait for the server. `topics` must outlive this. Throws wire::WireError if its address or the identity
@@ -121,6 +124,8 @@ class LiveSource final : public Source {
   LiveHistory history_;
   bool has_played_ = false;
   std::chrono::nanoseconds run_time_{0};
+  SeenValues seen_;
+  HistoryThread histories_;
   std::thread shower_;
   std::thread steward_;
 };

@@ -28,7 +28,11 @@ RecordingSource::RecordingSource(const recording::Recording& recording, Topics& 
       replay_(recording, threads),
       publisher_(recording, replay_, topics),
       topics_(topics),
-      end_(end_of(recording)) {
+      end_(end_of(recording)),
+      values_(recording),
+      histories_([this](const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled) {
+        return values_.read(request, is_cancelled);
+      }) {
   wanted_.is_playing = true;
   thread_ = std::thread([this] { run(); });
 }
@@ -44,6 +48,7 @@ RecordingSource::~RecordingSource() {
 }
 
 void RecordingSource::ask(const ViewRequest& request, std::function<void(const Answer&)> answer) {
+  if (request.operation == "history") return histories_.ask(request, std::move(answer));
   answer(take(request));
 }
 
@@ -87,8 +92,8 @@ Answer RecordingSource::take(const ViewRequest& request) {
     wanted_.steps = 0;
     return done(fmt::format("at {:.3f} s", request.number));
   }
-  return {false, fmt::format("'{}': unknown operation; a recording offers play, pause, step, seek "
-                             "and speed",
+  return {false, fmt::format("'{}': unknown operation; a recording offers play, pause, step, seek, "
+                             "speed and history",
                              request.operation)};
 }
 

@@ -9,13 +9,14 @@
 
 #include "server/recording/replay.hpp"
 #include "tools/view/source.hpp"
+#include "tools/view/sources/recorded_values.hpp"
 #include "tools/view/sources/replay_publisher.hpp"
 
 namespace cohort::view {
 
 /// Shows a recording: runs its world again, at any speed, from any time. Everybody who looks sees the same. Requests:
-/// `play`, `pause`, `step` (a number of ticks, also backwards), `speed` (0: as fast as it goes) and `seek` (log time
-/// [s]).
+/// `play`, `pause`, `step` (a number of ticks, also backwards), `speed` (0: as fast as it goes), `seek` (log time
+/// [s]) and `history`, which does not disturb what is shown.
 class RecordingSource final : public Source {
  public:
   /// Both must outlive this.
@@ -24,6 +25,7 @@ class RecordingSource final : public Source {
 
   void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) override;
   void watch(const std::vector<std::uint32_t>& robots) override;
+  void leave(std::uint64_t visitor) override { histories_.leave(visitor); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -83,6 +85,8 @@ class RecordingSource final : public Source {
   Clock::time_point measured_at_{};
   double real_time_factor_ = 0.0;
   std::thread thread_;
+  RecordedValues values_;  // for the thread of the histories
+  HistoryThread histories_;
 };
 
 }  // namespace cohort::view

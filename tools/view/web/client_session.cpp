@@ -29,14 +29,33 @@ ViewRequest read_request(const std::string& payload) {
     } else if (key == "numbers" && value.is_array() && value.size() <= longest_list &&
                std::ranges::all_of(value, [](const Json& each) { return each.is_number(); })) {
       request.numbers = value.get<std::vector<double>>();
+    } else if (key == "names" && value.is_array() && value.size() <= longest_list &&
+               std::ranges::all_of(value, [](const Json& each) { return each.is_string(); })) {
+      request.names = value.get<std::vector<std::string>>();
+    } else if (key == "from" && value.is_number()) {
+      request.from = value.get<double>();
+    } else if (key == "to" && value.is_number()) {
+      request.to = value.get<double>();
     } else {
       throw protocol::ProtocolError(
-          "a request has operation, name and text, which are strings, number, and numbers, a "
-          "list of at most 64");
+          "a request has operation, name and text, which are strings, number, from and to, which are numbers, and "
+          "numbers and names, lists of at most 64");
     }
   }
   if (request.operation.empty()) throw protocol::ProtocolError("a request needs an operation");
   return request;
+}
+
+// JSON has no infinity and no NaN: such values are null.
+Json json_of(const ValueHistory& history) {
+  Json list = Json::array();
+  for (const ValueSeries& each : history.series)
+    list.push_back({{"robot", each.robot},
+                    {"name", each.name},
+                    {"unit", each.unit},
+                    {"times", each.times},
+                    {"values", each.values}});
+  return list;
 }
 
 }  // namespace
@@ -136,9 +155,16 @@ void ClientSession::watch(const protocol::ServiceCall& call, const ViewRequest& 
 }
 
 void ClientSession::respond(const protocol::ServiceCall& call, const Answer& answer) {
-  const std::string payload =
-      Json{{"done", answer.is_done}, {"text", answer.text}}.dump(-1, ' ', false, Json::error_handler_t::replace);
-  reply(protocol::service_response(call, payload));
+  Json json{{"done", answer.is_done}, {"text", answer.text}};
+  if (answer.history != nullptr) {
+    if (histories_ == most_histories)
+      return respond(call, {false, "earlier histories have not been read: ask for one after the other"});
+    json["series"] = json_of(*answer.history);
+    json["reduced"] = answer.history->is_reduced;
+    if (answer.history->next) json["next"] = *answer.history->next;
+    ++histories_;
+  }
+  reply(protocol::service_response(call, json.dump(-1, ' ', false, Json::error_handler_t::replace)));
 }
 
 // In turns, so that a topic that changes all the time does not keep others back.
@@ -146,6 +172,7 @@ std::optional<ClientSession::Outgoing> ClientSession::next() {
   if (!replies_.empty()) {
     Outgoing first = std::move(replies_.front());
     replies_.pop_front();
+    if (replies_.empty()) histories_ = 0;
     return first;
   }
   const auto after = subscriptions_.upper_bound(last_served_);

@@ -16,12 +16,14 @@ namespace cohort::view {
 
 /// One client of the Foxglove WebSocket protocol, without its socket: takes what it sends, and has what is to be sent
 /// to it next. A client that reads slowly misses messages: of each topic the newest waits for it, and no more than
-/// `most_replies` answers. One thread.
+/// `most_replies` answers, `most_histories` of them histories. One thread.
 class ClientSession {
  public:
   static constexpr std::size_t most_subscriptions = 64;
   static constexpr std::size_t most_replies = 64;
   static constexpr std::size_t most_watched = 256;
+  /// Histories among its replies: they are large.
+  static constexpr std::size_t most_histories = 4;
 
   struct Text {
     std::string text;
@@ -68,6 +70,7 @@ class ClientSession {
   Topics& topics_;
   Callbacks callbacks_;
   std::deque<Outgoing> replies_;
+  std::size_t histories_ = 0;                    // in replies_ since these were last empty
   std::map<std::uint32_t, Slot> subscriptions_;  // by the client's numbers
   std::uint32_t last_served_ = 0;
   std::vector<std::uint32_t> watched_;

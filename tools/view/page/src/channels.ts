@@ -1,4 +1,4 @@
-import type { SceneChannel, SceneModel, SceneRobot } from "./messages";
+import type { SceneChannel } from "./messages";
 
 /** Where a channel's values begin among those of all channels. */
 export function firstValue(channels: readonly SceneChannel[], name: string): number | undefined {
@@ -17,19 +17,38 @@ export function valueNames(channels: readonly SceneChannel[]): string[] {
   );
 }
 
-export interface ChannelValue {
-  name: string;
+/** The names of commanded values begin with this. */
+export const commandedPrefix = "→ ";
+
+/** A value of a robot. */
+export interface Value {
+  name: string; // name of its channel, with its place if there are several
   unit: string;
-  value: number;
+  isCommanded: boolean;
+  index: number; // among the observed or the commanded ones
 }
 
-/** Returns all observed and commanded (`→ `) values of a robot, with their names and units. */
-export function channelValues(model: SceneModel, robot: SceneRobot): ChannelValue[] {
-  const unitsOf = (channels: readonly SceneChannel[]): string[] =>
-    channels.flatMap(({ unit, size }) => Array.from({ length: size }, () => unit));
-  const named = (channels: readonly SceneChannel[], values: ArrayLike<number>, prefix: string): ChannelValue[] => {
-    const units = unitsOf(channels);
-    return valueNames(channels).map((name, i) => ({ name: `${prefix}${name}`, unit: units[i], value: values[i] }));
-  };
-  return [...named(model.observation, robot.observation, ""), ...named(model.command, robot.command, "→ ")];
+function valuesOf(channels: readonly SceneChannel[], isCommanded: boolean): Value[] {
+  const units = channels.flatMap(({ unit, size }) => Array.from({ length: size }, () => unit));
+  const prefix = isCommanded ? commandedPrefix : "";
+  return valueNames(channels).map((name, index) => ({ name: prefix + name, unit: units[index], isCommanded, index }));
+}
+
+/** All values of a robot: the observed ones, then the commanded ones. */
+export function valuesOfRobot(observation: readonly SceneChannel[], command: readonly SceneChannel[]): Value[] {
+  return [...valuesOf(observation, false), ...valuesOf(command, true)];
+}
+
+/**
+ * The values that a text of the console means: one by its name, which its unit may follow (`motor/0/velocity [rad/s]`),
+ * or all those of a unit.
+ */
+export function valuesMeant(values: readonly Value[], text: string): Value[] {
+  const wanted = text.trim().replace(/\s+/g, " ");
+  const isMeant = ({ name, unit }: Value): boolean =>
+    [name, `${name} ${unit}`, `${name} [${unit}]`].some((each) => each === wanted || each === commandedPrefix + wanted);
+  const named = values.filter(isMeant);
+  if (named.length > 0) return named.slice(0, 1);
+  const unit = wanted.replace(/^\[(.*)\]$/, "$1");
+  return values.filter((each) => each.unit === unit);
 }

@@ -11,10 +11,16 @@ export interface ViewRequest {
   name?: string;
   text?: string;
   numbers?: number[];
+  names?: string[];
+  from?: number;
+  to?: number;
 }
 export interface Answer {
   done: boolean;
   text: string;
+  series?: { robot: number; name: string; unit: string; times: number[]; values: (number | null)[] }[];
+  reduced?: boolean;
+  next?: number;
 }
 
 export type Handlers = { [T in Topic]?: (message: Messages[T], bytes: number) => void };

@@ -5,7 +5,9 @@ import type { Connection, ViewRequest } from "./connection";
 import type { ConsolePanel } from "./console";
 import { element } from "./element";
 import { keyRows } from "./keys";
+import { fixed } from "./numbers";
 import type { Panels } from "./panels";
+import type { Plots } from "./plots";
 import type { TimeBar } from "./time_bar";
 import type { Layer, Viewer } from "./viewer";
 
@@ -19,6 +21,7 @@ interface Parts {
   connection: Connection;
   console: ConsolePanel;
   timeBar: TimeBar;
+  plots: Plots;
   commands: Commands;
   canvas: HTMLCanvasElement;
   panels: Panels;
@@ -82,7 +85,7 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
   ];
 }
 
-function cameraCommands({ viewer }: Parts): Command[] {
+function cameraCommands({ viewer, plots, panels }: Parts): Command[] {
   const names = (): string[] => viewer.poses?.scene.entities.map(({ name }) => name) ?? [];
   const entityOf = (name: string | undefined): number => {
     const found = name === undefined ? viewer.selected : viewer.find(name);
@@ -129,13 +132,19 @@ function cameraCommands({ viewer }: Parts): Command[] {
       "prints a position and heading",
       ([name]) => {
         const { position, heading } = viewer.poseOf(entityOf(name));
-        return `${position.map((each) => each.toFixed(4)).join(" ")} m, heading ${heading.toFixed(3)} rad`;
+        return `${position.map((each) => fixed(each, 4)).join(" ")} m, heading ${fixed(heading, 3)} rad`;
       },
       names,
     ),
-    command("plot CHANNEL", "plots a channel of the selected robot", ([name]) => {
-      if (!viewer.inspector.plot(name ?? "")) throw new Error(`the selected robot has no channel '${name ?? ""}'`);
-    }),
+    command(
+      "plot CHANNEL|UNIT",
+      "plots a channel of the selected robots, or all channels of a unit",
+      (words) => {
+        if (!plots.add(words.join(" "))) throw new Error(`the selected robot has no channel '${words.join(" ")}'`);
+        panels.show("plotting");
+      },
+      () => plots.names(),
+    ),
   ];
 }
 

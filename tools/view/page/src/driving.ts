@@ -190,7 +190,7 @@ export class Driving {
     const isBounded = Number.isFinite(least) && Number.isFinite(most);
     Object.assign(input, { type: isBounded ? "range" : "number", min: String(least), max: String(most), step: "any" });
     const say = (): void => {
-      output.textContent = `${Number(driven.base[at].toFixed(3))}${unit === "1" ? "" : ` ${unit}`}`;
+      output.textContent = `${Number(driven.base[at].toFixed(3)) + 0}${unit === "1" ? "" : ` ${unit}`}`;
     };
     input.value = String(driven.base[at]);
     input.dataset.channel = name;

@@ -1,7 +1,8 @@
 import { Quaternion, Vector3 } from "three";
-import { channelValues } from "./channels";
+import { valuesOfRobot } from "./channels";
 import { element } from "./element";
 import { none, type SceneModel, type SceneRobot } from "./messages";
+import { fixed } from "./numbers";
 import type { Poses } from "./poses";
 
 const drawInterval = 150; // [ms]
@@ -28,12 +29,6 @@ export function shortNumber(value: number): string {
   if (!Number.isFinite(value)) return String(value);
   const text = Math.abs(value) >= 1e6 ? value.toExponential(3) : String(Number(value.toPrecision(4)));
   return text === "-0" ? "0" : text;
-}
-
-/** Returns a number with so many decimals, never "-0". */
-export function fixed(value: number, decimals: number): string {
-  const text = value.toFixed(decimals);
-  return Number(text) === 0 ? text.replace("-", "") : text;
 }
 
 const withUnit = (name: string, unit: string): string => (unit === "1" || unit === "" ? name : `${name} [${unit}]`);
@@ -108,9 +103,9 @@ export class GroupPanel {
     for (const robot of robots) {
       const model = this.modelOf.get(robot.robot);
       if (!model) continue;
-      for (const { name, unit, value } of channelValues(model, robot)) {
+      for (const { name, unit, isCommanded, index } of valuesOfRobot(model.observation, model.command)) {
         const found = values.get(name) ?? { unit, values: [] };
-        found.values.push(value);
+        found.values.push((isCommanded ? robot.command : robot.observation)[index]);
         values.set(name, found);
       }
     }

@@ -1,115 +1,66 @@
-import uPlot from "uplot";
-import { firstValue, valueNames } from "./channels";
+import { firstValue, type Value, valuesOfRobot } from "./channels";
 import { element } from "./element";
 import { none, type SceneEntity, type SceneModel, type SceneRobot } from "./messages";
+import { numberText } from "./numbers";
 import { rayLength } from "./overlays";
 
-const plotSeconds = 20;
-const palette = ["#1f8fff", "#e5484d", "#30a46c", "#d9a11f", "#8e4ec6", "#0f9ba8"];
 const dialRadius = 54;
-const drawInterval = 100; // [ms]; nobody reads faster, and without a graphics processor a plot takes longer than the scene
-
-// A little more than the values; around one that never changes, 1 to each side.
-function rangeAround(low: number | null, high: number | null): uPlot.Range.MinMax {
-  if (low === null || high === null) return [-1, 1];
-  return low === high ? [low - 1, high + 1] : uPlot.rangeNum(low, high, 0.1, true);
-}
-
-interface Plot {
-  plot: uPlot;
-  values: number[];
-  data: number[][];
-}
+const drawInterval = 100; // [ms]; nobody reads faster
+const mostRows = 80;
 
 /** Kind, pose, sensor readings and commands of the selected entity. */
 export class Inspector {
+  /** Called with the name of a value that is to be plotted. */
+  onPlot: (name: string) => void = () => undefined;
+
   private model: SceneModel | undefined;
   private robot: SceneRobot | undefined; // as it was last
   private next: number | undefined; // drawing
-  private names: string[] = [];
-  private readonly plots = new Map<string, Plot>();
-  private lastTime = -Infinity;
+  private values: readonly Value[] = [];
+  private numbers: HTMLTableCellElement[] = []; // in the table, of the first values
   private readonly panel = element("inspector");
   private readonly title = element("inspected");
   private readonly pose = element("pose");
   private readonly dial = element("dial");
-  private readonly plotted = element("plots");
   private readonly chooser = element("channel") as HTMLSelectElement;
+  private readonly table = document.createElement("details");
 
   constructor(close: () => void) {
     element("deselect").addEventListener("click", close);
     this.chooser.addEventListener("change", () => {
-      if (this.chooser.value) this.plot(this.chooser.value);
+      if (this.chooser.value) this.onPlot(this.chooser.value);
       this.chooser.value = "";
     });
+    this.table.id = "values";
+    this.table.open = true;
+    this.table.addEventListener("toggle", () => this.drawValues());
+    this.dial.after(this.table);
   }
 
   select(entity: SceneEntity | undefined, model: SceneModel | undefined): void {
     this.model = model;
     this.robot = undefined;
     this.panel.hidden = entity === undefined;
-    for (const name of [...this.plots.keys()]) this.unplot(name);
     this.dial.replaceChildren();
+    this.values = entity && model ? valuesOfRobot(model.observation, model.command) : [];
+    this.chooser.hidden = this.values.length === 0;
+    this.chooser.replaceChildren(
+      new Option("plot a channel …", ""),
+      ...this.values.map(({ name, unit }) => new Option(unit === "1" ? name : `${name} [${unit}]`, name)),
+    );
+    this.buildTable();
     if (!entity || !model) return;
     const robot = entity.robot === none ? "" : ` · robot ${entity.robot}`;
     this.title.textContent = entity.name;
     element("kind").textContent = `${model.name}${robot}${entity.team ? ` · team ${entity.team}` : ""}`;
-    const observed = valueNames(model.observation);
-    this.names = [...observed, ...valueNames(model.command).map((name) => `→ ${name}`)];
-    const option = (name: string): HTMLOptionElement => new Option(name, name);
-    this.chooser.replaceChildren(new Option("plot a channel …", ""), ...this.names.map(option));
-    this.chooser.hidden = this.names.length === 0;
-    for (const name of this.names.filter((each) => each.startsWith("→ ")).slice(0, 2)) this.plot(name);
-  }
-
-  /** Also from the console. False if the robot has no such channel. */
-  plot(name: string): boolean {
-    const index = this.names.indexOf(name);
-    if (index < 0) return false;
-    if (this.plots.has(name)) return true;
-    const color = palette[this.plots.size % palette.length];
-    const grid = { stroke: "rgba(128,128,128,0.18)", width: 1 };
-    const axis = { stroke: getComputedStyle(document.body).color, grid, ticks: grid, font: "10px system-ui", size: 38 };
-    const plot = new uPlot(
-      {
-        width: 272,
-        height: 96,
-        title: name,
-        legend: { show: false },
-        cursor: { show: false },
-        scales: { x: { time: false }, y: { range: (_, low, high) => rangeAround(low, high) } },
-        axes: [{ ...axis, size: 22, gap: 2, ticks: { ...grid, size: 4 } }, axis],
-        series: [{}, { stroke: color, width: 1.5 }],
-      },
-      [[], []],
-      this.plotted,
-    );
-    plot.root.title = "click to remove";
-    plot.root.addEventListener("click", () => this.unplot(name));
-    this.plots.set(name, { plot, values: [index], data: [[], []] });
-    return true;
   }
 
   showPose(text: string): void {
     this.pose.textContent = text;
   }
 
-  take(robot: SceneRobot, time: number): void {
+  take(robot: SceneRobot): void {
     if (!this.model) return;
-    if (time < this.lastTime) for (const each of this.plots.values()) each.data = [[], []];
-    this.lastTime = time;
-    const count = robot.observation.length;
-    for (const each of this.plots.values()) {
-      const [index] = each.values;
-      const [times, values] = each.data;
-      if (times[times.length - 1] === time) continue;
-      times.push(time);
-      values.push(index < count ? robot.observation[index] : robot.command[index - count]);
-      while (times.length > 0 && times[0] < time - plotSeconds) {
-        times.shift();
-        values.shift();
-      }
-    }
     this.robot = robot;
     this.next ??= window.setTimeout(() => this.draw(), drawInterval);
   }
@@ -117,13 +68,41 @@ export class Inspector {
   private draw(): void {
     this.next = undefined;
     if (!this.model || !this.robot) return;
-    for (const { plot, data } of this.plots.values()) plot.setData(data as uPlot.AlignedData);
+    this.drawValues();
     this.drawDial(this.model, this.robot);
   }
 
-  private unplot(name: string): void {
-    this.plots.get(name)?.plot.destroy();
-    this.plots.delete(name);
+  // A row for each value: its name, which plots it, the number and the unit.
+  private buildTable(): void {
+    const summary = document.createElement("summary");
+    summary.textContent = "values";
+    const table = document.createElement("table");
+    this.numbers = this.values.slice(0, mostRows).map(({ name, unit }) => {
+      const row = table.insertRow();
+      const button = document.createElement("button");
+      button.textContent = name;
+      button.title = `Plot ${name}`;
+      button.addEventListener("click", () => this.onPlot(name));
+      row.insertCell().append(button);
+      const number = row.insertCell();
+      number.textContent = "–";
+      row.insertCell().textContent = unit === "1" ? "" : unit;
+      return number;
+    });
+    const left = this.values.length - this.numbers.length;
+    if (left > 0) table.createCaption().textContent = `the first ${mostRows}; ${left} more can be plotted`;
+    this.table.hidden = this.values.length === 0;
+    this.table.replaceChildren(summary, table);
+  }
+
+  private drawValues(): void {
+    const { robot } = this;
+    if (!robot || !this.table.open) return;
+    this.numbers.forEach((cell, i) => {
+      const { isCommanded, index } = this.values[i];
+      const text = numberText((isCommanded ? robot.command : robot.observation)[index]);
+      if (cell.textContent !== text) cell.textContent = text;
+    });
   }
 
   // Sensors as a ring seen from above, the robot's front upwards: the nearer something is, the longer the bar.

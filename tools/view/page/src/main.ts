@@ -10,6 +10,7 @@ import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 import { Objects } from "./objects";
 import { Panels } from "./panels";
 import { PhaseCard } from "./phase_card";
+import { Plots } from "./plots";
 import { clockText, TimeBar } from "./time_bar";
 import { TopBar } from "./top_bar";
 import "./tree.css";
@@ -27,6 +28,7 @@ let notes: readonly string[] = []; // from the last status
 const viewer: Viewer = new Viewer(canvas, (robots) => {
   connection.want("/cohort/robots", robots.length > 0);
   void connection.ask({ operation: "watch", numbers: robots.slice(0, mostWatched) });
+  plots.show(robots);
   tree.show();
   driving.show();
   objects.show();
@@ -46,6 +48,14 @@ const timeBar = new TimeBar({
       : connection.ask({ operation: "seek", number: time })),
   speed: (factor) => void connection.ask({ operation: "speed", number: factor }),
 });
+const plots = new Plots({
+  ask: (request) => connection.ask(request),
+  seek: (time) => void consolePanel.run(`seek ${time}`),
+});
+viewer.inspector.onPlot = (name) => {
+  panels.show("plotting");
+  plots.add(name);
+};
 
 const phaseCard = new PhaseCard(
   () => void consolePanel.run("replay"),
@@ -57,6 +67,7 @@ const connection: Connection = connect(
   {
     "/cohort/scene": (scene, size) => {
       bytes += size;
+      plots.setScene(scene);
       viewer.show(scene);
       showPressed(viewer);
     },
@@ -75,25 +86,30 @@ const connection: Connection = connect(
       objects.showLight();
     },
     "/cohort/contacts": (contacts) => viewer.takeContacts(contacts),
-    "/cohort/robots": ({ robots }) => viewer.takeRobots(robots),
+    "/cohort/robots": ({ robots }) => {
+      viewer.takeRobots(robots);
+      plots.take(robots);
+    },
     "/cohort/status": showStatus,
     "/cohort/events": ({ events }) => showEvents(events),
   },
   (isConnected) => {
     phaseCard.connect(isConnected);
     topBar.connect(isConnected);
+    plots.forget();
     if (isConnected && viewer.selection.size > 0) viewer.selectMany([...viewer.selection]);
   },
 );
 for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const)
   connection.want(topic);
-addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, commands, canvas, panels });
+addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, plots, commands, canvas, panels });
 const driving = new Driving(viewer, connection, commands, consolePanel, canvas);
 const objects = new Objects(viewer, connection, consolePanel, canvas, panels);
 for (const command of [...driving.consoleCommands(), ...objects.consoleCommands()]) commands.add(command);
 
 function showStatus(status: ViewStatus): void {
   timeBar.take(status);
+  plots.takeStatus(status);
   phaseCard.take(status);
   document.body.classList.toggle("is-server", status.source === "server");
   topBar.take(status);
@@ -220,5 +236,5 @@ setInterval(() => {
 
 /** For tests and for the browser's console. */
 Object.assign(window, {
-  cohort: { viewer, commands, connection, driving, objects, run: (line: string) => commands.run(line) },
+  cohort: { viewer, commands, connection, driving, objects, plots, run: (line: string) => commands.run(line) },
 });

@@ -2,7 +2,7 @@ import { Plane, Quaternion, Raycaster, Vector2, Vector3 } from "three";
 import { Cameras } from "./cameras";
 import { element } from "./element";
 import { Glow } from "./glow";
-import { fixed, GroupPanel } from "./group";
+import { GroupPanel } from "./group";
 import { Inspector } from "./inspector";
 import { Instances } from "./instances";
 import {
@@ -15,6 +15,7 @@ import {
   type SceneSignals,
   seconds,
 } from "./messages";
+import { fixed } from "./numbers";
 import { Contacts, Labels, Rays, Trails } from "./overlays";
 import { Poses } from "./poses";
 import { Outline, pick } from "./selection";
@@ -120,7 +121,7 @@ export class Viewer {
   takeRobots(robots: readonly SceneRobot[]): void {
     const ids = this.selectedRobots();
     this.robots = robots.filter(({ robot }) => ids.has(robot));
-    if (this.robot) this.inspector.take(this.robot, seconds(this.robot.time_ns));
+    if (this.robot) this.inspector.take(this.robot);
     this.group.take(this.robots);
   }
 

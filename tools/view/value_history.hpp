@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cohort::view {
+
+/// One value of a robot over time.
+struct ValueSeries {
+  std::uint32_t robot = 0;  ///< id
+  std::string name;         ///< as the page has it: `proximity/3/reading`, `camera/0/image[7]`, `→ tracks/0/velocity`
+  std::string unit;         ///< SI; `1` if it has none
+  std::vector<double> times{};  ///< [s], ascending
+  std::vector<double> values{};
+};
+
+/// The answer to `history`.
+struct ValueHistory {
+  std::vector<ValueSeries> series{};
+  bool is_reduced = false;       ///< values were left out
+  std::optional<double> next{};  ///< where the next request continues [s], if this is only the first part
+};
+
+}  // namespace cohort::view

@@ -103,7 +103,7 @@ bodies on flat ground have only a position in the plane and a heading:
   collide. Motors turn their joints as commanded. Free objects slide and never tip or roll.
 - Gravity must point along -z, the ground must be level under everything that moves, and walls must be upright.
   Robots must be placed upright, and no joint may move a link relative to the world.
-- Water, belts, rotors, fins, drag and links with `<enable_wind>` are not allowed.
+- Water, belts, rotors, fins, drag and links with `<enable_wind>` are not supported.
 
 **Dynamics.** The SDF element `<physics type="bullet">` has the same meaning as `bullet`. If it names another
 engine, Cohort warns and ignores the name.

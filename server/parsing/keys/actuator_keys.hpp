@@ -190,7 +190,7 @@ inline constexpr auto table_of<Rotor> = KeyTable{
     key("time_constant_down", &Rotor::time_constant_down, non_negative, "s", "0",
         "time constant of the motor while its velocity decreases; 0 for no delay"),
     key("density", &Rotor::density, positive, "kg/m^3", no_value,
-        "fluid density at which the coefficients were determined; in other fluids they scale with density; if absent, "
+        "density of the fluid in which the coefficients were determined, to scale them in other fluids; if absent, "
         "they are the same in every fluid"),
 };
 

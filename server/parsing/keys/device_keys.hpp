@@ -272,8 +272,8 @@ inline constexpr auto table_of<Drag> = KeyTable{
     key("quadratic_angular_damping", &Drag::quadratic_angular_damping, vector, "N m s^2/rad^2", "0 0 0",
         "quadratic angular drag about each axis: torque per unit of squared angular velocity"),
     key("density", &Drag::density, positive, "kg/m^3", no_value,
-        "density of the fluid for which the coefficients hold, which scale with density in other fluids; the same in "
-        "every fluid if absent"),
+        "density of the fluid in which the coefficients were determined, to scale them in other fluids; if absent, "
+        "they are the same in every fluid"),
 };
 
 template <>

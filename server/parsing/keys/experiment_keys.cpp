@@ -177,10 +177,10 @@ constexpr ExtensionKey ros2[] = {
     {"teams", group, "", no_value,
      "map from names of teams to maps with the keys from `sync` on, which override the keys for all robots"},
     {"sync", choice, "", "free",
-     "when the bridge answers a frame, the observations of one tick: immediately, with the newest command (`free`), "
-     "after a command for the frame has arrived (`command`), or once all nodes wait for the next clock time (`idle`)",
+     "when the bridge answers observations: immediately, with the newest command (`free`), after a command for their "
+     "tick (`command`), or once all nodes wait for the next clock time (`idle`)",
      false, ros_syncs},
-    {"wait", positive, "s", no_value, "maximum wall time to wait for the nodes at each frame; unlimited if absent"},
+    {"wait", positive, "s", no_value, "maximum wall time to wait for the nodes at each tick; unlimited if absent"},
     {"on_silence", choice, "", "wait",
      "response when that time has passed: keep waiting (`wait`), repeat the last command (`hold`) or stand still "
      "(`stand`); `hold` and `stand` require the key `wait`",
@@ -199,7 +199,7 @@ constexpr ExtensionKey ros2[] = {
      "map from topic names, such as `scan`, to `false`, which omits the topic, or to a map with its settings; `*` "
      "matches any characters, and the last matching name applies"},
     {"drive", group, "", no_value,
-     "how `cmd_vel` drives the wheels; needed only if the model has no drive that accepts velocities"},
+     "wheels that `cmd_vel` drives, if the model has neither a drive nor wheels with velocity motors"},
 };
 constexpr std::span<const ExtensionKey> ros2_of_a_team = std::span(ros2).subspan(3);
 constexpr ExtensionKey topics[] = {

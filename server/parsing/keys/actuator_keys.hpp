@@ -162,7 +162,7 @@ inline constexpr auto table_of<DetachableJoint> = KeyTable{
     key("child_link", &DetachableJoint::child_link, object, "", no_value,
         "link of the attached object; its root link if absent"),
     key("may_be_missing", &DetachableJoint::may_be_missing, flag, "", "false",
-        "whether the object may be missing from the world; if it is missing, nothing is attached, without a warning",
+        "`true` if the object may be missing from the world; nothing is then attached, without a warning",
         unless_default),
 };
 

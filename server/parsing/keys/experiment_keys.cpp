@@ -46,8 +46,8 @@ constexpr ExtensionKey team[] = {
     {"delay", whole, "ticks", "0",
      "number of ticks by which commands are delayed: the command for tick k takes effect at tick k + delay"},
     {"mode", choice, "", "lockstep",
-     "whether the run can wait for commands (`lockstep`) or never waits (`free`, for hardware and human operators); "
-     "see below",
+     "`lockstep` if the run can wait for commands, or `free` if it never waits, for hardware and human operators; see "
+     "below",
      false, modes},
     {"on_late", choice, "", "wait",
      "response to a late command: `wait`, `hold`, `zero`, `detach` or `stop`; default `hold` with `mode: free`", false,
@@ -56,7 +56,7 @@ constexpr ExtensionKey team[] = {
      "wall time to wait for a command (with `mode: free`, since the last command); required unless `on_late` is "
      "`wait`, which does not allow it"},
     {"required", flag, "", "true",
-     "whether the run waits for a controller to attach, both at the start and after one is lost; default `false` with "
+     "`true` if the run waits for a controller to attach, at the start and after one is lost; default `false` with "
      "`mode: free`"},
     {"on_lost", choice, "", "go_on",
      "response when a new process replaces a lost controller: continue without its state (`go_on`), or return to the "

@@ -19,8 +19,7 @@ constexpr ExtensionKey population[] = {
     {"seed_offset", whole, "1", "0", "number added to the seed of the run; another number gives another placement"},
     {"placement", group, "", "", "placement of the instances"},
     {"may_be_fewer", flag, "", "false",
-     "whether fewer instances are acceptable if there is not enough room; Cohort then warns instead of reporting an "
-     "error"},
+     "`true` to place fewer instances, with a warning, if there is not enough room; otherwise, this is an error"},
 };
 
 constexpr std::string_view patterns[] = {"column", "row", "wedge"};
@@ -93,8 +92,8 @@ constexpr ExtensionKey physics[] = {
     {"lowest", real, "m", no_value,
      "z coordinate below which a body counts as having left the world; no limit if absent"},
     {"sleeping", flag, "", "true",
-     "whether bodies that have been at rest for a while are not simulated until something wakes them"},
-    {"strict", flag, "", "false", "whether the run ends when a body breaks or leaves the world"},
+     "`true` if bodies that have been at rest for a while are not simulated until something wakes them"},
+    {"strict", flag, "", "false", "`true` if a body that breaks or leaves the world ends the run"},
 };
 
 constexpr ExtensionKey climate[] = {

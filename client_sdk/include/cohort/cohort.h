@@ -58,7 +58,7 @@ typedef struct CohortStartInfo {
   const char* controller; /* name of the team's controller in the experiment file */
   CohortStartReason reason;
   uint64_t tick;   /* tick of the next observation */
-  uint64_t seed;   /* seed for the controller's random numbers; derived from the experiment's seed and the robot */
+  uint64_t seed;   /* random seed for the controller; derived from the experiment's seed and the robot's name */
   int64_t step_ns; /* simulated time between ticks [ns] */
   uint32_t period; /* number of ticks from one observation to the next */
 } CohortStartInfo;

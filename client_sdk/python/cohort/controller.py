@@ -211,7 +211,7 @@ class Controller:
         return b"" if self.stateless else None
 
     def load(self, state: bytes) -> None:
-        """Restores the bytes that `save` of the same class returned. Called right after `start`."""
+        """Restores the state that `save` of the same class returned. Called immediately after `start`."""
 
 
 class TeamController:

@@ -5,8 +5,8 @@ namespace cohort::parsing {
 std::span<const Explanation> actuator_explanations() {
   static constexpr Explanation all[] = {
       {"actuators", "", R"md(
-An actuator has a name, which is unique among the devices of the model that take commands. Its command
-channels are called `NAME/INDEX/QUANTITY`.
+The name of an actuator is unique among all devices of the model that have commands. Its command channels are
+called `NAME/INDEX/QUANTITY`.
 )md"},
       {"treel_drive", "model", R"md(
 A treel is the s-bot's combination of tracks and wheels. Commands `NAME/left/velocity` and
@@ -151,9 +151,9 @@ it opens further, it holds nothing. If the object is torn away or leaves the wor
 it can grasp again. Two robots can grip each other.
 )md"},
       {"action", "model", R"md(
-An action stands for anything that a robot does without a joint, such as pressing a button: `<cohort:action
-name="open_gate"/>`. Command `NAME/0/value`, from 0 to 1. The robot performs the action while the value is above
-0.5.
+An action represents anything that a robot does other than moving a joint, such as pressing a button. Example:
+`<cohort:action name="open_gate"/>`. Command `NAME/0/value`, from 0 to 1. The robot performs the action while
+the value is above 0.5.
 
 The effect is defined elsewhere. [Events with `on`](events.md#on-in-an-event) react to an action. A program that
 uses `Simulation` as a library can handle it with `simulation.on_action("open_gate", handler)`. After every
@@ -167,7 +167,7 @@ A gripper detects the ring only if the object also has a collision near the jaw.
 the depth plus the height of the gripper plus the radius of the ring.
 )md"},
       {"grippable", "collision", R"md(
-Makes the collision graspable at any point: `<cohort:grippable>true</cohort:grippable>`.
+For example, `<cohort:grippable>true</cohort:grippable>`.
 )md"},
   };
   return all;

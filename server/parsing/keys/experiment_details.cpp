@@ -69,9 +69,9 @@ moving an object that has been removed or has not been added yet. If a force is 
 duration starts again.
 )md"},
       {"on", "an event", R"md(
-The event occurs when a robot's command for its [action](actuators.md#cohortaction-name-in-model) rises above
-0.5, at the next tick. It can occur again after the command has fallen to 0.5 or less. It occurs at most once
-per tick, even if several robots begin the action. Robots without the action are ignored, but at least one robot
+The event occurs at the tick after a robot's command for its [action](actuators.md#cohortaction-name-in-model)
+has risen above 0.5. It can occur again after the command has fallen to 0.5 or less. It occurs at most once per
+tick, even if several robots begin the action. Robots without the action are ignored, but at least one robot
 must have it. The run's list of events names the robot: `open_gate of 'explorers/sbot_3': disable 'gate'`.
 )md"},
       {"spawn", "events", R"md(
@@ -128,9 +128,9 @@ print:
 ```
 
 `cohort run` prints a CSV table to standard output, and the summary of the run to standard error. With `--csv
-FILE`, it writes the table to a file instead. The first line contains the names of the columns, and the first
-column is the simulated time. The table has a line for each time at which a quantity is due. A cell is empty if
-its quantity is not due or its object is not in the world.
+FILE`, it writes the table to a file and prints the summary to standard output. The first line contains the
+names of the columns, and the first column is the simulated time. The table has a line for each time at which a
+quantity is due. A cell is empty if its quantity is not due or its object is not in the world.
 
 - `position`: position of the root link, x, y, z.
 - `pose`: position and orientation of the root link, the latter as a quaternion x, y, z, w.

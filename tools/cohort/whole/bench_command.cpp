@@ -227,7 +227,8 @@ Subcommand add_bench(CommandLine app) {
     sub.callback([command, what] { command->what = what; });
     return sub;
   };
-  add_thesis_options(add("thesis", "Repeat the benchmark tables of the thesis of 2005", What::thesis), *command);
+  add_thesis_options(
+      add("thesis", "Repeat the benchmark tables of the 2005 thesis that Cohort continues", What::thesis), *command);
   add_lockstep_options(
       add("lockstep", "Measure the overhead of the lockstep barrier compared with raw UDP", What::lockstep), *command);
   CommandLine client = add("client", "", What::client);

@@ -221,7 +221,7 @@ void add_spawn_commands(Requests& requests) {
   spawn.add_option("--name", to_spawn.name, "Name of the new object in the world").required().type_name("NAME");
   spawn.add_option("--team", to_spawn.team, "Team that the robot joins; needed only if several are possible")
       .type_name("NAME");
-  spawn.add_flag("--rename", to_spawn.allow_renaming, "Choose another name if NAME is taken");
+  spawn.add_flag("--rename", to_spawn.allow_renaming, "Choose another name if this name is taken");
   add_pose(spawn, to_spawn.pose);
   auto [remove, to_remove] = requests.add<std::string>(
       "remove", "Remove an object from the world", [](Control& control, const std::string& entity) {
@@ -277,7 +277,11 @@ void add_light_command(Requests& requests) {
       "set-light", "Switch a light on or off, or set its intensity and color",
       [](Control& control, const Switched& to) { return control.set_light(to.light, to.setting); });
   LightSetting& set = switched.setting;
-  add_name(light, switched.light);
+  light
+      .add_option("NAME", switched.light,
+                  "Scoped name of a light (OBJECT/LIGHT), of an object (all of its lights), or a light of the world")
+      .required()
+      .type_name("");
   light
       .add_option_function<std::string>(
           "STATE", [&set](const std::string& state) { set.on = state == "on"; }, "on or off")

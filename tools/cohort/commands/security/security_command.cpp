@@ -164,8 +164,8 @@ Subcommand add_security(CommandLine app) {
   add_folder(init_line);
   init_line
       .add_option("--client", command->clients,
-                  "Client and its rights: robots that it may drive, and control (of the run); may be repeated "
-                  "(default: controllers=all)")
+                  "Client and its rights: the robots that it may drive, and 'control' to control the run; may be "
+                  "repeated (default: controllers=all)")
       .one_value()
       .type_name("NAME=SEL[,SEL...]");
   init_line.add_flag("--encrypt", command->encrypt, "Encrypt all messages (default: sign them)");
@@ -178,8 +178,8 @@ Subcommand add_security(CommandLine app) {
   add_line.add_option("NAME", command->name, "Name of the client: letters, digits, _ and -").required().type_name("");
   add_line
       .add_option("--robots", command->robots,
-                  "Rights, separated by commas: robots that it may drive (all, an id, ids A..B, a name with *, or "
-                  "none), and control")
+                  "Rights, separated by commas: the robots that it may drive (all, an id, ids A..B, a name with *, or "
+                  "none), and 'control' to control the run")
       .required()
       .comma_separated()
       .type_name("SEL[,SEL...]");

@@ -19,13 +19,13 @@ constexpr const char* help =
 
 Drives robots of a running simulation until the run ends.
 
-  --robots SEL[,SEL...]  which robots: all, an id (3), a range of ids (0..7), a name (explorers/sbot_7), or a name
-                         with * in it (explorers/*). Default: all
+  --robots SEL[,SEL...]  robots to drive: all, an id (3), a range of ids (0..7), a name (explorers/sbot_7), or a name
+                         with * (explorers/*). Default: all
   --server ADDRESS       the server's IPv4 address or host name. Default: $COHORT_SERVER, or 127.0.0.1
-  --domain N|A..B        the server's DDS domain, or a range of which one is used. Default: $COHORT_DOMAIN, or 0
-  --secure DIR           folder of this client's identity, which 'cohort security' has made. Default: $COHORT_SECURE,
-                         or none
-  --help                 this text
+  --domain N|A..B        the server's DDS domain, or a range from which one is chosen. Default: $COHORT_DOMAIN, or 0
+  --secure DIR           folder of this client's identity, created by 'cohort security'. Default: $COHORT_SECURE, or
+                         none
+  --help                 print this help and exit
 
 Exit code: 0 when the run finished, 1 when it failed, the server was lost or another process took over, 2 for a mistake
 in the options or a refused claim, 130 when interrupted.

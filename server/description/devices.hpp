@@ -217,7 +217,7 @@ struct Gripper {
   double closing_time = 0.5;    ///< time to close fully [s]
   double holding_force = 60.0;  ///< along each axis; above it, the grip slips [N]
   double holding_torque =
-      3.0;  ///< for the closed gripper; about the axis of the ring it decreases to 0 at half open [N m]
+      3.0;  ///< limit for the closed gripper; about the axis of the ring, it decreases to 0 when half open [N m]
   double breaking_force = std::numeric_limits<double>::infinity();   ///< above it, the gripper releases the object [N]
   double breaking_torque = std::numeric_limits<double>::infinity();  ///< [N m]
   LightBarrier light_barrier = LightBarrier::simple;

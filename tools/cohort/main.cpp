@@ -71,8 +71,8 @@ int main(int argc, char** argv) {
   add_log_flags(line, flags);
   line.footer(
       "Example: cohort run obstacle_avoidance --duration 10\n"
-      "'cohort COMMAND --help' describes a command, 'cohort help' the contents of files.\n"
-      "Exit codes: 0 success, 1 the run failed, 2 an error in the command line, a file or the set-up, 130 "
+      "'cohort COMMAND --help' describes a command; 'cohort help' describes the elements and keys of files.\n"
+      "Exit codes: 0 success, 1 the run failed, 2 an error in the command line, in a file or in the set-up, 130 "
       "interrupted.");
   const std::vector<Subcommand> commands = add_commands(line, flags);
 

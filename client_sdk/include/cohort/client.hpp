@@ -13,9 +13,8 @@
 #include <variant>
 #include <vector>
 
-/// A client of a Cohort server that drives robots from its own loop. It is for bridges to firmware and hardware, for
-/// programs that own their `main`, and for bindings to other languages. <cohort/controller.hpp> has controllers with
-/// callbacks.
+/// A client of a Cohort server that drives robots from its own loop: for bridges to firmware and hardware, programs
+/// with their own `main`, and bindings to other languages. For controllers with callbacks, see <cohort/controller.hpp>.
 ///
 ///     cohort::Client client({.domain = 7, .robots = {"0..3"}});
 ///     for (;;) {
@@ -29,8 +28,8 @@
 ///     }
 ///
 /// The client runs the protocol (docs/protocol.md) on its own thread: it attaches, requests lost messages again and
-/// answers repeated frames. The simulation waits for this client between an event and its answer, as long as the team's
-/// `on_late` allows. Values are float64 in SI units, as in controllers.
+/// answers repeated frames. Between an event and its answer, the simulation waits for this client, as long as the
+/// team's `on_late` allows. Values are float64 in SI units, as in controllers.
 namespace cohort {
 
 enum class Severity { info, warning, error };
@@ -40,83 +39,83 @@ struct ClientOptions {
   std::uint32_t domain = 0;                ///< the server's DDS domain
   std::vector<std::string> robots{"all"};  ///< selectors: `all`, `3`, `0..7`, `explorers/sbot_7`, `explorers/*`
   std::string name{};                      ///< name shown by the server; the controller's name if empty
-  std::string secure{};                    ///< folder of an identity (docs/security.md); no security if empty
-  /// Runs `step` on the DDS thread that receives the frame, which saves a hand-over between threads. Used by
-  /// `run_client` only. `step` then runs on either thread, one at a time. DDS is blocked during a step: after eight
-  /// consecutive frames that take more than a millisecond, all further ones run on the calling thread.
+  std::string secure{};                    ///< folder of the client's identity (docs/security.md); no security if empty
+  /// Runs `Controller::step` on the DDS thread that receives the frame, which saves a hand-over between threads. Used
+  /// by `run_client` only. DDS is blocked during a step: if eight consecutive frames take more than a millisecond each,
+  /// all further steps run on the thread that called `run_client`. Only one of the two threads runs steps at a time.
   bool inline_step = false;
-  /// Ends the run if the client fails before its first answer, as a later failure does. If false, the server refuses
-  /// this client, and the run waits for another.
+  /// Makes a failure before the first answer end the run, like a later failure. If false, the server then refuses this
+  /// client, and the run waits for another one.
   bool start_must_succeed = false;
-  /// Receives log messages, one at a time, on any thread of the client. If empty, they go to standard error, after the
-  /// name.
+  /// Receives log messages, one at a time, on any thread of the client. If empty, messages are written to standard
+  /// error, each after the client's name.
   std::function<void(Severity severity, const std::string& text)> tell{};
 };
 
-/// Replaces the options that COHORT_SERVER, COHORT_DOMAIN and COHORT_SECURE set. Throws std::invalid_argument if the
-/// domain is not a number.
+/// Sets `server`, `domain` and `secure` from COHORT_SERVER, COHORT_DOMAIN and COHORT_SECURE, if those are set. Throws
+/// std::invalid_argument if the domain is not a number.
 void take_environment(ClientOptions& options);
 
 /// Splits a comma-separated list of selectors.
 std::vector<std::string> split_selectors(std::string_view list);
 
 enum class ClientEnd {
-  finished,     ///< the server ended the run
+  finished,     ///< the server has ended the run
   refused,      ///< the claim was refused
-  superseded,   ///< another process took over these robots
-  failed,       ///< this client failed, or the server finally rejected an answer
-  server_lost,  ///< the server died or left
+  superseded,   ///< another process has taken over these robots
+  failed,       ///< this client failed, or the server ended the run with an error
+  server_lost,  ///< the server crashed or exited
   interrupted,  ///< the client was asked to stop
 };
 
-/// When a robot's team is asked for commands, and when the commands act (docs/semantics.md). A robot is asked at each
-/// tick with `tick % period == phase`. Its command acts from `delay` ticks later until the next command acts.
+/// The schedule of a team's commands (docs/semantics.md). A robot is due at each tick with `tick % period == phase`.
+/// Its command takes effect `delay` ticks later and lasts until the next command takes effect.
 struct Policy {
-  bool waits = true;  ///< the run waits for answers (`mode: lockstep`); otherwise it keeps its pace (`mode: free`)
+  bool waits = true;  ///< true: the run waits for answers (`mode: lockstep`); false: it never waits (`mode: free`)
   std::uint32_t period = 1;  ///< [ticks]
   std::uint32_t phase = 0;   ///< [ticks]
   std::uint32_t delay = 0;   ///< [ticks]
 };
 
-/// A robot that this client drives: its names, channels, parameters, seed, and the policy of its team.
+/// A robot that this client drives: its names, channels, parameters and seed, and the policy of its team.
 struct DrivenRobot {
   Start start;
   Policy policy;
 };
 
-/// The start of a lease: from now on the client drives these robots, and no others. It comes at first, after a
-/// takeover, and each time that the world is reset or restored; `robots[i].start.reason` says which. Channels must be
-/// looked up again.
+/// The start of a lease, the right to drive robots: from now on, the client drives these robots and no others. It is
+/// the first event, and it occurs again after each takeover, reset and restore; `robots[i].start.reason` gives the
+/// reason. Channels must be looked up again.
 struct LeaseStart {
   std::uint64_t tick = 0;                 ///< tick of the next frame
   std::chrono::nanoseconds step{0};       ///< simulated time between ticks
   std::span<const DrivenRobot> robots{};  ///< in ascending order of ids; valid until the next LeaseStart
 };
 
-/// A robot in a frame. Its command is neutral until it is set.
+/// A robot in a frame. Each value of its command is neutral until it is set.
 struct FrameRobot {
   const DrivenRobot* robot = nullptr;
   Observation observation;
   Command command;
 };
 
-/// The observations of one tick, of the robots that are due, to be answered with their commands.
+/// The observations of the robots that are due at one tick. The answer is their commands.
 struct Frame {
   std::uint64_t tick = 0;
   std::chrono::nanoseconds time{0};  ///< simulated time since tick 0
   std::span<FrameRobot> robots{};    ///< in ascending order of ids
 };
 
-/// A request for the state of a robot, for a snapshot of the run, taken between frames. Write the state that the
-/// program has accumulated for this robot since the start of its lease, at most `largest_state` bytes, or call
-/// `state->leave_out()`. There is one event for each robot.
+/// A request to save the controller state of a robot in a snapshot of the run, between two frames. Write the state that
+/// the program has accumulated for this robot since the start of the lease, at most `largest_state` bytes, or call
+/// `state->leave_out()`. Each robot has its own event.
 struct SaveState {
   const DrivenRobot* robot = nullptr;
   StateWriter* state = nullptr;
 };
 
-/// The saved state of a robot, when the run continues from a snapshot. Read everything that SaveState wrote. The event
-/// follows LeaseStart, for each robot whose state is in the snapshot.
+/// The saved controller state of a robot, when the run continues from a snapshot. Read everything that was written at
+/// SaveState. The event follows LeaseStart, once for each robot whose state is in the snapshot.
 struct LoadState {
   const DrivenRobot* robot = nullptr;
   StateReader* state = nullptr;
@@ -125,49 +124,51 @@ struct LoadState {
 /// The last event.
 struct ClientEnded {
   ClientEnd end = ClientEnd::failed;
-  std::string why{};  ///< reason, for people; empty if the run finished
+  std::string why{};  ///< human-readable reason; empty if the run finished
 };
 
-/// An event. Its pointers are not null. Its contents, except of ClientEnded, are valid until the next call of `answer`,
-/// `fail` or `next`, unless stated otherwise.
+/// An event. Its pointers are not null. Unless stated otherwise, its contents are valid until the next call of
+/// `answer`, `fail` or `next`; ClientEnded stays valid.
 using ClientEvent = std::variant<LeaseStart, Frame, SaveState, LoadState, ClientEnded>;
 
 /// An attachment to a server. Call its functions from one thread at a time.
 class Client {
  public:
-  /// Starts to attach and returns at once; waits for a server that is not there yet. An unusable address or identity is
-  /// reported as ClientEnded.
+  /// Starts to attach to the server; does not block. If there is no server yet, attaches when one appears. Reports an
+  /// unusable address or identity as ClientEnded.
   explicit Client(const ClientOptions& options);
-  /// Leaves the run without answering. The robots are then without a controller, as if the process had died.
+  /// Detaches without answering the current event. The robots are then without a controller, as if the process had
+  /// crashed.
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  /// Answers the current event, if it has not been answered, waits for the next one and returns it. Returns ClientEnded
-  /// on every call once the client has ended.
+  /// Answers the current event if it has not been answered, then waits for the next event and returns it. Returns
+  /// ClientEnded on every call once the client has ended.
   ClientEvent next();
-  /// Like `next()`, but returns nothing if no event comes within `at_most`, which may be 0.
+  /// Acts like `next()`, but returns nothing if no event arrives within `at_most`, which may be 0.
   std::optional<ClientEvent> next(std::chrono::milliseconds at_most);
 
   /// Answers the current event, so that the simulation continues while the caller does something else. Does nothing if
   /// there is no current event.
   void answer();
 
-  /// Releases the current frame without an answer, for hardware that is silent: the team's `deadline` applies and newer
-  /// frames come. The previous commands continue to act. Throws std::logic_error if there is no current frame, or if
-  /// the run waits for one of its robots.
+  /// Releases the current frame without an answer, for hardware that does not respond. The previous commands stay in
+  /// effect, the team's `deadline` applies, and newer frames arrive. Throws std::logic_error if there is no current
+  /// frame, or if the run waits for one of its robots.
   void leave_unanswered();
 
-  /// Ends the client because it cannot continue; at a LeaseStart, because it cannot drive these robots. Sends `why` to
-  /// the server; `next` then returns ClientEnded. Does nothing if there is no current event.
+  /// Ends the client with the error `why`. Call this if the client cannot continue or, at a LeaseStart, cannot drive
+  /// these robots. Sends `why` to the server; `next` then returns ClientEnded. Does nothing if there is no current
+  /// event.
   void fail(const std::string& why);
 
   /// Returns true if the answer to the current event is no longer needed: the server has ended the run or the lease, or
-  /// has been away for too long. Programs that wait for hardware before they answer poll this.
+  /// has been away for too long. Poll this while your program waits for hardware before it answers.
   bool is_over() const;
 
-  /// Returns a file descriptor that poll(2) and select(2) report as readable while `next` would return at once. Do not
-  /// read or close it.
+  /// Returns a file descriptor that poll(2) and select(2) report as readable while `next` would not block. Do not read
+  /// or close it.
   int descriptor() const;
 
  private:
@@ -175,17 +176,17 @@ class Client {
   std::unique_ptr<State> state_;
 };
 
-/// Attaches to a server, calls the controllers of `plugin` until the run ends, and returns the reason. Logs every
-/// reason other than `finished`. Waits for a server that is not there yet. Blocks; controllers run on the calling
-/// thread, unless `inline_step` is set. A signal handler may set `stop`. Throws std::runtime_error if the server's
-/// address or the identity cannot be used.
+/// Attaches to a server, calls the controllers of `plugin` until the run ends, and returns the reason for the end. Logs
+/// every reason other than `finished`. Waits until there is a server. Blocks; controllers run on the calling thread
+/// unless `inline_step` is set. Set `stop` to interrupt it, also from a signal handler. Throws std::runtime_error if
+/// the server's address or the identity cannot be used.
 ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop);
 
-/// Returns a flag that is set on SIGINT, SIGTERM and SIGHUP (a closed terminal; not under nohup), so that a program can
-/// end in order. A second one of these signals ends the process at once.
+/// Installs signal handlers and returns a flag that they set on SIGINT, SIGTERM and SIGHUP (a closed terminal; not
+/// under nohup), so that a program can shut down cleanly. A second signal ends the process immediately.
 std::atomic<bool>& stop_on_signals();
 
-/// Returns the exit code of a program for the end of its client: 0 finished, 2 refused, 130 interrupted, 1 otherwise.
+/// Returns the exit code for a program whose client has ended: 0 finished, 2 refused, 130 interrupted, 1 otherwise.
 int exit_code_of(ClientEnd end);
 
 }  // namespace cohort

@@ -5,15 +5,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The interface for authors of controllers in C (C99; C++ may include it too). It is the same in C as
- * <cohort/controller.hpp> in C++, and gives the same bits. There are two ways to use it:
+/* The interface for authors of controllers in C (C99; C++ can also include it). It is the C equivalent of
+ * <cohort/controller.hpp>, and gives bit-identical results. There are two ways to use it:
  *
- * - Callbacks: four functions, and COHORT_C_CONTROLLER at the end of the source file. Then `cohort_add_controller`
- *   in CMake builds a program and a plugin.
- * - Its own loop: cohort_connect, cohort_next, cohort_answer, cohort_close, for firmware that owns its `main`.
+ * - Callbacks: define four functions, and use COHORT_C_CONTROLLER at the end of the source file.
+ *   `cohort_add_controller` in CMake then builds a program and a plugin.
+ * - Your own loop: call cohort_connect, cohort_next, cohort_answer and cohort_close, for firmware with its own
+ *   `main`.
  *
- * Values are float64 in SI units. The documentation of each device says what its channels measure or move, and in
- * which frame (docs/reference). Returned pointers belong to Cohort unless stated otherwise. No function throws or
+ * Values are float64 in SI units. The documentation of each device (docs/reference) defines the quantities and the
+ * frames of its channels. Cohort owns the memory of returned pointers unless stated otherwise. No function throws or
  * ends the program, and no callback may throw or call longjmp. The SDK calls all callbacks of a process on one
  * thread, one after the other. Call the functions of a loop from one thread at a time. */
 
@@ -26,12 +27,12 @@ extern "C" {
 
 /* ---- Errors ---- */
 
-/* Returns the reason of the last failed call on this thread since its callback started; "" if none failed. Valid
- * until the next call fails. */
+/* Returns the error message of the last failed call on this thread since the current callback started, or "" if no
+ * call has failed. Valid until the next call fails. */
 const char* cohort_last_error(void);
 
 /* Reports the failure of a callback: `return cohort_fail("no %s", what);`. Takes the arguments of printf, stores the
- * text as the last error, and returns -1. */
+ * message as the last error, and returns -1. */
 int cohort_fail(const char* format, ...)
 #ifdef __GNUC__
     __attribute__((format(printf, 1, 2)))
@@ -40,10 +41,10 @@ int cohort_fail(const char* format, ...)
 
 /* ---- Start ---- */
 
-/* Reason why a robot's controller is started. */
+/* The reason why a robot's controller is started. */
 typedef enum CohortStartReason {
   cohort_start_first,    /* the run begins */
-  cohort_start_takeover, /* another process drove this robot before; the run goes on from `tick` */
+  cohort_start_takeover, /* another process drove this robot before; the run continues from `tick` */
   cohort_start_reset,    /* the world was rebuilt */
   cohort_start_restored, /* the world was restored from a snapshot */
   cohort_start_check     /* `cohort check --load-controllers` and `cohort run` test the start; no step follows */
@@ -53,34 +54,34 @@ typedef struct CohortStartInfo {
   uint32_t robot;         /* id in this run */
   const char* name;       /* scoped name, such as `explorers/sbot_7` */
   const char* model;      /* such as `sbot` */
-  const char* team;       /* the robot's team in the experiment file */
-  const char* controller; /* the team's controller in the experiment file */
+  const char* team;       /* name of the robot's team in the experiment file */
+  const char* controller; /* name of the team's controller in the experiment file */
   CohortStartReason reason;
   uint64_t tick;   /* tick of the next observation */
-  uint64_t seed;   /* for random numbers of the controller; derived from the experiment's seed and the robot's name */
+  uint64_t seed;   /* random seed for the controller; derived from the experiment's seed and the robot's name */
   int64_t step_ns; /* simulated time between ticks [ns] */
-  uint32_t period; /* ticks from one observation to the next */
+  uint32_t period; /* number of ticks from one observation to the next */
 } CohortStartInfo;
 
-/* The start of a controller, before its first step and after each reset, restore and takeover. It and all its texts
- * are valid until the callback returns or until the next cohort_next.
+/* The information that a controller receives at its start: before its first step, and after each reset, restore and
+ * takeover. The object and its strings are valid until the callback returns or until the next cohort_next.
  *
- * The results of the functions below need not be checked: the first error in a start ends the run with its message,
- * even if the callback returns 0. */
+ * The results of the functions below need not be checked: the first error during a start ends the run with its
+ * message, even if the callback returns 0. */
 typedef struct CohortStart CohortStart;
 
 const CohortStartInfo* cohort_start_info(const CohortStart* start);
 
 /* ---- Channels ---- */
 
-/* Handle of an observation channel: `size` of the robot's values, from `offset` on. Valid until the robot's next
- * start; its size is 0 if the lookup failed. */
+/* A handle of an observation channel: `size` values in the robot's observation, from index `offset` on. Valid until
+ * the robot's next start; `size` is 0 if the lookup failed. */
 typedef struct CohortObservationChannel {
   uint32_t offset;
   uint32_t size;
 } CohortObservationChannel;
 
-/* Handle of a command channel, like CohortObservationChannel. `lower` and `upper` are infinite if there are no
+/* A handle of a command channel, like CohortObservationChannel. `lower` and `upper` are infinite if there are no
  * bounds. */
 typedef struct CohortCommandChannel {
   uint32_t offset;
@@ -89,85 +90,88 @@ typedef struct CohortCommandChannel {
   double upper;
 } CohortCommandChannel;
 
-/* Returns the channel `device/index/quantity`, such as `turret/0/position`. An unknown name is an error, which lists
- * the nearest names. */
+/* Returns the channel with the name `device/index/quantity`, such as `turret/0/position`. An unknown name is an
+ * error, whose message lists similar names. */
 CohortObservationChannel cohort_find_observation(const CohortStart* start, const char* name);
 CohortCommandChannel cohort_find_command(const CohortStart* start, const char* name);
 
-/* Finds all channels that match, in the order of the robot's layout: writes the first `capacity` of them and returns
- * the number of matches. `*` matches any characters except `/`. No match is an error; then returns 0. */
+/* Finds all channels whose names match `pattern`, in the order of their values. Writes the first `capacity` handles
+ * to `channels` and returns the number of matches. `*` matches any characters except `/`. It is an error if there is
+ * no match; the result is then 0. */
 size_t cohort_find_observations(const CohortStart* start, const char* pattern, CohortObservationChannel* channels,
                                 size_t capacity);
 size_t cohort_find_commands(const CohortStart* start, const char* pattern, CohortCommandChannel* channels,
                             size_t capacity);
 
-/* Returns true if there is a channel of this name. Never an error. */
+/* Returns true if there is a channel with this name; false is not an error. */
 bool cohort_has_observation(const CohortStart* start, const char* name);
 bool cohort_has_command(const CohortStart* start, const char* name);
 
 /* ---- Parameters of the team in the experiment file ----
  *
- * Keys of nested maps are joined by '.'. The start must read every parameter: an unread one is an error of the file.
- * The functions return `fallback` if the parameter is missing. A parameter of the wrong type is an error; they then
- * return `fallback` too. */
+ * Keys of nested maps are joined by '.'. Read every parameter at the start: a parameter that is not read is reported
+ * as an error in the file. The functions return `fallback` if the parameter is missing. A parameter of the wrong type
+ * is an error; the result is then also `fallback`. */
 
-bool cohort_has_parameter(const CohortStart* start, const char* name); /* marks it as read */
+bool cohort_has_parameter(const CohortStart* start, const char* name); /* also marks it as read */
 double cohort_real(const CohortStart* start, const char* name, double fallback);
 int64_t cohort_whole(const CohortStart* start, const char* name, int64_t fallback); /* at most 2^53 in magnitude */
 bool cohort_flag(const CohortStart* start, const char* name, bool fallback);        /* `true` or `false` */
 const char* cohort_text(const CohortStart* start, const char* name, const char* fallback);
-/* Reads a list of numbers, or a single number: writes the first `capacity` and returns the size of the list, 0 if it
- * is missing. */
+/* Reads a list of numbers or a single number. Writes the first `capacity` numbers to `values` and returns the size of
+ * the list, 0 if the parameter is missing. */
 size_t cohort_reals(const CohortStart* start, const char* name, double* values, size_t capacity);
-/* Read a required parameter. A missing one is an error; they then return 0 or "". */
+/* Read a required parameter. It is an error if the parameter is missing; the result is then 0 or "". */
 double cohort_needed_real(const CohortStart* start, const char* name);
 const char* cohort_needed_text(const CohortStart* start, const char* name);
 
 /* ---- Step ---- */
 
-/* One robot's sensor readings at one tick. Valid until the callback returns, or until the event is answered. Use
- * channels from the start; other handles are not checked and give arbitrary values. */
+/* One robot's sensor readings at one tick. Valid until the callback returns, or until the event is answered. Use only
+ * channels that were looked up with this robot's CohortStart; handles are not checked, and others give arbitrary
+ * values. */
 typedef struct CohortObservation CohortObservation;
 
 uint64_t cohort_tick(const CohortObservation* observation);
 int64_t cohort_time_ns(const CohortObservation* observation); /* simulated time since tick 0 [ns] */
-/* Returns the value of a channel, the first one if it has several. */
+/* Returns the value of a channel, or the first value if it has several. */
 double cohort_read(const CohortObservation* observation, CohortObservationChannel channel);
 /* Returns all `channel.size` values of a channel. */
 const double* cohort_read_all(const CohortObservation* observation, CohortObservationChannel channel);
 
-/* One robot's command. Each step starts with the neutral value of every channel. Valid as long as the observation. */
+/* One robot's command. At the start of each step, every channel has its neutral value. Valid as long as the
+ * observation. */
 typedef struct CohortCommand CohortCommand;
 
-/* Sets the first value of a channel, clamped to the channel's range. The channel must be from the start, which is
- * not checked. NaN is passed on, and the server refuses it with the channel's name. */
+/* Sets the first value of a channel, clamped to the channel's range. The channel must have been looked up with this
+ * robot's CohortStart; this is not checked. The server rejects NaN and reports the name of the channel. */
 void cohort_set(CohortCommand* command, CohortCommandChannel channel, double value);
-/* Sets value `index`, which must be less than `channel.size`; this is not checked. */
+/* Sets value `index` of a channel, like cohort_set. `index` must be less than `channel.size`; this is not checked. */
 void cohort_set_at(CohortCommand* command, CohortCommandChannel channel, size_t index, double value);
 
 /* ---- Callbacks ---- */
 
-/* A controller as callbacks. `self` is what `create` returned, one for each robot. A failed callback ends the run.
- * The message is the text passed to cohort_fail, or else the last error. */
+/* A controller as a set of callbacks. `self` is the pointer that `create` returned for the robot. A failed callback
+ * ends the run. The run's error message is that of cohort_fail, or else the last error. */
 typedef struct CohortController {
   const char* name;      /* for messages */
-  void* (*create)(void); /* returns NULL if it fails. If the pointer itself is NULL, `self` is NULL */
-  /* Looks up channels and reads parameters. Called before the first step and each time that the run restarts; also
-   * called to find errors early (cohort_start_check). Returns 0, or another value if it fails. */
+  void* (*create)(void); /* returns NULL if it fails; if this member is NULL, `self` is NULL */
+  /* Looks up channels and reads parameters. Called before the first step and each time the run restarts; also called
+   * to find errors early (cohort_start_check). Returns 0, or another value if it fails. */
   int (*start)(void* self, const CohortStart* start);
-  /* Computes a command from an observation. For lockstep with identical bits, it must be a pure function of the
-   * start and of all steps since. So it uses no clock, no random device and no state that robots share. Returns 0,
-   * or another value if it fails. */
+  /* Computes a command from an observation. For bit-identical runs, the command must depend only on the last start
+   * and the observations of all steps since. So do not use a clock, a random device, or state that robots share.
+   * Returns 0, or another value if it fails. */
   int (*step)(void* self, const CohortObservation* observation, CohortCommand* command);
-  void (*destroy)(void* self); /* destroys what `create` returned. May be NULL */
+  void (*destroy)(void* self); /* destroys what `create` returned; may be NULL */
 } CohortController;
 
 /* ---- State of a controller ----
  *
- * When a snapshot of the run is taken, `save` writes the state accumulated since the start, between steps and at
- * most 1 MiB. When a run continues from a snapshot, `load` of another object reads all of it in the same order,
- * right after `start`. A controller without state writes nothing. Both return 0, or another value if they fail.
- * Handles are valid until the callback returns. */
+ * When a snapshot of the run is taken, between two steps, `save` writes the state accumulated since the start, at
+ * most 1 MiB. When a run continues from a snapshot, `load` of another object reads all of this state in the same
+ * order, immediately after `start`. A controller without state writes nothing. Both functions return 0, or another
+ * value if they fail. Handles are valid until the callback returns. */
 typedef struct CohortStateWriter CohortStateWriter;
 typedef struct CohortStateReader CohortStateReader;
 
@@ -176,19 +180,21 @@ void cohort_save_whole(CohortStateWriter* state, int64_t value);
 void cohort_save_flag(CohortStateWriter* state, bool value);
 void cohort_save_bytes(CohortStateWriter* state, const void* bytes, size_t size);
 
-/* Return 0 if the state ends too early or has an invalid value. This ends the run, even if `load` returns 0. */
+/* Read the next value. If the state ends too early or contains an invalid value, they return 0, and the run ends even
+ * if `load` returns 0. */
 double cohort_load_real(CohortStateReader* state);
 int64_t cohort_load_whole(CohortStateReader* state);
 bool cohort_load_flag(CohortStateReader* state);
 void cohort_load_bytes(CohortStateReader* state, void* bytes, size_t size);
 
-/* Functions of a controller with state. */
+/* The functions that save and load the state of a controller. */
 typedef struct CohortMemory {
   int (*save)(const void* self, CohortStateWriter* state);
   int (*load)(void* self, CohortStateReader* state); /* NULL if there is nothing to read */
 } CohortMemory;
 
-/* The symbol `cohort_plugin` that a plugin exports, the same as in C++. COHORT_C_CONTROLLER defines it. */
+/* The type of the symbol `cohort_plugin` that a plugin exports, with the same layout as in C++. COHORT_C_CONTROLLER
+ * defines the symbol. */
 #define COHORT_PLUGIN_ABI 3u
 typedef struct CohortPlugin {
   uint32_t abi;
@@ -197,13 +203,13 @@ typedef struct CohortPlugin {
   void (*destroy)(void*);
 } CohortPlugin;
 
-/* Used by COHORT_C_CONTROLLER and COHORT_C_CONTROLLER_WITH_MEMORY. */
+/* Create and destroy controllers for COHORT_C_CONTROLLER and COHORT_C_CONTROLLER_WITH_MEMORY. */
 void* cohort_make_controller(const CohortController* controller);
 void* cohort_make_controller_with_memory(const CohortController* controller, const CohortMemory* memory);
 void cohort_destroy_controller(void* made);
-/* Runs a controller as its own process: the `main` with `--robots`, `--server`, `--domain`, `--secure` and `--help`.
- * Returns the exit code: 0 when the run finished, 1 when it or a controller failed, 2 for wrong options or a refused
- * claim, 130 when interrupted. */
+/* Runs a controller as a program with the options `--robots`, `--server`, `--domain`, `--secure` and `--help`; its
+ * `main` calls this. Returns the exit code: 0 if the run finished, 1 if the run or a controller failed, 2 for invalid
+ * options or a refused claim, 130 if interrupted. */
 int cohort_run_controller(const CohortPlugin* plugin, int argc, char** argv);
 
 #ifdef COHORT_BUILDS_PLUGIN
@@ -213,15 +219,16 @@ int cohort_run_controller(const CohortPlugin* plugin, int argc, char** argv);
   int main(int argc, char** argv) { return cohort_run_controller(&cohort_plugin, argc, argv); }
 #endif
 
-/* Defines the plugin and the `main` of a controller. Use it once, at the end of a source file, without a semicolon.
- * `Name` is for messages; the others are the functions of CohortController. `create` and `destroy` may be NULL. The
- * controller restarts when the run continues from a snapshot, with a warning. */
+/* Defines the plugin symbol and the `main` function of a controller. Use this macro once, at the end of a source
+ * file, without a semicolon. `Name` appears in messages; the other arguments are the functions of CohortController.
+ * `create` and `destroy` may be NULL. The controller's state is not saved: when the run continues from a snapshot,
+ * the controller restarts with a warning. */
 #define COHORT_C_CONTROLLER(Name, create, start, step, destroy)                             \
   static const CohortController cohort_controller_ = {#Name, create, start, step, destroy}; \
   static void* cohort_create_(void) { return cohort_make_controller(&cohort_controller_); } \
   COHORT_C_PLUGIN_(Name)
 
-/* Defines a controller with the functions of CohortMemory. */
+/* Defines a controller whose state the functions of CohortMemory save and load. */
 #define COHORT_C_CONTROLLER_WITH_MEMORY(Name, create, start, step, destroy, save, load)     \
   static const CohortController cohort_controller_ = {#Name, create, start, step, destroy}; \
   static const CohortMemory cohort_memory_ = {save, load};                                  \
@@ -230,7 +237,7 @@ int cohort_run_controller(const CohortPlugin* plugin, int argc, char** argv);
   }                                                                                         \
   COHORT_C_PLUGIN_(Name)
 
-/* Defines a controller without state between steps, which a snapshot does not need to save. */
+/* Defines a controller without state between steps, so that a snapshot need not save any. */
 #define COHORT_C_STATELESS_CONTROLLER(Name, create, start, step, destroy)       \
   static int cohort_save_nothing_(const void* self, CohortStateWriter* state) { \
     (void)self;                                                                 \
@@ -244,7 +251,7 @@ int cohort_run_controller(const CohortPlugin* plugin, int argc, char** argv);
   const CohortPlugin cohort_plugin = {COHORT_PLUGIN_ABI, #Name, cohort_create_, cohort_destroy_controller}; \
   COHORT_C_CONTROLLER_MAIN
 
-/* ---- A loop of its own ----
+/* ---- Your own loop ----
  *
  *   CohortClient* client = cohort_connect(NULL);
  *   CohortEvent event;
@@ -254,17 +261,17 @@ int cohort_run_controller(const CohortPlugin* plugin, int argc, char** argv);
  *   }
  *   cohort_close(client);
  *
- * The protocol runs on a thread of Cohort. While the loop handles an event, that thread and the run wait, as long as
- * the team's `on_late` allows. */
+ * The protocol runs on one of Cohort's threads. While your loop handles an event, that thread and the run wait, as
+ * long as the team's `on_late` allows. */
 
 typedef struct CohortClient CohortClient;
 
 typedef struct CohortOptions {
   const char* server; /* IPv4 address or host name; $COHORT_SERVER or 127.0.0.1 if NULL */
   uint32_t domain;    /* the server's DDS domain */
-  const char* robots; /* comma-separated selectors, such as `0..3,explorers/sbot_7`; all if NULL */
+  const char* robots; /* comma-separated selectors, such as `0..3,explorers/sbot_7`; all robots if NULL */
   const char* name;   /* name shown by the server; "controller" if NULL */
-  const char* secure; /* folder of an identity made by `cohort security`; $COHORT_SECURE or none if NULL */
+  const char* secure; /* folder of an identity created by `cohort security`; $COHORT_SECURE or none if NULL */
 } CohortOptions;
 
 typedef enum CohortEventKind {
@@ -277,46 +284,47 @@ typedef enum CohortEventKind {
 } CohortEventKind;
 
 typedef enum CohortEnd {
-  cohort_end_finished,   /* the server ended the run */
+  cohort_end_finished,   /* the server has ended the run */
   cohort_end_refused,    /* the claim was refused */
-  cohort_end_superseded, /* another process took over these robots */
+  cohort_end_superseded, /* another process has taken over these robots */
   cohort_end_failed, /* a lookup failed, the server's address is invalid, or the server ended the run with an error */
-  cohort_end_server_lost, /* the server died or left */
+  cohort_end_server_lost, /* the server crashed or exited */
   cohort_end_interrupted  /* the client was closed */
 } CohortEnd;
 
 typedef struct CohortEvent {
   CohortEventKind kind;
   uint32_t robot;                       /* id of the event's robot */
-  const CohortStart* start;             /* of a start event, else NULL */
-  const CohortObservation* observation; /* of an observation event, else NULL */
-  CohortCommand* command;               /* of an observation event, else NULL */
-  CohortEnd end;                        /* of an end event */
+  const CohortStart* start;             /* set by a start event, otherwise NULL */
+  const CohortObservation* observation; /* set by an observation event, otherwise NULL */
+  CohortCommand* command;               /* set by an observation event, otherwise NULL */
+  CohortEnd end;                        /* set by an end event */
 } CohortEvent;
 
-/* Starts to attach to a server and returns at once; cohort_next waits for a server that is not there yet. If
- * `options` is NULL, all options have their defaults and the domain is $COHORT_DOMAIN. Copies the texts of the
- * options. Returns NULL if it fails. Log messages go to standard error, after the name. */
+/* Starts to attach to a server; does not block. cohort_next waits until there is a server. If `options` is NULL, all
+ * options have their defaults, and the domain is $COHORT_DOMAIN. Copies the strings of the options. Returns NULL if
+ * it fails. Log messages are written to standard error, each after the client's name. */
 CohortClient* cohort_connect(const CohortOptions* options);
 
-/* Waits for an event, fills in `event` and returns its kind. First answers the previous event if it was not
- * answered. With several robots, each tick has one observation per robot, in the order of their ids. Returns
+/* Answers the previous event if it has not been answered, waits for the next event, fills in `event` and returns its
+ * kind. With several robots, each tick has one observation event per robot, in the order of their ids. Returns
  * cohort_event_end on every call after the end. */
 CohortEventKind cohort_next(CohortClient* client, CohortEvent* event);
 
-/* Like cohort_next, but fills in cohort_event_none if nothing arrives within `milliseconds`, which may be 0. */
+/* Acts like cohort_next, but returns cohort_event_none if nothing arrives within `milliseconds`, which may be 0. */
 CohortEventKind cohort_next_within(CohortClient* client, CohortEvent* event, int milliseconds);
 
 /* Returns a file descriptor that poll() reports as readable when the events of a tick are available. Each tick has
- * one event per robot: call cohort_next_within(..., 0) until it returns cohort_event_none. Do not read or close it. */
+ * one event per robot: call cohort_next_within(..., 0) until it returns cohort_event_none. Do not read or close the
+ * descriptor. */
 int cohort_descriptor(const CohortClient* client);
 
 /* Returns true if the answer to the current event is no longer needed: the server has ended the run or the lease, or
- * has been away for too long. For loops that wait for hardware before they answer. */
+ * has been away for too long. Poll this while your loop waits for hardware before it answers. */
 bool cohort_is_over(const CohortClient* client);
 
-/* When a robot's team is asked for commands, and when the commands act: at each tick with `tick % period == phase`,
- * and `delay` ticks later. If `waits` is false (`mode: free`), the run keeps its pace and does not wait for answers. */
+/* The schedule of a team's commands. A robot is due at each tick with `tick % period == phase`, and its command takes
+ * effect `delay` ticks later. If `waits` is false (`mode: free`), the run never waits for answers. */
 typedef struct CohortPolicy {
   bool waits;
   uint32_t period; /* [ticks] */
@@ -324,27 +332,29 @@ typedef struct CohortPolicy {
   uint32_t delay;  /* [ticks] */
 } CohortPolicy;
 
-/* Gets the policy of a robot that the client drives. Returns false, with a last error, if it does not drive a robot
- * with this id. */
+/* Gets the policy of a robot that the client drives. Returns false and sets the last error if the client does not
+ * drive a robot with this id. */
 bool cohort_policy(const CohortClient* client, uint32_t robot, CohortPolicy* policy);
 
-/* Enables cohort_event_save and cohort_event_load, so that a run can continue from a snapshot: see "State of a
- * controller". Without it such a run starts this client without its state, with a warning. */
+/* Enables cohort_event_save and cohort_event_load, so that snapshots contain this client's state: see "State of a
+ * controller". Without this call, a run that continues from a snapshot starts this client without its state, with a
+ * warning. */
 void cohort_remember(CohortClient* client);
-CohortStateWriter* cohort_state_to_save(CohortClient* client); /* of the current event; NULL if it has another kind */
+CohortStateWriter* cohort_state_to_save(CohortClient* client); /* for the current event; NULL if it has another kind */
 CohortStateReader* cohort_state_to_load(CohortClient* client); /* likewise */
 
-/* Ends the client because it cannot continue, such as when a robot lacks a channel. Sends `why` to the server;
- * cohort_next then returns cohort_event_end. Does nothing if there is no current event. */
+/* Ends the client with the error `why`. Call this if the client cannot continue, for example because a robot lacks a
+ * channel. Sends `why` to the server; cohort_next then returns cohort_event_end. Does nothing if there is no current
+ * event. */
 void cohort_give_up(CohortClient* client, const char* why);
 
-/* Answers the current event, so that the simulation continues while the loop does something else. Its pointers are
- * then invalid. With several robots, the answers are sent when the last one is complete. Does nothing if there is no
- * current event. */
+/* Answers the current event, so that the simulation continues while the loop does something else. The pointers of the
+ * event are then invalid. With several robots, the answers of a tick are sent together, after the last one. Does
+ * nothing if there is no current event. */
 void cohort_answer(CohortClient* client);
 
-/* Leaves the run without answering, and frees the client. The robots are then without a controller, as if the
- * process had died. NULL is allowed. */
+/* Detaches without answering the current event, and frees the client. The robots are then without a controller, as if
+ * the process had crashed. `client` may be NULL. */
 void cohort_close(CohortClient* client);
 
 #ifdef __cplusplus

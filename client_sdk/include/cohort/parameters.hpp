@@ -8,14 +8,15 @@
 
 namespace cohort {
 
-/// One of a team's `parameters` in the experiment file. Keys of nested maps are joined by '.': `wheel: {radius: 0.02}`
-/// is `wheel.radius`.
+/// A parameter under a team's key `parameters` in the experiment file. Keys of nested maps are joined by '.': `wheel:
+/// {radius: 0.02}` is `wheel.radius`.
 struct Parameter {
   std::string name;
-  std::vector<std::string> values;  ///< one value, or those of a list, as written
+  std::vector<std::string> values;  ///< the values of a list, or a single value, as written in the file
 };
 
-/// An error: a parameter is missing, has the wrong type or is unknown to the controller. `what()` names it.
+/// The error that a parameter is missing, has the wrong type or is unknown to the controller. `what()` names the
+/// parameter.
 class ParameterError : public std::runtime_error {
  public:
   ParameterError(std::string name, const std::string& message);
@@ -25,8 +26,9 @@ class ParameterError : public std::runtime_error {
   std::string name_;
 };
 
-/// The parameters of a controller in the experiment file. `Controller::start` must read every parameter: an unread one
-/// is an error of the file, and the controller does not start. For one thread at a time.
+/// The parameters of a controller in the experiment file. Read every parameter in `Controller::start`: a parameter that
+/// is not read is reported as an error in the file, and the controller does not start. Use an object on one thread at a
+/// time.
 class Parameters {
  public:
   Parameters() = default;
@@ -34,24 +36,24 @@ class Parameters {
 
   /// Returns all parameters, in the order of the file. Does not mark them as read.
   const std::vector<Parameter>& all() const { return parameters_; }
-  /// Returns true if the file has the parameter. Marks it as read.
+  /// Returns true if the file contains the parameter. Marks it as read.
   bool has(std::string_view name) const { return find(name) != nullptr; }
 
-  /// Returns a finite number; `fallback` if the parameter is missing. Throws ParameterError if it is not a finite
-  /// number.
+  /// Returns a finite number, or `fallback` if the parameter is missing. Throws ParameterError if the parameter is not
+  /// a finite number.
   double real(std::string_view name, double fallback) const;
-  /// Returns a finite number. Throws ParameterError if it is missing or not a finite number.
+  /// Returns a finite number. Throws ParameterError if the parameter is missing or not a finite number.
   double real(std::string_view name) const;
-  /// Returns a list of finite numbers; one element for a single number, empty if the parameter is missing.
+  /// Returns a list of finite numbers: one element for a single number, none if the parameter is missing.
   std::vector<double> reals(std::string_view name) const;
-  /// Returns true or false, written as `true` or `false`; `fallback` if the parameter is missing.
+  /// Returns a flag, written as `true` or `false`, or `fallback` if the parameter is missing.
   bool flag(std::string_view name, bool fallback) const;
-  /// Returns a single text.
+  /// Returns one string.
   std::string text(std::string_view name, std::string_view fallback) const;
   std::string text(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;
 
-  /// Throws ParameterError for the first parameter that was not read.
+  /// Throws ParameterError for the first parameter that has not been read.
   void check_all_were_asked_for() const;
 
  private:

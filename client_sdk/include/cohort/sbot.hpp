@@ -9,8 +9,8 @@
 
 namespace cohort {
 
-/// The devices of an s-bot (docs/sbot.md). A controller creates this in `start` and uses it in `step`. Bearings are
-/// relative to the turret's heading, counter-clockwise [rad].
+/// The channels of an s-bot's devices (docs/sbot.md), and functions for common behaviours. A controller creates this
+/// object in `start` and uses it in `step`. Bearings are relative to the turret's heading, counter-clockwise [rad].
 struct Sbot {
   enum class Color : std::size_t { red, green, blue };
   struct Sides {
@@ -19,7 +19,7 @@ struct Sbot {
   };
   struct Light {
     double bearing = 0.0;
-    double brightest = 0.0;  ///< greatest reading of the sensors
+    double brightest = 0.0;  ///< greatest reading of the light sensors
   };
   struct Sound {
     double ahead = 0.0;  ///< intensity ahead minus intensity behind
@@ -47,29 +47,29 @@ struct Sbot {
         loudness(start.command("left_speaker/0/intensity")),
         leds(start.commands("leds/*/color")) {}
 
-  /// Sets the speeds of the tracks over ground [m/s].
+  /// Sets the velocities of the tracks over ground [m/s].
   void drive(Command& command, double left, double right) const {
     command.set(left_track, left);
     command.set(right_track, right);
   }
-  /// Turns to the left: the right track runs at `ahead + by`, the left one at `ahead - by` [m/s].
+  /// Turns to the left: runs the right track at `ahead + by` and the left track at `ahead - by` [m/s].
   void turn(Command& command, double ahead, double by) const { drive(command, ahead - by, ahead + by); }
-  /// Turns the turret back by `angle` relative to the chassis, with a speed proportional to it. If the turret is held,
-  /// the chassis turns.
+  /// Turns the turret back to the front of the chassis, at a speed proportional to `angle`, its present angle relative
+  /// to the chassis. If the turret cannot turn, because it is gripped for example, the chassis turns.
   void turn_turret_back(Command& command, double angle) const { command.set(turret_motor, -turret_gain * angle); }
-  /// Aligns the turret with the direction of the tracks.
+  /// Turns the turret back to the front of the chassis, by its measured angle.
   void align_turret(const Observation& observation, Command& command) const {
     turn_turret_back(command, observation[turret]);
   }
-  /// Converts a bearing to the frame of the chassis, within half a turn.
+  /// Converts a bearing to the frame of the chassis. Returns an angle from -pi to pi.
   double from_chassis(const Observation& observation, double bearing) const {
     return std::remainder(bearing + observation[turret], 2.0 * std::numbers::pi);
   }
   bool can_grip(const Observation& observation) const { return observation[grippable] > 0.5; }
   bool grips(const Observation& observation) const { return observation[gripping] > 0.5; }
-  /// Closes the gripper. It opens in every step that does not close it.
+  /// Closes the gripper. Call this in each step: the gripper opens in every step without this call.
   void close_gripper(Command& command) const { command.set(gripper, 0.0); }
-  /// Emits a tone [Hz] with the given intensity at 1 m [1].
+  /// Emits a tone with the frequency `tone` [Hz] and the intensity `intensity` at 1 m [1].
   void call(Command& command, double tone, double intensity) const {
     command.set(frequency, tone);
     command.set(loudness, intensity);
@@ -78,8 +78,9 @@ struct Sbot {
     for (const CommandChannel led : leds) command.set(led, 1.0, static_cast<std::size_t>(color));
   }
 
-  /// Returns how near obstacles ahead are: on each side the greatest weighted reading of the four sensors at 12, 36, 60
-  /// and 84 degrees from straight ahead. Obstacles beside the robot have lower weights.
+  /// Returns the proximity of obstacles on the left and on the right. Each is the greatest weighted reading of the four
+  /// sensors at 12, 36, 60 and 84 degrees from straight ahead on that side. Sensors that point sideways have lower
+  /// weights.
   Sides obstacles(const Observation& observation) const {
     constexpr std::array weights{1.0, 0.8, 0.6, 0.3};
     Sides near;
@@ -89,7 +90,7 @@ struct Sbot {
     }
     return near;
   }
-  /// Returns the direction of the sum of the light sensors.
+  /// Returns the bearing of the light, from the vector sum of the light sensors, and their greatest reading.
   Light look(const Observation& observation) const {
     double ahead = 0.0, left = 0.0, brightest = 0.0;
     for (std::size_t i = 0; i < light.size(); ++i) {
@@ -101,7 +102,7 @@ struct Sbot {
     }
     return {std::atan2(left, ahead), brightest};
   }
-  /// Returns the sound at the microphones, without their saturation, 2 / (1 + exp(-x)) - 1.
+  /// Returns the sound at the microphones after inverting their saturation, 2 / (1 + exp(-x)) - 1.
   Sound listen(const Observation& observation) const {
     std::array<double, 4> heard{};
     for (std::size_t i = 0; i < heard.size(); ++i)
@@ -109,7 +110,7 @@ struct Sbot {
     return {heard[0] + heard[3] - heard[1] - heard[2], heard[0] + heard[1] - heard[2] - heard[3],
             (heard[0] + heard[1] + heard[2] + heard[3]) / 4.0};
   }
-  /// Returns true if any of the microphones reads more than `threshold`.
+  /// Returns true if the reading of any microphone is above `threshold`.
   bool hears(const Observation& observation, double threshold) const {
     return std::any_of(microphones.begin(), microphones.end(),
                        [&](ObservationChannel microphone) { return observation[microphone] > threshold; });
@@ -117,11 +118,11 @@ struct Sbot {
 
   static constexpr double turret_gain = 5.0;  ///< [1/s]
   // Numbered counter-clockwise.
-  std::vector<ObservationChannel> proximity;    ///< the first is 12 degrees to the left of the gripper
-  std::vector<ObservationChannel> ground;       ///< the first is in front
-  std::vector<ObservationChannel> light;        ///< the first looks ahead
-  std::vector<ObservationChannel> microphones;  ///< at the corners of a square; the first is in front on the left
-  ObservationChannel turret;                    ///< angle between turret and chassis
+  std::vector<ObservationChannel> proximity;    ///< the first sensor is 12 degrees to the left of the gripper
+  std::vector<ObservationChannel> ground;       ///< the first sensor is at the front
+  std::vector<ObservationChannel> light;        ///< the first sensor points ahead
+  std::vector<ObservationChannel> microphones;  ///< at the corners of a square; the first is at the front left
+  ObservationChannel turret;                    ///< angle of the turret relative to the chassis [rad]
   ObservationChannel grippable;
   ObservationChannel gripping;
   CommandChannel left_track;

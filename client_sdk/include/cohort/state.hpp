@@ -16,8 +16,8 @@
 #include <type_traits>
 #include <vector>
 
-/// The state of a controller as bytes: `Controller::save` writes them, `Controller::load` reads them in the same order.
-/// They are little-endian, the same on every machine.
+/// The state of a controller as bytes: `Controller::save` writes values, and `Controller::load` reads them in the same
+/// order. The format is little-endian and the same on every machine.
 namespace cohort {
 
 static_assert(std::endian::native == std::endian::little, "state is written in the byte order of the machine");
@@ -25,13 +25,13 @@ static_assert(std::endian::native == std::endian::little, "state is written in t
 /// Maximum size of the state of one robot's controller [bytes].
 inline constexpr std::size_t largest_state = std::size_t{1} << 20;
 
-/// An error: the state ends too early, or has an invalid value.
+/// The error that a state ends too early or contains an invalid value.
 class StateError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A number, a flag or an enumerator. `long double` is excluded because its format depends on the compiler.
+/// A number, a flag or an enumerator. `long double` is excluded, because its format depends on the compiler.
 template <class Value>
 concept StateValue = (std::is_arithmetic_v<Value> && !std::is_same_v<Value, long double>) || std::is_enum_v<Value>;
 
@@ -44,7 +44,7 @@ concept StateEngine = requires(Engine& engine, const Engine& same, std::istream&
   in >> engine;
 };
 
-/// Writes the state of a controller. Valid during `save` only.
+/// A writer of the state of a controller, valid during `save` only.
 class StateWriter {
  public:
   template <StateValue Value>
@@ -64,7 +64,7 @@ class StateWriter {
     write(static_cast<std::uint64_t>(values.size()));
     add(values.data(), values.size() * sizeof(Value));
   }
-  /// Writes the state of a generator in the standard's text format.
+  /// Writes the state of a random number generator in the text format of the C++ standard.
   template <StateEngine Engine>
   void write(const Engine& engine) {
     std::ostringstream text;
@@ -80,7 +80,8 @@ class StateWriter {
     (write(more), ...);
   }
 
-  /// Marks the state as not saved: a run that continues from this snapshot restarts the controller, with a warning.
+  /// Marks the state as not saved. A run that continues from this snapshot then restarts the controller, with a
+  /// warning.
   void leave_out() { is_left_out_ = true; }
   bool is_left_out() const { return is_left_out_; }
   std::span<const std::byte> bytes() const { return bytes_; }
@@ -95,8 +96,9 @@ class StateWriter {
   bool is_left_out_ = false;
 };
 
-/// Reads what a StateWriter wrote, in the same order. Valid during `load` only. Functions throw StateError if the state
-/// ends too early. State may come from anywhere, so check values that can be invalid.
+/// A reader of the values that a StateWriter wrote, in the same order, valid during `load` only. Its functions throw
+/// StateError if the state ends too early. A snapshot may come from an untrusted source, so check values that can be
+/// invalid.
 class StateReader {
  public:
   explicit StateReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -109,7 +111,7 @@ class StateReader {
     if (number > 1) throw StateError("invalid state: a flag is neither 0 nor 1");
     flag = number == 1;
   }
-  /// Reads an enumerator from the first one, 0, up to `last`.
+  /// Reads an enumerator. Throws StateError unless its value is from 0 to that of `last`.
   template <class Enum>
   requires std::is_enum_v<Enum>
   void read_up_to(Enum& value, Enum last) {

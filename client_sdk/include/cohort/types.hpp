@@ -6,8 +6,8 @@
 #include <vector>
 
 /// Types of <cohort/control.hpp> and <cohort/observer.hpp>: poses and velocities, states of a simulation, and events of
-/// a run. Names follow ROS 2's simulation_interfaces and geometry_msgs where they have one. Plain values in SI units;
-/// the world frame is right-handed with z up.
+/// a run. Names follow those in ROS 2's simulation_interfaces and geometry_msgs where these define one. Values are in
+/// SI units; the world frame is right-handed with z up.
 namespace cohort {
 
 struct Vector3 {
@@ -36,32 +36,32 @@ struct Twist {
 };
 
 enum class SimulationState : std::uint32_t {
-  stopped = 0,  ///< at the beginning, before the first tick
+  stopped = 0,  ///< at the start of the run, before the first tick
   playing = 1,
   paused = 2,
-  quitting = 3,  ///< run and server are ending
+  quitting = 3,  ///< the run and the server are ending
 };
 
-/// Something that happened in a run, once or several times: a controller that joined or was late, an event of the
-/// experiment, a request.
+/// An entry in a run's list of events: a controller that joined or was late, an event of the experiment, or a request.
+/// An event that occurs repeatedly has one entry.
 struct RunEvent {
   std::uint64_t tick = 0;       ///< tick of the first occurrence
   std::uint64_t last_tick = 0;  ///< tick of the last occurrence
   std::uint64_t count = 1;
   std::string kind;  ///< keyword, for programs
-  std::string text;  ///< description, for people
+  std::string text;  ///< human-readable description
   bool operator==(const RunEvent&) const = default;
 };
 
-/// The events of a run, and how far back it can go.
+/// The events of a run, and the snapshots to which it can return.
 struct RunHistory {
   std::uint32_t run = 0;              ///< number of the run; revisions start at 0 with each run
-  std::uint64_t revision = 0;         ///< revision to use in the next query, for later events
+  std::uint64_t revision = 0;         ///< revision for the next query, which then returns only later events
   std::uint64_t begin_tick = 0;       ///< tick at which the run started or continued
-  std::uint64_t keep_interval = 0;    ///< ticks between kept snapshots; 0: the run cannot go back
-  std::uint64_t first_kept_tick = 0;  ///< first tick of the kept snapshots, if there are any
+  std::uint64_t keep_interval = 0;    ///< ticks between kept snapshots; 0: none are kept
+  std::uint64_t first_kept_tick = 0;  ///< tick of the first kept snapshot, if there is one
   std::uint64_t last_kept_tick = 0;
-  std::vector<RunEvent> events;  ///< new and repeated events, in the order of their last occurrences
+  std::vector<RunEvent> events;  ///< events that are new or have occurred again, in the order of their last occurrences
 };
 
 }  // namespace cohort

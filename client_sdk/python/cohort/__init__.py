@@ -1,4 +1,4 @@
-"""Cohort: a simulator for groups of robots, bit-reproducible and in lockstep with its controllers.
+"""Cohort: a bit-reproducible simulator for groups of robots, in lockstep with their controllers.
 
     import cohort
 
@@ -20,10 +20,11 @@
 
     cohort.gym.VectorEnv(...)                          # many worlds at once, for learning: help(cohort.gym)
 
-Values are in the order of channels, which have names, units and bounds (`Robot.observation_channels`). Poses are x y z
-[m] and a quaternion w x y z in the world frame, which has z up. Runs have the same bits as those of `cohort run`. For
-this purpose, importing this package replaces `math.sin`, `math.exp` and similar functions by those of Cohort. They
-agree with the C library's within 2 units in the last place.
+The values of an observation or a command are in the order of its channels, which have names, units and bounds
+(`Robot.observation_channels`). A pose is x y z [m] and a quaternion w x y z in the world frame, which has z up. Results
+are bit-identical to those of `cohort run`. For this purpose, importing this package replaces `math.sin`, `math.exp` and
+similar functions with those of Cohort. Their results differ from those of the C library by at most 2 units in the last
+place.
 """
 
 import numpy  # before _native, which also binds NumPy's calls to portable functions

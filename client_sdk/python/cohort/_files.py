@@ -66,7 +66,7 @@ def examples():
 def experiment_called(name):
     """Returns the file of an experiment: a path, or the name of a bundled experiment if no such file exists.
 
-    Raises FileNotFoundError if the name is neither.
+    Raises FileNotFoundError if there is neither.
     """
     path = pathlib.Path(name)
     if path.exists() or len(path.parts) != 1 or path.suffix:

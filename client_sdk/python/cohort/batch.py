@@ -12,23 +12,23 @@ from cohort.experiment import Experiment
 
 
 class Batch:
-    """Many worlds of one experiment, stepped together by C++ threads, for learning.
+    """Many worlds of one experiment, stepped together by C++ threads, for machine learning.
 
-    Arrays are float64 in SI units, contiguous, and stay at one address for the lifetime of the batch. A world has the
-    same bits as the same experiment run alone with the same seed, independent of the other worlds and of the number of
-    threads. Rows of robots with fewer channels end in zeros. The program commands all robots; a command acts from the
-    next tick on. Only one Python thread may use a batch at a time; steps run without Python's global lock. A batch
-    cannot be used after a fork.
+    Arrays are float64 in SI units and contiguous, and keep their address for the lifetime of the batch. Each world is
+    bit-identical to a separate run of the experiment with the same seed, independent of the other worlds and of the
+    number of threads. Rows of robots with fewer values are padded with zeros. The program commands all robots; a
+    command takes effect at the next tick. Only one Python thread may use a batch at a time; steps release Python's
+    global interpreter lock. A batch cannot be used after a fork.
 
     Args:
-        experiment: an `Experiment`, or an argument of `Experiment.read`.
+        experiment: an `Experiment`, or a file for `Experiment.read`.
         worlds: number of worlds.
-        threads: number of threads that step them.
+        threads: number of threads that step the worlds.
     """
 
-    STOPPED = 1  #: a stop condition of the experiment holds
+    STOPPED = 1  #: a stop condition of the experiment is met
     TIMED_OUT = 2  #: the duration of the experiment has passed
-    QUARANTINED = 4  #: a robot has an invalid state or has left the world; the others continue
+    QUARANTINED = 4  #: a robot has an invalid state or has left the world; the other robots continue
     FAILED = 8  #: `step` raised an error because of this world
 
     def __init__(self, experiment: Experiment | str | os.PathLike, worlds: int, threads: int = 1) -> None:
@@ -42,14 +42,15 @@ class Batch:
         self.worlds = worlds
         #: Scoped names of the robots of each world.
         self.robots: list[str] = [self._native.robot_name(robot) for robot in range(self._native.robots)]
-        #: Observations of the robots, [world, robot, value], read-only.
+        #: Observations of the robots, an array [world, robot, value], read-only.
         self.observations: numpy.ndarray = self._native.observations
-        #: Commands of the robots, [world, robot, value], writable. A reset sets them to their neutral values.
+        #: Commands of the robots, an array [world, robot, value], writable. A reset sets them to their neutral values.
         self.commands: numpy.ndarray = self._native.commands
-        #: Poses of root links in the world frame, x y z [m] and quaternion w x y z, [world, robot, 7], read-only.
+        #: Poses of the robots' root links in the world frame, x y z [m] and a quaternion w x y z: an array [world,
+        #: robot, 7], read-only.
         self.poses: numpy.ndarray = self._native.poses
-        #: Bits of STOPPED, TIMED_OUT, QUARANTINED, FAILED, uint8 [world], read-only. A world with any bit except
-        #: QUARANTINED does not step until it is reset.
+        #: Bits of STOPPED, TIMED_OUT, QUARANTINED and FAILED, an array [world] of uint8, read-only. A world with any
+        #: bit except QUARANTINED is not stepped until it is reset.
         self.done: numpy.ndarray = self._native.done
 
     def observation_channels(self, robot: int = 0) -> Channels:
@@ -65,23 +66,24 @@ class Batch:
         return self._native.robot_model(robot)
 
     def step(self, ticks: int = 1, only: numpy.ndarray | None = None) -> None:
-        """Steps all worlds; a world stops when it ends.
+        """Steps all worlds that have not ended.
 
         Args:
-            ticks: at least 1.
-            only: an array [world] of bool; the other worlds stay unchanged.
+            ticks: number of ticks, at least 1. A world that ends earlier stops there.
+            only: an array [world] of bool that selects worlds; the others stay unchanged.
 
-        Raises ValueError before any world has moved if a command is invalid, naming world, robot and channel. Raises
-        RuntimeError after all worlds have moved if one fails, naming the first.
+        Raises ValueError if a command is invalid, before any world is stepped; the message names the world, the robot
+        and the channel. Raises RuntimeError if a world fails, after all worlds have been stepped; the message names the
+        first such world.
         """
         self._native.step(ticks, only)
 
     def reset(self, seeds: int | numpy.ndarray, only: numpy.ndarray | None = None) -> None:
-        """Restarts worlds, each with its seed, as if the experiment had been read with it. Reads no file.
+        """Restarts worlds, each with its own seed, as if the experiment had been read with this seed. Reads no file.
 
         Args:
-            seeds: an array [world] of integers from 0 to 2^64 - 1, or one for all.
-            only: an array [world] of bool; the other worlds stay unchanged.
+            seeds: an array [world] of integers from 0 to 2^64 - 1, or one seed for all worlds.
+            only: an array [world] of bool that selects worlds; the others stay unchanged.
         """
         seeds = numpy.ascontiguousarray(numpy.broadcast_to(numpy.asarray(seeds, dtype=numpy.uint64), (self.worlds,)))
         if only is None:
@@ -93,5 +95,5 @@ class Batch:
         return self._native.tick(world)
 
     def state_hash(self, world: int) -> int:
-        """Returns the state hash of a world, the same as of a single run."""
+        """Returns the state hash of a world, which is the same as in a separate run."""
         return self._native.state_hash(world)

@@ -11,7 +11,7 @@ import numpy
 
 
 class ChannelError(LookupError):
-    """No channel has the given name. The message lists the nearest names."""
+    """The error that no channel has the given name, or that no or the wrong number of channels match."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -87,11 +87,11 @@ class Channels:
         return channel.offset if channel.size == 1 else slice(channel.offset, channel.offset + channel.size)
 
     def indices(self, pattern: str, count: int | None = None) -> slice | numpy.ndarray:
-        """Returns the indices of the values of all channels that match.
+        """Returns the indices of the values of all channels whose names match a pattern.
 
-        `*` matches any characters except `/`. The result is a slice if the values are consecutive, so that indexing
-        makes a view; otherwise an array of int. Raises ChannelError if no channel matches, or if `count` is given and
-        the number of matches differs.
+        `*` matches any characters except `/`. The result is a slice if the indices are consecutive, so that indexing
+        returns a view; otherwise, it is an array of int. Raises ChannelError if no channel matches, or if `count` is
+        given and is not the number of matches.
         """
         expression = re.compile("[^/]*".join(re.escape(each) for each in pattern.split("*")) + r"\Z")
         found = [each for each in self._all if expression.match(each.name)]

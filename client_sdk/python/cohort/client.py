@@ -15,7 +15,7 @@ _native.bind_library_calls()  # also in the libraries that _client has loaded: a
 
 
 class ClientError(RuntimeError):
-    """A client did not drive its robots to the end of the run. The message gives the reason."""
+    """The error that a client did not drive its robots until the run finished. The message gives the reason."""
 
 
 def host(
@@ -31,13 +31,13 @@ def host(
     Args:
         controller: a class derived from `cohort.Controller`, with one object per robot, or from
             `cohort.TeamController`.
-        robots: selectors separated by commas, or a list of them: `all`, `3`, `0..7`, `explorers/sbot_7`, `explorers/*`.
+        robots: selectors, separated by commas or as a list: `all`, `3`, `0..7`, `explorers/sbot_7`, `explorers/*`.
         server: IPv4 address or host name; by default $COHORT_SERVER, or this machine.
         domain: the server's DDS domain; by default $COHORT_DOMAIN, or 0.
         secure: folder of an identity; by default $COHORT_SECURE, or none.
 
-    Waits for a server that is not there yet. Raises ClientError if the run fails, if another client drives these robots
-    or takes them over, or if the server is lost. Raises KeyboardInterrupt after Ctrl-C.
+    Waits until there is a server. Raises ClientError if the run fails, if another client drives these robots or takes
+    them over, or if the server is lost. Raises KeyboardInterrupt after Ctrl-C.
     """
     selectors = (
         [each for each in robots.split(",") if each] if isinstance(robots, str) else [str(each) for each in robots]
@@ -54,17 +54,17 @@ def host(
 
 
 def main(controller: type[Controller] | type[TeamController], arguments: Sequence[str] | None = None) -> NoReturn:
-    """Runs a program with one controller; reads `--robots`, `--server`, `--domain`, `--secure`, `--help`.
+    """Runs a controller as a program with the options `--robots`, `--server`, `--domain`, `--secure` and `--help`.
 
         if __name__ == "__main__":
             cohort.main(Wanderer)
 
-    Ends the process: with 0 when the run finished, 1 when it or the controller failed, 2 for wrong options or a refused
-    claim, 130 when interrupted.
+    Ends the process. The exit code is 0 if the run finished, 1 if the run or the controller failed, 2 for invalid
+    options or a refused claim, and 130 if interrupted.
 
     Args:
         controller: a class derived from `cohort.Controller` or `cohort.TeamController`.
-        arguments: replace those of the command line.
+        arguments: options of the program; by default those of the command line.
     """
     arguments = sys.argv if arguments is None else [sys.argv[0], *arguments]
     sys.exit(_client.run_program(Maker(controller), arguments))

@@ -1,4 +1,4 @@
-"""The interface for authors of controllers: one class derived from Controller or TeamController."""
+"""The interface for authors of controllers: derive one class from Controller or TeamController."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cohort.channels import Channels
 
 
 class ParameterError(ValueError):
-    """A parameter of a team is missing or invalid.
+    """The error that a parameter of a team is missing or invalid.
 
     Attributes:
         name: name of the parameter; the message contains it too.
@@ -26,10 +26,10 @@ class ParameterError(ValueError):
 
 
 class Parameters:
-    """The `parameters` that the experiment gives a controller.
+    """The parameters of a controller, from the key `parameters` of its team in the experiment.
 
-    Keys of nested maps are joined by '.'. `Controller.start` must read every parameter: an unread one is an error of
-    the experiment, and the controller does not start.
+    Keys of nested maps are joined by '.'. Read every parameter in `Controller.start`: a parameter that is not read is
+    reported as an error in the experiment, and the controller does not start.
     """
 
     def __init__(self, values: dict[str, list[str]]) -> None:
@@ -55,7 +55,7 @@ class Parameters:
         return values[0]
 
     def real(self, name: str, fallback: float | None = None) -> float:
-        """Returns a finite number. Raises ParameterError if it is not a number, or missing without a fallback."""
+        """Returns a finite number. Raises ParameterError if it is not one, or is missing and there is no fallback."""
         text = self._single(name, "a number", fallback)
         return fallback if text is None and fallback is not None else _number(name, text or "", "a number")
 
@@ -74,12 +74,12 @@ class Parameters:
         return text == "true"
 
     def text(self, name: str, fallback: str | None = None) -> str:
-        """Returns a single text."""
+        """Returns one string."""
         text = self._single(name, "a text", fallback)
         return fallback or "" if text is None else text
 
     def texts(self, name: str) -> list[str]:
-        """Returns a list of texts, empty if the parameter is missing."""
+        """Returns a list of strings, empty if the parameter is missing."""
         self.asked.add(name)
         return list(self._values.get(name, []))
 
@@ -95,21 +95,21 @@ def _number(name: str, text: str, expected: str) -> float:
 
 
 class Start:
-    """The start of a controller, before its first step and after each reset, restore and takeover.
+    """The information that a controller receives at its start.
 
     Attributes:
         robot: id in this run.
         name: scoped name, such as `explorers/sbot_7`.
-        model: model, such as `sbot`.
-        team: the robot's team in the experiment.
-        controller: the team's controller in the experiment.
+        model: name of the robot's model, such as `sbot`.
+        team: name of the robot's team in the experiment.
+        controller: name of the team's controller in the experiment.
         parameters: the team's parameters in the experiment, a `Parameters`.
-        reason: `first`, `takeover`, `reset`, `restored`, or `check`: a test of the start, without a step.
+        reason: `first`, `takeover`, `reset`, `restored`, or `check`, which only tests the start: no step follows.
         tick: tick of the next observation.
-        seed: for random numbers of the controller; derived from the experiment's seed and the robot's name.
+        seed: random seed for the controller; derived from the experiment's seed and the robot's name.
         step: simulated time between ticks [s].
-        period: ticks from one observation to the next.
-        observation_channels, command_channels: `Channels`, with units and bounds.
+        period: number of ticks from one observation to the next.
+        observation_channels, command_channels: the robot's `Channels`, with units and bounds.
     """
 
     def __init__(self, facts: dict[str, Any]) -> None:
@@ -133,17 +133,17 @@ class Start:
         return self.step * self.period
 
     def observation(self, name: str) -> int | slice:
-        """Returns the index of an observation channel: an int, or a slice if it has several values.
+        """Returns the index of an observation channel: an int, or a slice if the channel has several values.
 
         Raises ChannelError if there is none.
         """
         return self.observation_channels.index(name)
 
     def observations(self, pattern: str, count: int | None = None) -> slice | numpy.ndarray:
-        """Returns the indices of the values of all observation channels that match, such as `proximity/*/reading`.
+        """Returns the indices of the values of all observation channels whose names match a pattern.
 
-        The result is a slice if the values are consecutive. Raises ChannelError if none match, or if the number of
-        matches is not `count`.
+        An example of a pattern is `proximity/*/reading`. The result is a slice if the indices are consecutive. Raises
+        ChannelError if no channel matches, or if `count` is given and is not the number of matches.
         """
         return self.observation_channels.indices(pattern, count)
 
@@ -152,18 +152,18 @@ class Start:
         return self.command_channels.index(name)
 
     def commands(self, pattern: str, count: int | None = None) -> slice | numpy.ndarray:
-        """Returns the indices of the values of all command channels that match, like `observations`."""
+        """Returns the indices of the values of all matching command channels, like `observations`."""
         return self.command_channels.indices(pattern, count)
 
 
 class Controller:
-    """Drives one robot. Derive a class from it, and pass the class to a run, or name its file in an experiment.
+    """A controller of one robot. Derive a class from it, and pass the class to a run or name its file in an experiment.
 
     Each robot has its own object, created without arguments. One thread calls all of them. An exception ends the run
-    with its message. For runs with the same bits, `step` must depend only on the arguments of `start` and of all steps
-    since. So it uses no clock, no random device and no state that robots share. Functions such as `math.sin` are those
-    of Cohort, with the same bits on every machine. Those of NumPy depend on the processor; use `cohort.math` for
-    arrays.
+    with its message. For bit-identical runs, commands must depend only on the arguments of the last `start` and of all
+    steps since. So do not use a clock, a random device, or state that robots share. Functions such as `math.sin` are
+    those of Cohort, with bit-identical results on every machine. The results of NumPy's functions depend on the
+    processor; use `cohort.math` for arrays.
 
         class Wanderer(cohort.Controller):
             def start(self, start):
@@ -177,7 +177,7 @@ class Controller:
                 command[self.right] = 0.2 * (1.0 - observation[self.left_eye])
 
     Attributes, while it drives a robot:
-        robot: the last argument of `start`, a `Start`.
+        robot: the `Start` of the last call of `start`.
         tick: the current tick.
         time: simulated time since tick 0 [s].
 
@@ -191,34 +191,34 @@ class Controller:
     time: float = 0.0
 
     def start(self, start: Start) -> None:
-        """Looks up channels and reads parameters. Called before the first step, and each time that the run restarts."""
+        """Looks up channels and reads parameters. Called before the first step and each time the run restarts."""
 
     def step(self, observation: numpy.ndarray, command: numpy.ndarray) -> None:
         """Computes a command from an observation.
 
-        Both are arrays [value] of float64 in SI units, at the same address in every step, and valid during the step.
-        `observation` is read-only. `command` starts with its neutral values. Written values are clamped to the range of
-        their channel, and the run refuses NaN.
+        Both are arrays [value] of float64 in SI units, at the same address in every step, and valid only during the
+        step. `observation` is read-only. At the start of each step, `command` contains neutral values. Written values
+        are clamped to the range of their channel, and the server rejects NaN.
         """
         raise NotImplementedError("the controller does not define step(self, observation, command)")
 
     def save(self) -> bytes | None:
-        """Returns the state accumulated since `start` as bytes, at most 1 MiB, when a snapshot is taken.
+        """Returns the state accumulated since `start` as bytes, at most 1 MiB. Called when a snapshot is taken.
 
-        A class without `save` returns b"" if it is `stateless`, and None otherwise. With None, the controller restarts
-        when the run continues from the snapshot, with a warning.
+        If a class does not override `save`, it returns b"" if the class is `stateless`, and otherwise None. With None,
+        the controller restarts, with a warning, when the run continues from the snapshot.
         """
         return b"" if self.stateless else None
 
     def load(self, state: bytes) -> None:
-        """Restores the bytes that `save` of the same class returned. Called right after `start`."""
+        """Restores the state that `save` of the same class returned. Called immediately after `start`."""
 
 
 class TeamController:
-    """Drives all robots of a process with one call per tick: for policies that are computed for many robots at once.
+    """A controller of all robots of a process, called once per tick, for policies that are evaluated in batches.
 
-    Derive a class from it, and use the class like one derived from `Controller`. Its results may depend on all robots
-    of the process, and so on how robots are distributed over processes.
+    Derive a class from it, and use this class like one derived from `Controller`. The commands may depend on all robots
+    of the process, and therefore on the distribution of the robots over processes.
 
         class Everybody(cohort.TeamController):
             def start(self, robots):
@@ -229,8 +229,9 @@ class TeamController:
                 commands[:, self.tracks] = 0.2 * (1.0 - observations[:, self.near].max(axis=1, keepdims=True))
 
     Attributes, while it drives robots:
-        robots: the last argument of `start`, a list of `Start` in ascending order of ids. All have the same model.
-        asked: rows of `robots` that are due at this tick: a slice of all, or an array of int.
+        robots: the list of `Start` of the last call of `start`, in ascending order of ids. All robots have the same
+            model.
+        asked: indices of the `robots` that are due at this tick: a slice of all, or an array of int.
         tick: the current tick.
         time: simulated time since tick 0 [s].
 
@@ -250,16 +251,16 @@ class TeamController:
     def step(self, observations: numpy.ndarray, commands: numpy.ndarray) -> None:
         """Computes commands [robot, value] from observations [robot, value], for the robots that are due at this tick.
 
-        Otherwise like `Controller.step`.
+        Acts like `Controller.step` in all other respects.
         """
         raise NotImplementedError("the controller does not define step(self, observations, commands)")
 
     def save(self) -> bytes | None:
         """Returns the state of all robots as bytes, like `Controller.save`.
 
-        It can be restored only for the same group of robots.
+        The state can be restored only for the same group of robots.
         """
         return b"" if self.stateless else None
 
     def load(self, state: bytes) -> None:
-        """Restores the bytes that `save` of the same class returned, like `Controller.load`."""
+        """Restores the state that `save` of the same class returned, like `Controller.load`."""

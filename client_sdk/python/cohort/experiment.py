@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 #: A team's controller: a class, or the name or path of a controller.
 Driver = Union[type[Controller], type[TeamController], str, os.PathLike]
-#: The controller of all teams, or of each team by its name.
+#: The controller of all teams, or a dictionary of controllers by the names of teams.
 Controllers = Union[Driver, dict[str, Driver]]
 
 _NOBODY = "none"  # controller of a team without one, in experiments made in Python
@@ -26,7 +26,7 @@ _PEOPLE = "keyboard"  # for `cohort teleop`, on a server
 
 
 class _Idle(Controller):
-    """A controller that leaves the commands neutral, for a team without one."""
+    """A controller that leaves all commands neutral, for a team without a controller."""
 
     def step(self, observation, command):
         pass
@@ -47,9 +47,9 @@ class Team:
 
     Attributes:
         name: name of the team.
-        controller: controller in the experiment; empty if there is none.
+        controller: name of its controller in the experiment; empty if there is none.
         robots: ids of its robots, in ascending order.
-        period: ticks from one command to the next.
+        period: number of ticks from one command to the next.
     """
 
     name: str
@@ -68,13 +68,13 @@ class Result:
         stop_reason: the stop condition that ended the run; empty if none did.
         ticks: number of ticks.
         time: simulated time [s].
-        wall_time: from the first frame to the last step [s].
-        state_hash: hash of the last state; the same for every run of the same experiment and controllers.
+        wall_time: wall time from the first frame to the last step [s].
+        state_hash: hash of the last state; identical for all runs of the same experiment with the same controllers.
         robots: number of robots at the end.
-        robot_ticks: sum over all ticks of the number of robots, the reference for the next two.
-        touching_obstacles: robot-ticks in which a robot touched an object other than a robot or a plane.
-        touching_robots: robot-ticks in which a robot touched another one.
-        events: a list of tuples (tick, kind, text, count).
+        robot_ticks: number of robots, summed over all ticks: the total to which the next two values refer.
+        touching_obstacles: number of robot-ticks in which a robot touched an object other than a robot or a plane.
+        touching_robots: number of robot-ticks in which a robot touched another robot.
+        events: events of the run, a list of tuples (tick, kind, text, count).
         seed: seed of the experiment.
     """
 
@@ -96,7 +96,7 @@ class Result:
 class Experiment:
     """A world with robots in teams, checked and ready to run.
 
-    Read from a file with `Experiment.read`, or made in Python with the keys of experiment files as arguments:
+    Read it from a file with `Experiment.read`, or create it in Python with the keys of experiment files as arguments:
 
         cohort.Experiment(
             world="arena.sdf",
@@ -105,9 +105,9 @@ class Experiment:
         )
 
     `world` is a path, or a dictionary with the keys of world files in YAML, which are those of SDF. The controller of a
-    team may be a class derived from `cohort.Controller`. Without one, `run` provides it, or the robots keep neutral
-    commands. Paths are relative to `folder`, by default the working directory. Raises `cohort.InputError` with all
-    problems, in the format of `cohort check`.
+    team may be a class derived from `cohort.Controller` or `cohort.TeamController`. If a team has none, pass it to
+    `run`; otherwise, its robots keep neutral commands. Paths are relative to `folder`, by default the working
+    directory. Raises `cohort.InputError` with all problems, in the format of `cohort check`.
     """
 
     def __init__(
@@ -153,8 +153,8 @@ class Experiment:
 
         Args:
             file: a path, or the name of a bundled experiment (`cohort.examples()`).
-            seed: replaces that of the file.
-            duration: simulated time [s], replaces that of the file; 0: no end.
+            seed: seed that replaces the one in the file.
+            duration: simulated time [s] that replaces the duration in the file; 0: no end.
         """
         return cls._of(_native.Experiment.read(_files.experiment_called(file), seed, duration, _files.model_folders()))
 
@@ -167,7 +167,7 @@ class Experiment:
         seed: int | None = None,
         duration: float | None = None,
     ) -> Experiment:
-        """Reads an experiment from a text in YAML with paths relative to `folder`."""
+        """Reads an experiment from a string in YAML, with paths relative to `folder`."""
         file = pathlib.Path(folder).absolute() / f"{name}.yaml"
         return cls._of(_native.Experiment.read_texts([(os.fspath(file), text)], seed, duration, _files.model_folders()))
 
@@ -179,7 +179,7 @@ class Experiment:
         return experiment
 
     def with_seed(self, seed: int) -> Experiment:
-        """Returns the same experiment with another seed; random placements change."""
+        """Returns the same experiment with another seed, which changes random placements."""
         experiment = self._of(self._native.with_seed(seed))
         experiment._classes = self._classes
         return experiment
@@ -196,7 +196,7 @@ class Experiment:
 
     @property
     def seed(self) -> int:
-        """Seed of everything random in the run."""
+        """Seed of all random numbers of the run."""
         return self._native.seed
 
     @property
@@ -206,7 +206,7 @@ class Experiment:
 
     @property
     def duration(self) -> float:
-        """Simulated time of a run [s]; 0: no end."""
+        """Simulated duration of a run [s]; 0: no end."""
         return self._native.duration
 
     @property
@@ -216,14 +216,14 @@ class Experiment:
 
     @property
     def teams(self) -> list[Team]:
-        """Teams, a list of `Team`."""
+        """Teams of the experiment, a list of `Team`."""
         return [
             Team(each["name"], each["controller"], tuple(each["robots"]), each["period"]) for each in self._native.teams
         ]
 
     @property
     def warnings(self) -> list[str]:
-        """Features of its files that are not simulated, a list of sentences."""
+        """Warnings about features of its files that are not simulated, a list of sentences."""
         return self._native.warnings
 
     def run(
@@ -233,12 +233,12 @@ class Experiment:
 
         Args:
             controllers: a class derived from `cohort.Controller` or `cohort.TeamController`, the name or path of a
-                controller, or a dictionary of these by the names of teams. Other teams have the controller of the
+                controller, or a dictionary of these by the names of teams. Other teams use the controller in the
                 experiment.
             threads: number of threads that step the world; the result does not depend on it.
             record: path of a recording (MCAP) to write.
 
-        Raises RuntimeError with the error if the run fails, and KeyboardInterrupt after Ctrl-C.
+        Raises RuntimeError with the reason if the run fails, and KeyboardInterrupt after Ctrl-C.
         """
         drivers = [self._driver_of(team, controllers) for team in self.teams]
         facts = _native.run(self._native, threads, drivers, _files.plugin_folders(), record or "")
@@ -294,10 +294,10 @@ def run_seeds(
     *,
     threads: int = 1,
 ) -> pandas.DataFrame:
-    """Runs an experiment once per seed, and returns a table of the results.
+    """Runs an experiment once for each seed, and returns a table of the results.
 
     Args:
-        experiment: an `Experiment`, or an argument of `Experiment.read`.
+        experiment: an `Experiment`, or a file for `Experiment.read`.
         seeds: an iterable of integers.
         controllers, threads: as in `Experiment.run`.
 

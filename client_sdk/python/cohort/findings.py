@@ -6,13 +6,13 @@ import typing
 
 @dataclasses.dataclass(frozen=True)
 class Verification:
-    """The result of a replay of a recording. True if all ticks are identical.
+    """The result of a replay of a recording. Its truth value is True if all ticks are identical.
 
     Attributes:
         ticks: number of identical ticks.
-        tick, time: the first tick that differs, and its time in the recording [s]; None if none does.
-        recorded, replayed: state hashes of that tick; None if none differs.
-        problem: why the replay ended before the recording did; empty if it did not.
+        tick, time: the first tick that differs, and its time in the recording [s]; None if no tick differs.
+        recorded, replayed: state hashes of that tick; None if no tick differs.
+        problem: reason why the replay ended before the recording; empty if it did not.
     """
 
     ticks: int
@@ -24,7 +24,7 @@ class Verification:
 
     @property
     def is_identical(self):
-        """True if the replay has the recorded state at every tick."""
+        """True if the state at every tick is identical to the recorded state."""
         return self.ticks > 0 and self.tick is None and not self.problem
 
     def __bool__(self):
@@ -44,8 +44,8 @@ class Difference(typing.NamedTuple):
     """A quantity that differs between two runs.
 
     `object` is a scoped name, empty for the world as a whole. `quantity` is `command`, `action`, `pose`, `velocity`,
-    `joint`, `contact`, `observation`, `presence` or `state`. `detail` is a part of it, such as a channel. `first` and
-    `second` are the values as text.
+    `joint`, `contact`, `observation`, `presence` or `state`. `detail` is a part of the quantity, such as a channel.
+    `first` and `second` are its values in the two runs, as strings.
     """
 
     object: str
@@ -65,10 +65,10 @@ class Comparison:
 
     Attributes:
         ticks: number of identical ticks at the beginning.
-        tick, time: the first tick that differs, and its time in the recording [s]; None if none does.
-        differences: the differences at that tick, a list of `Difference`.
-        more: number of further differences.
-        ends: a sentence if one recording ends before the other; otherwise empty.
+        tick, time: the first tick that differs, and its time in the recording [s]; None if no tick differs.
+        differences: the first differences at that tick, a list of `Difference`.
+        more: number of further differences at that tick.
+        ends: a sentence that says which recording ends before the other; empty if neither does.
     """
 
     ticks: int
@@ -80,7 +80,7 @@ class Comparison:
 
     @property
     def are_identical(self):
-        """True if both contain the same run to its end."""
+        """True if both recordings contain the same run to its end."""
         return self.tick is None and not self.ends
 
     def __str__(self):

@@ -1,8 +1,8 @@
-"""sin, exp, pow and similar functions for numbers and arrays, with the same bits on every processor.
+"""sin, exp, pow and similar functions for numbers and arrays, with bit-identical results on every processor.
 
-NumPy's functions choose their code by the processor and may differ in the last bit. These are the functions that the
-simulation and controllers in C++ use, accurate to 2 units in the last place. Angles are in radians. Arguments and
-results are float64, numbers or arrays of any shape.
+NumPy selects its implementations by the processor, so that results may differ in the last bit. The functions of this
+module are those that the simulation and C++ controllers use, accurate to 2 units in the last place. Angles are in
+radians. Arguments and results are float64: numbers, or arrays of any shape.
 """
 
 import numpy

@@ -1,4 +1,4 @@
-"""Recordings of runs as arrays and tables, and their comparison."""
+"""Recordings of runs, as arrays and tables, and comparisons of recordings."""
 
 import functools
 import os
@@ -22,10 +22,10 @@ _EVENT_COLUMNS = ("run", "time", "tick", "kind", "text", "count")
 
 
 class World(typing.NamedTuple):
-    """A world in a recording: the first one, and another one after each reset or restored snapshot.
+    """A world in a recording. A recording contains one world, and another one after each reset or restored snapshot.
 
-    `run` is its number, from 0; `reason` is `first`, `reset`, `restored` or `attached`. `tick` is its first tick.
-    `start` is its start in the time of the recording [s].
+    `run` is the number of the world, from 0. `reason` is the reason for its start: `first`, `reset`, `restored` or
+    `attached`. `tick` is its first tick. `start` is the time of its start in the recording [s].
     """
 
     run: int
@@ -43,12 +43,12 @@ class Recording:
         recording.observations.sel(channel="proximity/3/reading").mean("robot")
         recording.table("events")
 
-    Numbers are those of the file, bit for bit, in SI units. Times are simulated time [s]. The experiment defines under
-    `record` which poses and observations a recording contains. A table is read at its first use and then kept. A
-    damaged recording is read as far as possible, with a warning: see `damage`.
+    Numbers are those of the file, bit for bit, in SI units. Times are simulated time [s]. The experiment's key `record`
+    defines which poses and observations a recording contains. A table is read when it is first used, and then cached.
+    A damaged recording is read as far as possible, with a warning: see `damage`.
 
-    Raises FileNotFoundError if there is no such file, and `cohort.RecordingError`, a ValueError, if it is not a
-    recording or if nothing can be read.
+    Raises FileNotFoundError if the file does not exist, and `cohort.RecordingError`, a ValueError, if the file is not a
+    recording or nothing in it can be read.
     """
 
     def __init__(self, file):
@@ -63,29 +63,29 @@ class Recording:
 
     @property
     def facts(self):
-        """Facts about the run, a dictionary of texts: version, commit, experiment, seed, step_ns, compiler, cpu, …"""
+        """Metadata of the run, a dictionary of strings: version, commit, experiment, seed, step_ns, compiler, cpu, …"""
         return self._native.facts
 
     @property
     def end(self):
-        """How the run ended: a word such as `finished` or `interrupted`; empty if unknown."""
+        """How the run ended: a keyword such as `finished` or `interrupted`; empty if unknown."""
         return self._native.end
 
     @property
     def damage(self):
-        """A sentence about the part of the file that cannot be read; empty if there is none."""
+        """A description of the part of the file that cannot be read; empty if there is none."""
         return self._native.damage
 
     @property
     def worlds(self):
-        """The worlds of the recording in order, a list of `World` with their seeds."""
+        """The worlds of the recording in their order, a list of `World`."""
         return [
             World(run, seed, _REASONS[reason], tick, start) for run, seed, reason, tick, start in self._native.worlds
         ]
 
     @functools.cached_property
     def experiment(self):
-        """The `Experiment` of the first world, read from the files in the recording."""
+        """The `Experiment` of the first world, read from the files that the recording contains."""
         return Experiment._of(self._native.experiment(0))
 
     @property
@@ -95,13 +95,13 @@ class Recording:
 
     @property
     def duration(self):
-        """Simulated time from the first message to the last [s]; the sum over all worlds."""
+        """Simulated time from the first message to the last one, over all worlds [s]."""
         start, end = self._native.times
         return end - start
 
     @property
     def tables(self):
-        """Names of the tables, those of `cohort export-data`."""
+        """Names of the tables; they are those of `cohort export-data`."""
         if self._tables is None:
             self._tables = self._native.tables([], [])
         return sorted(self._tables)
@@ -109,7 +109,7 @@ class Recording:
     def table(self, name):
         """Returns a table as a `pandas.DataFrame`, with the rows that `cohort export-data` writes.
 
-        Its `attrs["units"]` is a dictionary of the units of its columns. Raises LookupError if there is no such table.
+        `attrs["units"]` is a dictionary of the units of the columns. Raises LookupError if there is no such table.
         """
         pandas = package("pandas", "a table")
         table = self._table(name)
@@ -121,8 +121,8 @@ class Recording:
     def poses(self):
         """Poses in the world frame, an `xarray.DataArray` (time [s], object, component: x y z [m], qw qx qy qz).
 
-        Objects are those that move; recorded poses of their links and devices are in the table `trajectories`. Missing
-        poses are NaN. The coordinate `run` is the number of the world at each time.
+        It contains the objects that can move. Recorded poses of their links and devices are in the table
+        `trajectories`. Missing poses are NaN. The coordinate `run` is the number of the world at each time.
         """
         if "trajectories" not in self.tables:
             raise RecordingError(
@@ -142,12 +142,11 @@ class Recording:
 
     @property
     def observations(self):
-        """Observations of the robots, an `xarray.DataArray` (time [s], robot, channel), with a coordinate `unit` of
-        channels.
+        """Observations of the robots, an `xarray.DataArray` (time [s], robot, channel).
 
-        Channels have the names of `Robot.observation_channels`; the values of a channel with several are `NAME/0`,
-        `NAME/1`, … Values are NaN if a robot has no such channel or was not recorded. The coordinate `run` is the
-        number of the world at each time.
+        Channels have the names of `Robot.observation_channels`; the values of a channel with several values are
+        `NAME/0`, `NAME/1`, … Values are NaN if a robot does not have the channel or was not recorded. The coordinate
+        `unit` is the unit of each channel. The coordinate `run` is the number of the world at each time.
         """
         if not any(each.startswith("observations_") for each in self.tables):
             record = "record: {observations: 10}"
@@ -158,17 +157,18 @@ class Recording:
     def commands(self):
         """Commands of the robots, an `xarray.DataArray` (time [s], robot, channel), like `observations`.
 
-        Its times are the ticks from which a new command acts. It has all channels of each robot whose command changes
-        there, and NaN for the other robots; `commands_at` fills these in.
+        Its times are those of the ticks at which a command changes. There it contains all channels of each robot whose
+        command changes, and NaN for the other robots; `commands_at` returns the commands of all robots.
         """
         return self._values("commands", 2)
 
     def commands_at(self, times=None, run=0):
-        """Returns the commands that act from given times on, like `commands`, with the last commands of each robot.
+        """Returns the commands that are in effect at given times, for all robots, like `commands`.
+
         They are NaN before a robot is added.
 
         Args:
-            times: simulated times [s], an array; all ticks by default.
+            times: simulated times [s], an array; by default those of all ticks.
             run: number of the world.
         """
         if times is None:
@@ -206,16 +206,16 @@ class Recording:
 
     @property
     def events(self):
-        """Events of the run, a `pandas.DataFrame`: run, time [s], tick, kind, text, count."""
+        """Events of the run, a `pandas.DataFrame` with the columns run, time [s], tick, kind, text and count."""
         if "events" in self.tables:
             return self.table("events")
         return package("pandas", "a table").DataFrame({name: [] for name in _EVENT_COLUMNS})
 
     def with_events(self, frame):
-        """Returns a table with the last event at or before the time of each row.
+        """Returns a table with new columns for the last event at or before the time of each row.
 
         `frame` is a `pandas.DataFrame` with a column `time` [s], and `run` if there are several worlds. The new columns
-        are `event_time` [s], `event_kind` and `event_text`, missing before the first event.
+        are `event_time` [s], `event_kind` and `event_text`. Their values are missing before the first event.
         """
         pandas = package("pandas", "a table")
         if "time" not in frame.columns:
@@ -230,7 +230,9 @@ class Recording:
         return joined.sort_values("_row").drop(columns="_row").set_axis(frame.index)
 
     def images(self, robot, sensor):
-        """Yields (time [s], image) of a robot's camera, an array uint8 [height, width, 3] of red, green and blue.
+        """Yields (time [s], image) for each recorded image of a robot's camera.
+
+        An image is an array [height, width, 3] of uint8: red, green and blue.
 
         Args:
             robot: scoped name of the robot.
@@ -262,7 +264,7 @@ class Recording:
     def verify(self, threads=1):
         """Replays the recording without controllers, compares the state of every tick, and returns a `Verification`.
 
-        Other Python threads run meanwhile. Ctrl-C ends it with KeyboardInterrupt.
+        Releases Python's global interpreter lock. Ctrl-C raises KeyboardInterrupt.
         """
         ticks, difference, problem = self._native.verify(_at_least_one(threads))
         return Verification(ticks, *(difference or (None,) * 4), problem)
@@ -270,7 +272,8 @@ class Recording:
     def simulation_at(self, time):
         """Returns a `Simulation` that continues from the first tick at or after a time of the recording [s].
 
-        It starts with the commands that acted until then. Raises ValueError if the recording ends before.
+        The simulation starts with the commands that are in effect at this tick. Raises ValueError if the recording ends
+        before `time`.
         """
         state = self._native.state_at(time)
         if state is None:
@@ -342,10 +345,10 @@ def compare(first, second, threads=1):
     """Compares two recordings tick by tick and returns a `Comparison` with the first difference.
 
     Args:
-        first, second: each a `Recording`, or its path.
-        threads: number of threads that step the worlds, which run again up to the first difference.
+        first, second: recordings, each a `Recording` or a path.
+        threads: number of threads that step the worlds, which are replayed up to the first difference.
 
-    Raises the errors of `Recording`.
+    Raises the same errors as `Recording`.
     """
     both = [each if isinstance(each, Recording) else Recording(each) for each in (first, second)]
     ticks, parting, ends = both[0]._native.compare(both[1]._native, _at_least_one(threads))

@@ -34,7 +34,7 @@ def _orientation(yaw, orientation):
 
 
 class Robot:
-    """A robot of a simulation. Its arrays show the current state."""
+    """A robot of a simulation. Its arrays contain the current state."""
 
     def __init__(self, simulation: Simulation, robot: int) -> None:
         self._simulation = simulation
@@ -48,22 +48,22 @@ class Robot:
 
     @property
     def observation(self) -> numpy.ndarray:
-        """Observation at the last tick at which the robot was due, an array [value] in SI units, read-only."""
+        """Observation at the last tick at which the robot was due: an array [value] in SI units, read-only."""
         return self._native.observations[self.id, : self.observation_channels.size]
 
     @property
     def command(self) -> numpy.ndarray:
-        """Command, an array [value] in SI units, writable."""
+        """Command of the robot: an array [value] in SI units, writable."""
         return self._native.commands[self.id, : self.command_channels.size]
 
     @property
     def pose(self) -> numpy.ndarray:
-        """Pose of its root link in the world frame, x y z [m] and quaternion w x y z; an array [7]."""
+        """Pose of its root link in the world frame, x y z [m] and a quaternion w x y z: an array [7]."""
         return self._native.object_poses[self.object]
 
     @property
     def velocity(self) -> numpy.ndarray:
-        """Velocity of the origin of its root link, expressed in the world frame [m/s, rad/s]; an array [6]."""
+        """Velocity of the origin of its root link in the world frame [m/s, rad/s]: an array [6]."""
         return self._native.object_velocities[self.object]
 
     def __repr__(self) -> str:
@@ -79,14 +79,14 @@ class Simulation:
         simulation.step(100)
         print(simulation.poses[:, :2])
 
-    Arrays are float64 in SI units. Results depend only on the experiment and the commands, for any number of threads.
-    Only one Python thread may use a simulation at a time; others get a RuntimeError. Steps run without Python's global
-    lock. A simulation cannot be used after a fork. It does not run the controllers of the experiment; `Experiment.run`
-    does.
+    Arrays are float64 in SI units. Results depend only on the experiment and the commands, not on the number of
+    threads. Only one Python thread may use a simulation at a time; calls from other threads raise RuntimeError. Steps
+    release Python's global interpreter lock. A simulation cannot be used after a fork. It does not run the controllers
+    of the experiment; use `Experiment.run` for that.
 
     Args:
-        experiment: an `Experiment`, or an argument of `Experiment.read`.
-        seed, duration: replace those of the experiment.
+        experiment: an `Experiment`, or a file for `Experiment.read`.
+        seed, duration: values that replace those of the experiment.
         threads: number of threads that step the world.
     """
 
@@ -127,60 +127,58 @@ class Simulation:
 
     @property
     def state_hash(self) -> int:
-        """Hash of the state that determines the rest of the run, a 64-bit integer; `cohort run` prints the same."""
+        """Hash of the state that determines the rest of the run: a 64-bit integer, the one that `cohort run` prints."""
         return self._native.state_hash
 
     @property
     def robots(self) -> list[Robot]:
-        """Robots, a list of `Robot` in the order of their ids."""
+        """Robots of the simulation: a list of `Robot` in the order of their ids."""
         for robot in range(len(self._robots), self._native.robot_count):
             self._robots.append(Robot(self, robot))
         return self._robots
 
     @property
     def observations(self) -> numpy.ndarray:
-        """Observations of all robots, an array [robot, value], read-only.
+        """Observations of all robots: an array [robot, value], read-only.
 
-        The array shows the current tick after each step. It stays valid until robots are added, or until `reset` or
-        `restore`. Rows of robots with fewer values end in zeros.
+        After each step, the array contains the observations of the current tick. It is valid until robots are added,
+        or until `reset` or `restore`. Rows of robots with fewer values are padded with zeros.
         """
         return self._native.observations
 
     @property
     def commands(self) -> numpy.ndarray:
-        """Commands of all robots, an array [robot, value], writable. Values act until they change."""
+        """Commands of all robots: an array [robot, value], writable. A value stays in effect until it is changed."""
         return self._native.commands
 
     @property
     def poses(self) -> numpy.ndarray:
-        """Poses of the root links of all robots in the world frame, x y z [m] and quaternion w x y z; an array [robot,
-        7].
-        """
+        """Poses of all robots' root links in the world frame, x y z [m], quaternion w x y z: an array [robot, 7]."""
         return self._native.object_poses[[each.object for each in self.robots]]
 
     @property
     def velocities(self) -> numpy.ndarray:
-        """Velocities of the root links of all robots, linear [m/s] and angular [rad/s]; an array [robot, 6]."""
+        """Velocities of all robots' root links, linear [m/s] and angular [rad/s]: an array [robot, 6]."""
         return self._native.object_velocities[[each.object for each in self.robots]]
 
     @property
     def objects(self) -> list[str]:
-        """Scoped names of all objects in the world, including robots; the order of `object_poses`."""
+        """Scoped names of all objects, including robots, in the order of `object_poses`."""
         return self._native.object_names
 
     @property
     def object_poses(self) -> numpy.ndarray:
-        """Poses of all objects in the world, like `poses`; an array [object, 7]."""
+        """Poses of all objects, like `poses`: an array [object, 7]."""
         return self._native.object_poses
 
     @property
     def object_velocities(self) -> numpy.ndarray:
-        """Velocities of all objects in the world, like `velocities`; an array [object, 6]."""
+        """Velocities of all objects, like `velocities`: an array [object, 6]."""
         return self._native.object_velocities
 
     @property
     def objects_present(self) -> numpy.ndarray:
-        """True for objects that are in the world, not removed and not yet to be added; an array [object] of bool."""
+        """True for objects that are in the world, neither removed nor still to be added: an array [object] of bool."""
         return self._native.objects_present
 
     def pose(self, name: str) -> numpy.ndarray:
@@ -188,43 +186,43 @@ class Simulation:
         return self._native.object_poses[self._native.object_called(name)]
 
     def contacts(self) -> dict[str, numpy.ndarray]:
-        """Returns the contacts of the last step, a dictionary of arrays with one row per contact point.
+        """Returns the contacts of the last step: a dictionary of arrays with one row per contact point.
 
-        `objects` [n, 2]: indices into `objects`; `position` [n, 3]: in the world frame [m]; `normal` [n, 3]: unit
-        vector from the second object to the first. `distance` [n]: negative if they overlap [m]; `impulse` [n]: along
-        the normal over the step [N s].
+        `objects` [n, 2] are indices into `Simulation.objects`. `position` [n, 3] is in the world frame [m]. `normal`
+        [n, 3] is the unit vector from the second object to the first. `distance` [n] is negative if the objects
+        overlap [m]. `impulse` [n] is the impulse along the normal over the step [N s].
         """
         return self._native.contacts()
 
     @property
     def stop_reason(self) -> str | None:
-        """The stop condition of the experiment that holds; None if none does."""
+        """The stop condition of the experiment that is met, or None."""
         return self._native.stop_reason
 
     @property
     def is_over(self) -> bool:
-        """True if a stop condition holds, or the experiment's duration has passed."""
+        """True if a stop condition is met or the experiment's duration has passed."""
         return self._native.is_over
 
     @property
     def happened(self) -> list[str]:
-        """Events at this tick, a list of sentences: invalid states, and events of the experiment."""
+        """Descriptions of the events at this tick, a list of sentences: invalid states and events of the experiment."""
         return self._native.happened
 
     def step(self, ticks: int = 1) -> None:
-        """Steps the world. `commands` act in each of the ticks.
+        """Steps the world by `ticks`, with the same `commands` in each of them.
 
-        Raises ValueError, naming robot and channel, before anything moves if a command is invalid. After Ctrl-C the
-        simulation remains at the tick that it has reached, and can continue from there.
+        Raises ValueError if a command is invalid, before the first step; the message names the robot and the channel.
+        After Ctrl-C, the simulation remains at the tick that it has reached, and can continue from there.
         """
         self._native.step(ticks, False)
 
     def run(self, until: float | None = None, each: Callable[[Simulation], object] | None = None) -> None:
-        """Steps to the end of the experiment.
+        """Steps the world to the end of the experiment.
 
         Args:
-            until: simulated time [s] to stop at, if the experiment does not end before.
-            each: called with the simulation before each step, to write commands.
+            until: simulated time [s] at which to stop, if the experiment does not end earlier.
+            each: function that is called with the simulation before each step, to write commands.
         """
         end = math.inf if until is None else until
         if until is None and self._experiment.duration == 0:
@@ -238,7 +236,7 @@ class Simulation:
                 self._native.step(1, True)
 
     def reset(self, seed: int | None = None) -> None:
-        """Restarts the run, with another seed if one is given. Reads no file."""
+        """Restarts the run, with `seed` or with the same seed. Reads no file."""
         if seed is not None:
             self._experiment = self._experiment.with_seed(seed)
         self._native.reset(self._experiment._native)
@@ -249,8 +247,9 @@ class Simulation:
         return self._native.save()
 
     def restore(self, snapshot: bytes) -> None:
-        """Continues from a snapshot of `save`. Raises `cohort.SnapshotError`, and changes nothing, if it does not
-        match.
+        """Continues from a snapshot that `save` returned.
+
+        Raises `cohort.SnapshotError` if the snapshot does not match the experiment; then nothing changes.
         """
         self._native.restore(snapshot)
         self._robots = []
@@ -269,15 +268,15 @@ class Simulation:
         """Adds a new object to the world, at rest, and returns its scoped name.
 
         Args:
-            model: name of one of the world's models, path of an SDF, URDF or YAML file, or the text of one.
-            position: of the model in the world frame [m].
-            yaw: about the vertical axis [rad].
-            orientation: quaternion w x y z, replaces `yaw`.
+            model: name of a model in the world, path of an SDF, URDF or YAML file, or the text of such a file.
+            position: position of the model in the world frame [m].
+            yaw: rotation about the vertical axis [rad].
+            orientation: quaternion w x y z, which replaces `yaw`.
             name: scoped name; the name of the model by default.
-            team: team of a robot.
-            allow_renaming: appends a number if the name is taken.
+            team: team that a robot joins.
+            allow_renaming: True to append a number if the name is taken.
 
-        Raises ValueError with the reason if it fails; then nothing has changed. So do the functions below.
+        Raises ValueError with the reason if it fails; then nothing changes. The functions below do the same.
         """
         text = ""
         if isinstance(model, os.PathLike) or (isinstance(model, str) and "<" not in model and "\n" not in model):
@@ -298,19 +297,19 @@ class Simulation:
     def set_pose(
         self, name: str, position: ArrayLike, yaw: float = 0.0, *, orientation: ArrayLike | None = None
     ) -> None:
-        """Moves an object to a pose, at rest, and keeps its joint positions. The arguments are those of `spawn`."""
+        """Moves an object to a pose and stops it; joint positions stay unchanged. Arguments are those of `spawn`."""
         self._native.set_pose(name, _vector(position, "position"), _orientation(yaw, orientation))
 
     def set_velocity(
         self, name: str, linear: ArrayLike = (0.0, 0.0, 0.0), angular: ArrayLike = (0.0, 0.0, 0.0)
     ) -> None:
-        """Sets the velocity of an object, expressed in the world frame [m/s, rad/s]."""
+        """Sets the velocity of an object in the world frame [m/s, rad/s]."""
         self._native.set_velocity(name, _vector(linear, "linear"), _vector(angular, "angular"))
 
     def set_light(
         self, name: str, on: bool = True, intensity: float | None = None, color: ArrayLike | None = None
     ) -> None:
-        """Switches a light (`object/light`), all lights of an object, or a light of the world."""
+        """Switches lights on or off: one light (`object/light`), all lights of an object, or a light of the world."""
         self._native.set_light(name, on, intensity, None if color is None else _vector(color, "color"))
 
     def apply_force(
@@ -325,8 +324,8 @@ class Simulation:
 
         Args:
             name: name of the object.
-            force, torque: [N], [N m].
-            duration: simulated time [s]; 0: one step.
+            force, torque: force [N] and torque [N m].
+            duration: duration in simulated time [s]; 0: one step.
             link: name of the link; the root link by default.
         """
         self._native.apply_force(name, link, _vector(force, "force"), _vector(torque, "torque"), duration)
@@ -334,13 +333,13 @@ class Simulation:
     def plot(self, paths: ArrayLike | None = None, *, radius: float = 0.06, axes: Axes | None = None) -> Axes:
         """Draws the world from above at the current tick, and returns the `matplotlib.axes.Axes`.
 
-        A robot is a circle with a line along its x axis. Another object is a square at its position; an object that was
-        not moved from the world's origin, such as the ground, is not drawn.
+        A robot is drawn as a circle with a line along its x axis, and any other object as a square at its position. An
+        object whose pose is the origin of the world, such as the ground, is not drawn.
 
         Args:
-            paths: an array [step, robot, 2 or more] of positions, such as copies of `poses` after some of the steps.
+            paths: positions, an array [step, robot, 2 or more], such as copies of `poses` after several steps.
             radius: radius of the circles [m].
-            axes: axes to draw on; those of a new figure by default.
+            axes: axes on which to draw; those of a new figure by default.
 
         Requires the package matplotlib. Raises ValueError if `paths` has another shape.
         """
@@ -353,16 +352,16 @@ class Simulation:
             simulation.run(until=60)
 
         Serves the page of `cohort view` at 127.0.0.1 until the view is closed or the simulation is deleted. Viewers see
-        at most 30 states a second, and the last one after each call. They cannot change anything, so the state hash is
-        the same. In Jupyter, a view at the end of a cell displays itself. A simulation has one view; while it is open,
-        this returns it again.
+        at most 30 states per second, and always the last state after each call. They cannot change the simulation, so
+        the view does not affect the state hash. In Jupyter, a view at the end of a cell displays itself. A simulation
+        has one view; while that is open, this method returns it again.
 
         Args:
-            port: port of the page; by default 8080, or any free port if that is taken. 0: any free one.
-            open: opens the page in a browser; has no effect in Jupyter.
+            port: TCP port of the page; by default 8080, or any free port if that is taken. 0: any free port.
+            open: True to open the page in a browser; has no effect in Jupyter.
 
         Raises FileNotFoundError if the page was not built, RuntimeError if the port is taken, and ValueError if the
-        simulation has a view at another port.
+        simulation has an open view at another port.
         """
         if self._view is None or self._view.closed:
             self._view = View(self._native, str(self._experiment.name), port)

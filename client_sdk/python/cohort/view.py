@@ -1,4 +1,4 @@
-"""A simulation in a browser."""
+"""Views of simulations in a browser."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ def _is_in_jupyter():
 
 
 class View:
-    """A web server in this process that shows a simulation; returned by `Simulation.view`.
+    """A web server in this process that shows a simulation in a browser; returned by `Simulation.view`.
 
-    It ends with `close`, at the end of a `with` block, or when neither the view nor the simulation is used any more.
+    It ends with `close`, at the end of a `with` block, or when neither the view nor the simulation is referenced.
     """
 
     def __init__(self, simulation, name: str, port: int | None) -> None:
@@ -38,7 +38,7 @@ class View:
         return self._native.is_closed
 
     def close(self) -> None:
-        """Ends the view and frees its port. Open pages keep their last picture."""
+        """Ends the view and frees its port. Open pages keep their last image."""
         self._native.close()
 
     def open(self) -> None:

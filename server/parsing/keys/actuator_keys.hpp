@@ -16,20 +16,20 @@ using enum Written;
 template <>
 inline constexpr auto table_of<TreelDrive> = KeyTable{
     actuator("treel_drive", "Two tracks that share one rigid body, as on the s-bot."),
-    reference("link", &TreelDrive::link, root_link, "", "link to which the tracks belong; it must be the root link"),
+    reference("link", &TreelDrive::link, root_link, "", "link that carries the tracks; it must be the root link"),
     key("half_gauge", &TreelDrive::half_gauge, positive, "m", "",
-        "distance of the ground points from the x axis of the link, which is half the track gauge"),
+        "distance of the contact points from the x axis of the link, which is half the track gauge"),
     key("half_contact_length", &TreelDrive::half_contact_length, positive, "m", "",
-        "distance of the ground points from the y axis of the link"),
+        "distance of the contact points from the y axis of the link"),
     key("ground_height", &TreelDrive::ground_height, real, "m", "",
-        "z coordinate of the ground points in the link frame"),
+        "z coordinate of the contact points in the link frame"),
     key("wheel_radius", &TreelDrive::wheel_radius, positive, "m", "",
-        "wheel radius, which converts motor torque to traction"),
-    key("max_torque", &TreelDrive::max_torque, positive, "N m", "", "maximum torque of the motor of each side"),
+        "wheel radius; traction is motor torque / wheel radius"),
+    key("max_torque", &TreelDrive::max_torque, positive, "N m", "", "maximum torque of the motor on each side"),
     key("max_velocity", &TreelDrive::max_velocity, positive, "m/s", "",
         "maximum velocity of each track along the ground"),
     key("friction", &TreelDrive::friction, non_negative, "1", "",
-        "Coulomb friction coefficient of the tracks; a contact uses the smaller coefficient of its two surfaces"),
+        "Coulomb friction coefficient of the tracks; each contact uses the smaller coefficient of the two surfaces"),
     reference("left_wheel", &TreelDrive::left_wheels, wheel_joint, no_value,
               "joint of a wheel that the left track replaces; may be repeated"),
     reference("right_wheel", &TreelDrive::right_wheels, wheel_joint, no_value,
@@ -57,7 +57,7 @@ inline constexpr auto table_of<PositionMotor> =
 
 template <>
 inline constexpr auto table_of<EffortMotor> = KeyTable{
-    actuator("effort_motor", "A motor that applies a torque or a force to one joint."),
+    actuator("effort_motor", "A motor that applies the commanded torque or force to one joint."),
     reference("joint", &EffortMotor::joint, driven_joint, "", "driven joint; a joint can have at most one motor"),
     key("max_effort", &EffortMotor::max_effort, positive, "N m or N", "", "maximum torque or force"),
     key("rotor_inertia", &EffortMotor::rotor_inertia, non_negative, "kg m^2 or kg", "0",
@@ -88,7 +88,7 @@ constexpr auto max_torque_key = key("max_torque", &Drive::max_torque, positive, 
 template <>
 inline constexpr auto table_of<DifferentialDrive> = KeyTable{
     actuator("differential_drive",
-             "A drive with a motor on each wheel; the difference between the sides turns the vehicle."),
+             "A drive with a motor on each wheel; the speed difference between the two sides turns the vehicle."),
     left_joint_key<DifferentialDrive>,
     right_joint_key<DifferentialDrive>,
     wheel_separation_key<DifferentialDrive>,
@@ -111,11 +111,11 @@ inline constexpr auto table_of<AckermannDrive> = KeyTable{
     wheel_radius_key<AckermannDrive>,
     max_torque_key<AckermannDrive>,
     key("wheel_base", &AckermannDrive::wheel_base, positive, "m", "",
-        "distance from the rear axle, which does not steer, to the steered wheels"),
+        "distance from the unsteered rear axle to the steered wheels"),
     key("kingpin_width", &AckermannDrive::kingpin_width, positive, "m", "",
         "distance between the axes of the steering joints"),
     key("steering_limit", &AckermannDrive::steering_limit, positive, "rad", "",
-        "maximum steering angle of a virtual wheel midway between the two, less than a quarter turn"),
+        "maximum steering angle of a virtual wheel midway between the two steered wheels, less than π / 2"),
     max_linear_key<AckermannDrive>,
     max_angular_key<AckermannDrive>,
     key("max_steering_velocity", &AckermannDrive::max_steering_velocity, positive, "rad/s", "",
@@ -129,15 +129,16 @@ inline constexpr auto table_of<Belt> = KeyTable{
     actuator("belt", "A moving surface around a link: a conveyor, or the track of a vehicle."),
     reference("link", &Belt::link, belt_link, "", "link whose surface moves; a link can have at most one belt"),
     key("axis", &Belt::axis_L, vector, "1", "0 1 0",
-        "axis in the link frame about which the surface moves, like that of a wheel; if the axis points to the left, "
-        "the top moves forward"),
+        "axis in the link frame about which the surface moves, like the axle of a wheel; if it points to the left, the "
+        "top surface moves forward"),
     key("max_velocity", &Belt::max_velocity, positive, "m/s", "", "maximum velocity, in both directions"),
-    key("velocity", &Belt::velocity, real, "m/s", "0", "velocity without a command", unless_default),
+    key("velocity", &Belt::velocity, real, "m/s", "0", "velocity while no command is set", unless_default),
 };
 
 template <>
 inline constexpr auto table_of<TrackedDrive> = KeyTable{
-    actuator("tracked_drive", "A drive with belts on both sides; the difference between the sides turns the vehicle."),
+    actuator("tracked_drive",
+             "A drive with a belt on each side; the speed difference between the two sides turns the vehicle."),
     reference("left_link", &TrackedDrive::left_links, belt_link, no_value,
               "link on the left whose surface moves about its y axis; may be repeated"),
     reference("right_link", &TrackedDrive::right_links, belt_link, no_value,
@@ -145,7 +146,8 @@ inline constexpr auto table_of<TrackedDrive> = KeyTable{
     key("track_separation", &TrackedDrive::track_separation, positive, "m", "",
         "distance between the centre lines of the left and the right tracks"),
     key("steering_efficiency", &TrackedDrive::steering_efficiency, positive, "1", "1",
-        "fraction of the velocity difference between the tracks that turns the vehicle, at most 1; the rest is slip"),
+        "fraction of the velocity difference between the tracks that turns the vehicle, at most 1; the remainder is "
+        "lost to slip"),
     key("max_velocity", &TrackedDrive::max_velocity, positive, "m/s", no_value,
         "maximum velocity of each track, to which commands are clipped; no limit if absent"),
     max_linear_key<TrackedDrive>,
@@ -160,7 +162,8 @@ inline constexpr auto table_of<DetachableJoint> = KeyTable{
     key("child_link", &DetachableJoint::child_link, object, "", no_value,
         "link of the attached object; its root link if absent"),
     key("may_be_missing", &DetachableJoint::may_be_missing, flag, "", "false",
-        "accept a world without this object: then nothing is attached, and there is no warning", unless_default),
+        "`true` if the object may be missing from the world; nothing is then attached, without a warning",
+        unless_default),
 };
 
 /// In the order of Rotor::Direction.
@@ -172,10 +175,10 @@ inline constexpr auto table_of<Rotor> = KeyTable{
     link_key(&Rotor::link, "link on which thrust and reaction torque act"),
     pose_key(&Rotor::X_LR, "pose in the link frame; at a positive velocity, the thrust acts along the z axis"),
     choice_key("direction", &Rotor::direction, rotor_directions, "ccw",
-               "direction of rotation at a positive velocity, seen from the positive z axis: `ccw` or `cw`"),
+               "direction of rotation at a positive velocity, viewed from +z towards the rotor: `ccw` or `cw`"),
     key("max_velocity", &Rotor::max_velocity, positive, "rad/s", "", "maximum velocity"),
     key("min_velocity", &Rotor::min_velocity, real, "rad/s", "0",
-        "minimum velocity, at most 0; a negative value makes the rotor reversible"),
+        "minimum velocity, at most 0; a rotor with a negative minimum is reversible"),
     key("motor_constant", &Rotor::motor_constant, positive, "N s^2/rad^2", "", "ratio of thrust to squared velocity"),
     key("moment_constant", &Rotor::moment_constant, non_negative, "m", "0", "ratio of reaction torque to thrust"),
     key("drag_coefficient", &Rotor::drag_coefficient, non_negative, "N s^2/(rad m)", "0",
@@ -187,15 +190,15 @@ inline constexpr auto table_of<Rotor> = KeyTable{
     key("time_constant_down", &Rotor::time_constant_down, non_negative, "s", "0",
         "time constant of the motor while its velocity decreases; 0 for no delay"),
     key("density", &Rotor::density, positive, "kg/m^3", no_value,
-        "density of the fluid for which the coefficients hold, which scale with density in other fluids; the same in "
-        "every fluid if absent"),
+        "density of the fluid in which the coefficients were determined, to scale them in other fluids; if absent, "
+        "they are the same in every fluid"),
 };
 
 template <>
 inline constexpr auto table_of<LedRing> = KeyTable{
-    actuator("led_ring", "A ring of LEDs of any colour around a link."),
+    actuator("led_ring", "A ring of colour LEDs around a link."),
     link_key(&LedRing::link, "link that carries the device"),
-    pose_key(&LedRing::X_LS, "pose of the ring in the link frame; the LEDs lie in its xy plane"),
+    pose_key(&LedRing::X_LS, "pose of the ring in the link frame; the LEDs are in its xy plane"),
     key("count", &LedRing::count, count, "1", "", "number of LEDs, which are numbered counter-clockwise"),
     key("first_bearing", &LedRing::first_bearing, real, "rad", "0",
         "bearing of LED 0, measured from the x axis of the ring"),
@@ -203,7 +206,7 @@ inline constexpr auto table_of<LedRing> = KeyTable{
     key("ring_radius", &LedRing::ring_radius, non_negative, "m", "",
         "distance of the LEDs from the centre of the ring"),
     key("intensity", &LedRing::intensity, non_negative, "1", "0",
-        "intensity of a white LED at 1 m, for light sensors; with 0, only cameras see the LEDs"),
+        "intensity of a white LED at 1 m, for light sensors; with 0, only cameras detect the LEDs"),
 };
 
 template <>

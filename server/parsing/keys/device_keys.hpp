@@ -21,7 +21,7 @@ using enum Written;
 
 template <>
 inline constexpr auto table_of<JointEncoder> = KeyTable{
-    sensor("joint_encoder", "A sensor that measures position and velocity of one joint."),
+    sensor("joint_encoder", "A sensor that measures the position and velocity of one joint."),
     reference("joint", &JointEncoder::joint, moving_joint, "", "measured joint"),
 };
 
@@ -55,14 +55,15 @@ inline constexpr auto table_of<ProximityRing> = KeyTable{
         "full opening angle of a sensor, less than half a turn; used by `random_ray`, `five_rays` and `shadow`")
         .only_if(&is_not_of_rays),
     reference("samples", &ProximityRing::samples, samples, no_value,
-              "sample file for the technique `samples`, with a reading for each sensor"),
+              "sample file for the technique `samples`, with readings for each sensor"),
 };
 
 template <>
 inline constexpr auto table_of<GroundSensors> = KeyTable{
     sensor("ground_sensors", "Infrared sensors that point down."),
     link_key(&GroundSensors::link, "link that carries the sensors; the rays point along its -z axis"),
-    key("place", &GroundSensors::places_L, vector, "m", "", "origin of a ray in the link frame; may be repeated"),
+    key("place", &GroundSensors::places_L, vector, "m", "",
+        "origin of the ray of one sensor in the link frame; may be repeated"),
     key("range", &GroundSensors::range, positive, "m", "", "length of the rays"),
 };
 
@@ -77,7 +78,7 @@ inline constexpr auto table_of<LightSensors> = KeyTable{
     key("spacing", &LightSensors::spacing, real, "rad", "", "angle between neighbouring sensors"),
     key("gain", &LightSensors::gain, positive, "1", "1", "gain applied to the summed intensity before the sigmoid"),
     reference("samples", &LightSensors::samples, samples, no_value,
-              "sample file with the readings of each sensor for a lamp of intensity 1 at 1 m"),
+              "sample file with the readings of each sensor for a lamp with intensity 1 at 1 m"),
 };
 
 template <>
@@ -90,7 +91,7 @@ inline constexpr auto table_of<Microphones> = KeyTable{
         "minimum and maximum frequency of a band; may be repeated"),
     key("gain", &Microphones::gain, positive, "1", "1", "gain applied to the summed intensity before the sigmoid"),
     reference("samples", &Microphones::samples, samples, no_value,
-              "sample file with the readings of each microphone for a sound of intensity 1 at 1 m"),
+              "sample file with the readings of each microphone for a sound with intensity 1 at 1 m"),
 };
 
 template <>
@@ -110,11 +111,13 @@ inline constexpr auto table_of<Inclinometer> = KeyTable{
 template <>
 inline constexpr auto table_of<RangeAndBearing> = KeyTable{
     sensor("range_and_bearing",
-           "A device that sends messages to nearby robots, which measure the range and bearing of the sender."),
+           "A transceiver for messages between nearby robots; the receiver also measures the range and bearing of the "
+           "sender."),
     link_key(&RangeAndBearing::link, "link that carries the device"),
     pose_key(&RangeAndBearing::X_LS,
              "pose in the link frame; bearings are measured from its x axis, elevations from its xy plane"),
-    key("range", &RangeAndBearing::range, positive, "m", "", "maximum range of its messages"),
+    key("range", &RangeAndBearing::range, positive, "m", "",
+        "maximum range at which other robots receive its messages"),
     key("message_size", &RangeAndBearing::message_size, count, "1", "", "number of values in a message"),
     key("capacity", &RangeAndBearing::capacity, count, "1", "16", "maximum number of messages in a report"),
     noise_key("range_noise", &RangeAndBearing::readout, {"range"}, "m",
@@ -129,7 +132,7 @@ inline constexpr auto table_of<OmnidirectionalCamera> = KeyTable{
     link_key(&OmnidirectionalCamera::link, "link that carries the device"),
     pose_key(&OmnidirectionalCamera::X_LS,
              "pose in the link frame; bearings are measured from its x axis, elevations from its xy plane"),
-    key("range", &OmnidirectionalCamera::range, positive, "m", "", "maximum distance at which spots are seen"),
+    key("range", &OmnidirectionalCamera::range, positive, "m", "", "maximum distance at which spots are detected"),
     key("min_elevation", &OmnidirectionalCamera::min_elevation, real, "rad", "-1.5707963267948966",
         "minimum elevation of the field of view"),
     key("max_elevation", &OmnidirectionalCamera::max_elevation, real, "rad", "1.5707963267948966",
@@ -145,8 +148,9 @@ template <>
 inline constexpr auto table_of<PanoramicCamera> = KeyTable{
     sensor("panorama", "A panoramic camera that produces an image."),
     link_key(&PanoramicCamera::link, "link that carries the device"),
-    pose_key(&PanoramicCamera::X_LS,
-             "pose in the link frame; columns start at its x axis, elevations are measured from its xy plane"),
+    pose_key(
+        &PanoramicCamera::X_LS,
+        "pose in the link frame; the first column is at its x axis, and elevations are measured from its xy plane"),
     key("width", &PanoramicCamera::width, count, "1", "",
         "number of columns, evenly spaced over the full turn; at least 4"),
     key("height", &PanoramicCamera::height, count, "1", "", "number of rows, evenly spaced between the two elevations"),
@@ -155,14 +159,14 @@ inline constexpr auto table_of<PanoramicCamera> = KeyTable{
     key("max_elevation", &PanoramicCamera::max_elevation, real, "rad", "0.7853981633974483",
         "elevation of the upper edge of the image"),
     key("range", &PanoramicCamera::range, positive, "m", no_value,
-        "maximum distance at which things are seen; unlimited if absent"),
+        "maximum distance at which surfaces and spots are visible; unlimited if absent"),
     key("sky", &PanoramicCamera::sky, vector, "1", "0.6 0.75 0.95",
-        "colour of pixels where nothing is seen: red, green and blue, from 0 to 1"),
+        "colour of pixels whose ray hits nothing: red, green and blue, from 0 to 1"),
 };
 
 template <>
 inline constexpr auto table_of<ClimateSensor> = KeyTable{
-    sensor("climate_sensor", "A sensor that measures temperature and humidity of the air."),
+    sensor("climate_sensor", "A sensor that measures the temperature and humidity of the air."),
     link_key(&ClimateSensor::link, "link that carries the device"),
     key("place", &ClimateSensor::p_LS, vector, "m", "0 0 0", "position in the link frame"),
     noise_key("temperature_noise", &ClimateSensor::readout, {"temperature"}, "K",
@@ -173,12 +177,13 @@ inline constexpr auto table_of<ClimateSensor> = KeyTable{
 
 template <>
 inline constexpr auto table_of<Battery> = KeyTable{
-    sensor("battery", "A battery that powers the robot; the robot stops when the battery is empty."),
+    sensor("battery", "A battery that powers the robot; when it is empty, all commands become neutral."),
     key("capacity", &Battery::capacity, positive, "J", "", "energy of the full battery"),
     key("charge", &Battery::charge, fraction, "1", "1", "initial charge as a fraction of the capacity"),
-    key("idle_power", &Battery::idle_power, non_negative, "W", "0", "power consumption of everything except motors"),
+    key("idle_power", &Battery::idle_power, non_negative, "W", "0",
+        "power consumption of everything except the motors"),
     key("motor_efficiency", &Battery::motor_efficiency, positive, "1", "1",
-        "ratio of mechanical power to electrical power of the motors; at most 1"),
+        "ratio of mechanical output power to electrical input power of the motors; at most 1"),
 };
 
 /// In the order of Gripper::LightBarrier.
@@ -190,56 +195,59 @@ inline constexpr auto table_of<Gripper> = KeyTable{
     link_key(&Gripper::link, "link that carries the device"),
     pose_key(&Gripper::X_LG, "pose of the jaw in the link frame; x points outwards, and the jaw opens along y"),
     key("depth", &Gripper::depth, positive, "m", "",
-        "maximum distance from the origin of the jaw at which an object can be grasped"),
+        "maximum distance from the origin of the jaw, in its xy plane, at which an object can be grasped"),
     key("half_angle", &Gripper::half_angle, positive, "rad", "",
-        "maximum angle from the x axis, to either side, at which an object can be grasped"),
+        "maximum angle from the x axis of the jaw, to either side, at which an object can be grasped"),
     key("height", &Gripper::height, positive, "m", "",
-        "maximum distance above or below the xy plane at which an object can be grasped"),
+        "maximum distance above or below the xy plane of the jaw at which an object can be grasped"),
     key("closing_time", &Gripper::closing_time, positive, "s", "0.5", "time to close fully"),
     key("holding_force", &Gripper::holding_force, positive, "N", "60",
-        "maximum holding force along each axis; above it, the grip slips"),
+        "maximum holding force along each axis; the grip slips under a greater load"),
     key("holding_torque", &Gripper::holding_torque, positive, "N m", "3",
-        "maximum holding torque about each axis; above it, the grip slips"),
+        "maximum holding torque about each axis; the grip slips under a greater load"),
     key("breaking_force", &Gripper::breaking_force, positive, "N", no_value,
         "force above which the gripper releases the object; never if absent"),
     key("breaking_torque", &Gripper::breaking_torque, positive, "N m", no_value,
         "torque above which the gripper releases the object; never if absent"),
     choice_key("light_barrier", &Gripper::light_barrier, light_barriers, "simple",
-               "what the light barrier detects: an object that can be grasped (`simple`), or anything on a ray between "
-               "the sides (`beam`)"),
+               "what sets the observation `grippable`: an object that can be grasped (`simple`), or anything in a beam "
+               "between the sides of the jaw (`beam`)"),
     key("jaw_width", &Gripper::jaw_width, positive, "m", "0.03",
-        "length of the beam, which crosses the jaw at half the depth"),
+        "length of the beam (`light_barrier`), which crosses the jaw at half the depth"),
 };
 
 template <>
 inline constexpr auto table_of<TorqueSensor> = KeyTable{
-    sensor("torque_sensor", "A sensor that measures the torque or force of the motor of a joint."),
-    reference("joint", &TorqueSensor::joint, moving_joint, "", "joint whose motor is measured"),
+    sensor("torque_sensor", "A sensor that measures the motor torque or force of a joint."),
+    reference("joint", &TorqueSensor::joint, moving_joint, "", "joint whose motor torque or force is measured"),
 };
 
 template <>
 inline constexpr auto table_of<TractionSensor> = KeyTable{
-    sensor("traction_sensor",
-           "A sensor that measures the force between two links, in the xy plane of the parent link."),
+    sensor("traction_sensor", "A sensor that measures the force between two links in the xy plane of the parent link."),
     reference("joint", &TractionSensor::joint, joint, "", "joint between the two links"),
 };
 
 template <>
 inline constexpr auto table_of<UserAction> = KeyTable{
-    actuator("action", "An action of a robot that no joint represents."),
+    actuator("action", "An action of a robot that involves no joint, such as pressing a button."),
 };
 
 template <>
 inline constexpr auto table_of<GripRing> = KeyTable{
-    Extension{"grip_ring", "link", true, "A circle that grippers can grasp.", {}, "actuators"},
-    pose_key(&GripRing::X_LR, "pose of the circle in the link frame; the circle lies in its xy plane"),
-    key("radius", &GripRing::radius, positive, "m", "", "radius of the circle"),
+    Extension{"grip_ring", "link", true, "A ring that grippers can grasp.", {}, "actuators"},
+    pose_key(&GripRing::X_LR, "pose of the ring in the link frame; the ring is in its xy plane"),
+    key("radius", &GripRing::radius, positive, "m", "", "radius of the ring"),
 };
 
 template <>
 inline constexpr auto table_of<Fin> = KeyTable{
-    Extension{
-        "fin", "link", true, "A surface that generates lift and drag: a wing, rudder, sail or keel.", {}, "physics"},
+    Extension{"fin",
+              "link",
+              true,
+              "A surface that generates lift and drag, such as a wing, rudder, sail or keel.",
+              {},
+              "physics"},
     pose_key(&Fin::X_LF, "pose of the centre of pressure in the link frame; x points forward along the chord, z up"),
     key("area", &Fin::area, positive, "m^2", "", "area of the surface"),
     key("alpha0", &Fin::alpha0, real, "rad", "0", "offset added to the angle of attack"),
@@ -254,7 +262,8 @@ inline constexpr auto table_of<Fin> = KeyTable{
 template <>
 inline constexpr auto table_of<Drag> = KeyTable{
     Extension{"drag", "link", true, "Drag on a link that moves through air or water.", {}, "physics"},
-    pose_key(&Drag::X_LD, "pose in the link frame: the point at which the force acts, and the axes"),
+    pose_key(&Drag::X_LD,
+             "pose in the link frame: the point at which the force acts, and the axes of the coefficients"),
     key("damping", &Drag::damping, vector, "N s/m", "0 0 0", "linear drag along each axis: force per unit of velocity"),
     key("quadratic_damping", &Drag::quadratic_damping, vector, "N s^2/m^2", "0 0 0",
         "quadratic drag along each axis: force per unit of squared velocity"),
@@ -263,8 +272,8 @@ inline constexpr auto table_of<Drag> = KeyTable{
     key("quadratic_angular_damping", &Drag::quadratic_angular_damping, vector, "N m s^2/rad^2", "0 0 0",
         "quadratic angular drag about each axis: torque per unit of squared angular velocity"),
     key("density", &Drag::density, positive, "kg/m^3", no_value,
-        "density of the fluid for which the coefficients hold, which scale with density in other fluids; the same in "
-        "every fluid if absent"),
+        "density of the fluid in which the coefficients were determined, to scale them in other fluids; if absent, "
+        "they are the same in every fluid"),
 };
 
 template <>
@@ -275,13 +284,13 @@ inline constexpr auto table_of<Sound> = KeyTable{
     key("intensity", &Sound::intensity, positive, "1", "",
         "intensity at 1 m; it decreases with the square of the distance"),
     key("range", &Sound::range, positive, "m", no_value,
-        "maximum distance at which the sound is heard; unlimited if absent"),
+        "maximum distance at which microphones detect the sound; unlimited if absent"),
     key("on", &Emitter::is_on, flag, "", "true", "initial state: `true` if the sound is on"),
 };
 
 template <>
 inline constexpr auto table_of<Marker> = KeyTable{
-    emitter("marker", "A coloured spot that cameras see."),
+    emitter("marker", "A coloured spot that cameras detect."),
     pose_key(&Emitter::X_LE, "pose in the link frame"),
     key("color", &Marker::color, vector, "1", "", "red, green and blue, from 0 to 1"),
     key("on", &Emitter::is_on, flag, "", "true", "initial state: `true` if the marker is visible"),
@@ -294,8 +303,8 @@ inline constexpr auto table_of<ClimateSource> = KeyTable{
     key("temperature", &ClimateSource::temperature, real, "K", "0", "temperature added at the centre"),
     key("humidity", &ClimateSource::humidity, real, "1", "0", "relative humidity added at the centre"),
     key("spread", &ClimateSource::spread, positive, "m", "",
-        "standard deviation of the Gaussian decay: at a distance d, the source adds exp(-d^2 / (2 spread^2)) of its "
-        "central value"),
+        "standard deviation of the Gaussian decay: at a distance d from the centre, the source adds exp(-d^2 / (2 "
+        "spread^2)) times its central value"),
     key("on", &Emitter::is_on, flag, "", "true", "initial state: `true` if the source is on"),
 };
 
@@ -307,11 +316,11 @@ inline constexpr auto readout_keys = std::tuple{
         "maximum magnitude of the uniform noise on each reading", unless_default),
     key("bias", &Noise::bias, real, "of the reading", "0", "offset added to each reading", unless_default),
     key("bias_noise", &Noise::bias_deviation, non_negative, "of the reading", "0",
-        "standard deviation of a bias that is drawn for each reading once per run", unless_default),
+        "standard deviation of a random bias, drawn once per run for each reading", unless_default),
     key("precision", &Noise::precision, non_negative, "of the reading", "0",
-        "resolution: readings are rounded to multiples of it; 0 for no rounding", unless_default),
+        "resolution, to multiples of which readings are rounded; 0 for no rounding", unless_default),
     key("drop_out", &Readout::drop_out, fraction, "1", "0",
-        "probability that a report is lost; the previous report then remains valid", unless_default),
+        "probability that a report is lost; the previous report is then repeated", unless_default),
     key("rate", &Readout::period, positive, "Hz", no_value,
         "measurement rate, rounded to whole ticks; every tick if absent"),
     key("latency", &Readout::latency, non_negative, "s", "0", "time from measurement to report, rounded to whole ticks",

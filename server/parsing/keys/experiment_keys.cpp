@@ -15,18 +15,20 @@ using enum ExtensionValue;
 constexpr ExtensionKey experiment[] = {
     {"world", uri, "", "", "path of the world file, relative to this file"},
     {"duration", positive, "s", "", "maximum simulated time of the run"},
-    {"seed", whole, "", "1", "seed of placement and noise: a whole number of at most 64 bits"},
+    {"seed", whole, "", "1",
+     "seed of all random numbers, such as those of placement and noise: a whole number of at most 64 bits"},
     {"step", positive, "s", "the world's", "simulated time of a tick"},
     {"threads", count, "1", "number of cores", "number of threads that step the world; results do not depend on it"},
     {"physics", group, "", "the world's",
-     "map with keys of [`<cohort:physics>`](physics.md#cohortphysics-in-world), each of which overrides that of the world"},
+     "map with keys of [`<cohort:physics>`](physics.md#cohortphysics-in-world), which override those of the world"},
     {"teams", group, "", "", "list of teams; every robot of the world must be in exactly one team"},
     {"events", group, "", no_value, "list of events, each at a given time or when a robot performs an action"},
     {"stop", group, "", no_value, "list of conditions; the run ends when one of them is met"},
     {"print", group, "", no_value, "list of quantities that `cohort run` prints"},
     {"history", group, "", no_value, "objects whose most recent poses are kept"},
-    {"record", group, "", "defaults", "contents of a recording, if there is one"},
-    {"ros2", group, "", "defaults", "ROS 2 interface of the robots; used by bridges, ignored by the server"},
+    {"record", group, "", "defaults", "contents of a recording, if the run is recorded"},
+    {"ros2", group, "", "defaults",
+     "ROS 2 interface of the robots; used by `cohort-ros2-bridge`, ignored by the server"},
 };
 
 constexpr std::string_view modes[] = {"lockstep", "free"};
@@ -42,18 +44,20 @@ constexpr ExtensionKey team[] = {
     {"period", count, "ticks", "1", "number of ticks from one observation to the next"},
     {"phase", whole, "ticks", "0", "tick of the first observation; less than the period"},
     {"delay", whole, "ticks", "0",
-     "number of ticks by which commands are delayed: the answer to tick k acts at tick k + delay"},
+     "number of ticks by which commands are delayed: the command for tick k takes effect at tick k + delay"},
     {"mode", choice, "", "lockstep",
-     "whether the run can wait for answers (`lockstep`) or never waits (`free`, for hardware and people); see below",
+     "`lockstep` if the run can wait for commands, or `free` if it never waits, for hardware and human operators; see "
+     "below",
      false, modes},
     {"on_late", choice, "", "wait",
-     "response to a late answer: `wait`, `hold`, `zero`, `detach` or `stop`; default `hold` with `mode: free`", false,
+     "response to a late command: `wait`, `hold`, `zero`, `detach` or `stop`; default `hold` with `mode: free`", false,
      late_policies},
     {"deadline", positive, "s", no_value,
-     "wall time to wait for an answer (with `mode: free`, since the last one); required unless `on_late` is `wait`, "
-     "which does not allow it"},
+     "wall time to wait for a command (with `mode: free`, since the last command); required unless `on_late` is "
+     "`wait`, which does not allow it"},
     {"required", flag, "", "true",
-     "`true` if the run waits for a controller to attach, also after one is lost; default `false` with `mode: free`"},
+     "`true` if the run waits for a controller to attach, at the start and after one is lost; default `false` with "
+     "`mode: free`"},
     {"on_lost", choice, "", "go_on",
      "response when a new process replaces a lost controller: continue without its state (`go_on`), or return to the "
      "last snapshot, with the results of an undisturbed run (`rewind`, with `--keep-snapshots`)",
@@ -74,9 +78,9 @@ constexpr ExtensionKey spawn[] = {
     {"name", name, "", "", "prefix of the names: `team/late` gives `team/late_1`, `team/late_2` …"},
     {"pose", pose, "m, rad", "0 0 0 0 0 0", "pose in the world frame"},
     {"area", point, "m", "0 0",
-     "size of a rectangle centred on the pose, in which x and y of each object are drawn with the seed"},
+     "size of a rectangle centred on the pose; the x and y of each object are drawn at random in it"},
     {"team", name, "", no_value, "team of the new robots; required if there are several teams"},
-    {"every", positive, "s", no_value, "interval of repetition, for an event with `at`; no repetition if absent"},
+    {"every", positive, "s", no_value, "repetition interval of an event with `at`; no repetition if absent"},
     {"most", count, "1", "100", "maximum number of objects that the event creates in a run"},
 };
 constexpr ExtensionKey objects_only[] = {
@@ -101,8 +105,8 @@ constexpr ExtensionKey apply_force[] = {
 
 constexpr ExtensionKey set_emitter[] = {
     {"objects", name, "", "", "name or list of names of objects; `*` matches any characters", true},
-    {"emitter", name, "", "*", "name or list of names of emitters of these objects; `*` matches any characters", true},
-    {"on", flag, "", no_value, "`true` switches the emitter on, `false` off"},
+    {"emitter", name, "", "*", "name or list of names of these objects' emitters; `*` matches any characters", true},
+    {"on", flag, "", no_value, "`true` switches the emitter on, `false` switches it off"},
     {"intensity", non_negative, "1", no_value, "intensity of a light or a sound at 1 m"},
     {"frequency", positive, "Hz", no_value, "frequency of a sound"},
     {"color", vector, "1", no_value, "colour of a light or a marker: red, green and blue, from 0 to 1"},
@@ -122,9 +126,8 @@ constexpr ExtensionKey inside[] = {
 };
 constexpr ExtensionKey beyond[] = {
     {"objects", name, "", "", "name or list of names of objects; `*` matches any characters", true},
-    {"point", point, "m", "", "point on the line"},
-    {"direction", point, "1", "",
-     "direction perpendicular to the line; objects on this side of it are beyond the line"},
+    {"point", point, "m", "", "any point on the line"},
+    {"direction", point, "1", "", "direction perpendicular to the line; it points to the side that is beyond the line"},
     {"for", non_negative, "s", "0", "time for which the condition must hold"},
 };
 constexpr ExtensionKey at_rest[] = {
@@ -151,57 +154,62 @@ constexpr ExtensionKey print[] = {
 
 constexpr ExtensionKey history[] = {
     {"objects", name, "", "*", "name or list of names of objects; `*` matches any characters", true},
-    {"length", count, "1", "", "number of most recent poses that are kept of each object"},
+    {"length", count, "1", "", "number of most recent poses kept for each object"},
     {"every", positive, "s", no_value, "interval of simulated time, rounded to whole ticks; one tick if absent"},
 };
 
 constexpr ExtensionKey record[] = {
-    {"poses", non_negative, "Hz", "10", "rate of the poses of everything that moves; 0 for none"},
-    {"joints", non_negative, "Hz", "0", "rate of the states of all joints and the poses of all links; 0 for none"},
+    {"poses", non_negative, "Hz", "10",
+     "rate at which the poses of all objects that can move are recorded; 0 for none"},
+    {"joints", non_negative, "Hz", "0",
+     "rate at which the states of all joints and the poses of all links are recorded; 0 for none"},
     {"observations", non_negative, "Hz", "0",
-     "maximum rate of the observations of robots, never more than their controllers receive; 0 for none"},
+     "maximum rate at which robots' observations are recorded, limited by the rate at which their controllers receive "
+     "them; 0 for none"},
     {"robots", name, "", "all", "robots whose observations are recorded: a selector or a list of selectors", true},
     {"snapshots", non_negative, "s", "30", "interval between snapshots of the world; 0 for none"},
 };
 
 constexpr ExtensionKey ros2[] = {
-    {"domain", whole, "", no_value, "ROS domain, from 0 to 232; `ROS_DOMAIN_ID` if absent, or 0 without that variable"},
+    {"domain", whole, "", no_value,
+     "ROS domain, from 0 to 232; if absent, the environment variable `ROS_DOMAIN_ID`, or 0 if that is not set"},
     {"robots", name, "", "all", "robots that are visible in ROS: a selector or a list of selectors", true},
     {"teams", group, "", no_value,
-     "map from names of teams to maps with the keys from `sync` on, each of which overrides the one for all robots"},
+     "map from names of teams to maps with the keys from `sync` on, which override the keys for all robots"},
     {"sync", choice, "", "free",
-     "when a frame is answered: immediately, with the newest command (`free`), after a command for it has arrived "
-     "(`command`), or once the nodes wait for the next clock time (`idle`)",
+     "when the bridge answers observations: immediately, with the newest command (`free`), after a command for their "
+     "tick (`command`), or once all nodes wait for the next clock time (`idle`)",
      false, ros_syncs},
-    {"wait", positive, "s", no_value, "maximum wall time for the nodes to answer a frame; unlimited if absent"},
+    {"wait", positive, "s", no_value, "maximum wall time to wait for the nodes at each tick; unlimited if absent"},
     {"on_silence", choice, "", "wait",
-     "response after that time: keep waiting (`wait`), repeat the last command (`hold`) or stand still (`stand`); "
-     "`hold` and `stand` need the key `wait`",
+     "response when that time has passed: keep waiting (`wait`), repeat the last command (`hold`) or stand still "
+     "(`stand`); `hold` and `stand` require the key `wait`",
      false, ros_silences},
     {"reply_to", name, "", no_value,
-     "topic that commands answer, such as `scan`; if absent, the least frequent topic to which the commanding node "
-     "subscribes"},
+     "topic to which each command is a reply, such as `scan`; if absent, the least frequent topic to which the "
+     "commanding node subscribes"},
     {"namespace", name, "", no_value,
      "namespace of the topics of a single robot, such as `/`; if absent, `/` and the scoped name of the robot"},
-    {"frames", name, "", no_value, "prefix of the names of frames, such as `left/`; none if absent"},
+    {"frames", name, "", no_value, "prefix of frame names, such as `left/`; none if absent"},
     {"odometry", choice, "", "encoders",
      "source of `odom`: the wheel encoders (`encoders`), or the true pose of the robot (`truth`)", false,
      ros_odometries},
     {"base_frame", name, "", "base_link", "name of the frame of the root link"},
     {"topics", group, "", no_value,
-     "map from names of topics, such as `scan`, to `false`, which omits the topic, or to a map; `*` matches any "
-     "characters, and the last matching name applies"},
-    {"drive", group, "", no_value, "how `cmd_vel` drives the wheels, if the devices of the model do not define it"},
+     "map from topic names, such as `scan`, to `false`, which omits the topic, or to a map with its settings; `*` "
+     "matches any characters, and the last matching name applies"},
+    {"drive", group, "", no_value,
+     "wheels that `cmd_vel` drives, if the model has neither a drive nor wheels with velocity motors"},
 };
 constexpr std::span<const ExtensionKey> ros2_of_a_team = std::span(ros2).subspan(3);
 constexpr ExtensionKey topics[] = {
     {"name", name, "", no_value,
-     "name in ROS, absolute, as in `/scan`, or relative to the namespace of the robot; unchanged if absent"},
-    {"rate", positive, "Hz", no_value, "maximum rate; at every new value if absent"},
+     "topic name in ROS, absolute, as in `/scan`, or relative to the robot's namespace; unchanged if absent"},
+    {"rate", positive, "Hz", no_value, "maximum publishing rate; if absent, every new value is published"},
 };
 constexpr ExtensionKey drive[] = {
-    {"left", name, "", "", "command channels of the angular velocities of the left wheels", true},
-    {"right", name, "", "", "command channels of the angular velocities of the right wheels", true},
+    {"left", name, "", "", "command channels for the angular velocities of the left wheels", true},
+    {"right", name, "", "", "command channels for the angular velocities of the right wheels", true},
     {"wheel_radius", positive, "m", "", "radius of each wheel"},
     {"wheel_separation", positive, "m", "", "distance between the left and the right wheels"},
 };
@@ -216,24 +224,26 @@ constexpr Extension table[] = {
     {"disable", "events", false, "Removes objects from the world temporarily; `enable` restores them unchanged.",
      objects_only, "events"},
     {"enable", "events", false, "Restores disabled objects.", objects_only, "events"},
-    {"move", "events", false, "Moves objects to another pose, at rest, with unchanged joint positions.", move,
+    {"move", "events", false, "Moves objects to a pose and stops them; joint positions stay unchanged.", move,
      "events"},
     {"set_velocity", "events", false, "Sets the velocity of objects.", set_velocity, "events"},
     {"apply_force", "events", false, "Applies a force and a torque to objects for a given time.", apply_force,
      "events"},
-    {"set_emitter", "events", false, "Changes emitters of objects.", set_emitter, "events"},
-    {"on", "an event", false, "The action of a robot that triggers the event, instead of a time.", on, "events"},
-    {"inside", "stop", false, "All of the objects are inside a rectangle.", inside, "stop"},
-    {"beyond", "stop", false, "One of the objects is beyond a line.", beyond, "stop"},
-    {"at_rest", "stop", false, "All of the objects are at rest.", at_rest, "stop"},
-    {"quarantined", "stop", false, "One of the objects has broken or left the world.", quarantined, "stop"},
-    {"print", "experiment", false, "A quantity of objects that is printed at regular intervals.", print, "print"},
-    {"history", "experiment", false, "Recent poses of objects that are kept.", history, "history"},
-    {"record", "experiment", false, "Contents of a recording in addition to the data that replays the run.", record,
+    {"set_emitter", "events", false, "Switches emitters of objects or changes their properties.", set_emitter,
+     "events"},
+    {"on", "an event", false, "The robot action that triggers the event, instead of a time.", on, "events"},
+    {"inside", "stop", false, "The condition that all of the objects are inside a rectangle.", inside, "stop"},
+    {"beyond", "stop", false, "The condition that one of the objects is beyond a line.", beyond, "stop"},
+    {"at_rest", "stop", false, "The condition that all of the objects are at rest.", at_rest, "stop"},
+    {"quarantined", "stop", false, "The condition that one of the objects has broken or left the world.", quarantined,
+     "stop"},
+    {"print", "experiment", false, "A quantity that is printed for objects at regular intervals.", print, "print"},
+    {"history", "experiment", false, "Objects whose most recent poses are kept.", history, "history"},
+    {"record", "experiment", false, "Contents of a recording in addition to the data that a replay requires.", record,
      "record"},
     {"ros2", "experiment", false, "ROS 2 interface of the robots.", ros2, "ros2"},
     {"teams", "ros2", false, "ROS 2 interface of the robots of one team.", ros2_of_a_team, "ros2"},
-    {"topics", "ros2", false, "Settings of a topic of the robots.", topics, "ros2"},
+    {"topics", "ros2", false, "Settings of a ROS topic of the robots.", topics, "ros2"},
     {"drive", "ros2", false, "Wheels that are driven by `cmd_vel`.", drive, "ros2"},
 };
 

@@ -16,10 +16,10 @@ using enum ExtensionValue;
 constexpr ExtensionKey population[] = {
     {"uri", uri, "", "", "model of the instances"},
     {"count", count, "1", "", "number of instances"},
-    {"seed_offset", whole, "1", "0", "offset added to the seed of the run, to get a different placement"},
+    {"seed_offset", whole, "1", "0", "number added to the seed of the run; another number gives another placement"},
     {"placement", group, "", "", "placement of the instances"},
     {"may_be_fewer", flag, "", "false",
-     "if there is not enough room for all instances, warn and place fewer; otherwise it is an error"},
+     "`true` to place fewer instances, with a warning, if there is not enough room; otherwise, this is an error"},
 };
 
 constexpr std::string_view patterns[] = {"column", "row", "wedge"};
@@ -32,13 +32,13 @@ constexpr ExtensionKey placement[] = {
     {"line", group, "", no_value, "evenly spaced positions from one point to another"},
     {"formation", group, "", no_value, "positions in a pattern, or listed one by one"},
     {"heading", choice, "", no_value,
-     "heading of the instances: `random`, `fixed`, `towards` or `away` from a point, or `along` a ring or line", false,
-     headings},
+     "heading of the instances: `random`, `fixed`, `towards` a point, `away` from a point, or `along` a ring or line",
+     false, headings},
     {"point", point, "m", no_value, "point for the headings `towards` and `away`"},
-    {"yaw", real, "rad", "0", "angle added to the heading; the heading itself if it is `fixed`"},
+    {"yaw", real, "rad", "0", "angle added to the heading; with `fixed`, the heading itself"},
     {"gap", non_negative, "m", "0.01",
-     "minimum distance between the bounding circle of an instance and everything else"},
-    {"level", real, "m", "0", "static objects up to this height count as ground to stand on"},
+     "minimum distance between the bounding circle of an instance and all other objects"},
+    {"level", real, "m", "0", "maximum height of static objects that count as ground"},
 };
 
 constexpr ExtensionKey gaussian[] = {
@@ -66,12 +66,11 @@ constexpr ExtensionKey line[] = {
 };
 
 constexpr ExtensionKey formation[] = {
-    {"center", point, "m", "0 0", "origin of the frame of the formation; its heading is that of the placement"},
+    {"center", point, "m", "0 0", "origin of the formation frame, whose heading is that of the placement"},
     {"pattern", choice, "", no_value, "pattern of the members: `column`, `row` or `wedge`", false, patterns},
     {"spacing", positive, "m", no_value,
-     "distance between neighbouring members of a pattern; in a wedge, both lengthwise and sideways"},
-    {"member", place, "m, rad", no_value, "x, y and heading of a member in the frame of the formation; may be repeated",
-     true},
+     "distance between neighbouring members of a pattern; in a wedge, along x and along y"},
+    {"member", place, "m, rad", no_value, "x, y and heading of a member in the formation frame; may be repeated", true},
 };
 
 constexpr ExtensionKey uniform[] = {
@@ -80,18 +79,20 @@ constexpr ExtensionKey uniform[] = {
 };
 
 constexpr ExtensionKey physics[] = {
-    {"fidelity", choice, "", "treel", "level of detail of the simulated models: `articulated`, `treel` or `planar`",
-     false, fidelities},
+    {"fidelity", choice, "", "treel", "level of detail of the simulation: `articulated`, `treel` or `planar`", false,
+     fidelities},
     {"dynamics", choice, "", "bullet",
-     "forward dynamics: `bullet`, with the articulated bodies of Bullet, or `cohort`, with Cohort's own mass matrix; "
-     "not used by `planar`",
+     "forward dynamics algorithm: Bullet's articulated-body algorithm (`bullet`) or Cohort's mass-matrix method "
+     "(`cohort`); ignored with fidelity `planar`",
      false, dynamics_kinds},
     {"solver", choice, "", "iterative", "solver for joints and contacts: `iterative`, `direct` or `hybrid`", false,
      solvers},
     {"iterations", count, "1", "10", "maximum number of iterations of the iterative solver"},
-    {"direct_bodies", count, "1", "4", "maximum number of bodies that the `hybrid` solver solves directly together"},
-    {"lowest", real, "m", no_value, "z below which a body has left the world; no limit if absent"},
-    {"sleeping", flag, "", "true", "`true` if steps skip bodies that have been at rest for a while"},
+    {"direct_bodies", count, "1", "4", "maximum size of a group of bodies that the `hybrid` solver solves directly"},
+    {"lowest", real, "m", no_value,
+     "z coordinate below which a body counts as having left the world; no limit if absent"},
+    {"sleeping", flag, "", "true",
+     "`true` if bodies that have been at rest for a while are not simulated until something wakes them"},
     {"strict", flag, "", "false", "`true` if a body that breaks or leaves the world ends the run"},
 };
 
@@ -103,7 +104,7 @@ constexpr ExtensionKey climate[] = {
 constexpr ExtensionKey air[] = {
     {"density", non_negative, "kg/m^3", "1.225", "density of the air"},
     {"force_approximation_scaling_factor", non_negative, "1/s", "1",
-     "for links with wind enabled: force per kilogram and per m/s of relative wind"},
+     "wind force on links with `<enable_wind>`, per kilogram and per m/s of relative wind velocity"},
 };
 
 constexpr ExtensionKey water[] = {
@@ -117,14 +118,14 @@ constexpr ExtensionKey material_pair[] = {
     {"second", name, "", "", "name of another material, or of the same one"},
     {"friction", non_negative, "1", "", "Coulomb friction coefficient"},
     {"restitution", fraction, "1", "0", "coefficient of restitution"},
-    {"rolling_resistance", non_negative, "m", "0", "rolling resistance: ratio of resisting torque to normal force"},
+    {"rolling_resistance", non_negative, "m", "0",
+     "rolling resistance: ratio of the resisting torque to the normal force"},
 };
 
 constexpr ExtensionKey mimic[] = {
     {"joint", name, "", "", "joint of the same model that this joint follows"},
-    {"multiplier", real, "1", "1", "ratio of the position of this joint to that of the followed joint"},
-    {"offset", real, "rad", "0",
-     "position of this joint when the followed joint is at 0; in metres for a prismatic joint"},
+    {"multiplier", real, "1", "1", "change of this joint's position per unit of the followed joint's position"},
+    {"offset", real, "rad", "0", "position of this joint when the followed joint is at 0; in m for a prismatic joint"},
 };
 
 constexpr ExtensionKey breakable_joint[] = {
@@ -142,8 +143,8 @@ constexpr std::string_view terrains[] = {"sine", "ramp", "steps", "hills", "roug
 
 constexpr ExtensionKey terrain[] = {
     {"kind", choice, "", "", "shape of the ground: `sine`, `ramp`, `steps`, `hills` or `rough`", false, terrains},
-    {"spacing", positive, "m", "0.05", "maximum distance between neighbouring heights"},
-    {"wavelength", positive, "m", "1", "length of a wave or a step, or distance between hills"},
+    {"spacing", positive, "m", "0.05", "maximum distance between neighbouring height samples"},
+    {"wavelength", positive, "m", "1", "length of a wave, a ramp or a step, or distance between hills"},
     {"seed", whole, "1", "0", "seed of the random shapes `hills` and `rough`"},
 };
 
@@ -151,29 +152,32 @@ constexpr Extension of_worlds[] = {
     {"density",
      "collision",
      false,
-     "Density of this collision; the mass of the link is that of its collisions.",
+     "Density of this collision, from which the mass of the link is computed.",
      {},
      "physics",
      positive},
     {"density",
      "link",
      false,
-     "Density of all collisions of the link; the mass of the link is that of its collisions.",
+     "Density of all collisions of the link, from which the mass of the link is computed.",
      {},
      "physics",
      positive},
-    {"climate", "world", false, "Temperature and humidity of the air far from all sources.", climate, "emitters"},
-    {"air", "world", false, "The air around all bodies.", air, "physics"},
+    {"climate", "world", false, "Temperature and humidity of the air far from all climate sources.", climate,
+     "emitters"},
+    {"air", "world", false, "Properties of the air.", air, "physics"},
     {"water", "world", false, "Water below a level surface.", water, "physics"},
-    {"terrain", "heightmap", false, "Ground that is described by a function instead of an image.", terrain, "physics"},
+    {"terrain", "heightmap", false, "Ground whose heights are computed by a function instead of read from an image.",
+     terrain, "physics"},
     {"material", "collision", false, "Name of the material of a collision.", {}, "physics", name},
     {"material_pair", "world", false, "Contact parameters for two materials.", material_pair, "physics"},
-    {"mimic", "joint", false, "A coupling that makes the joint follow another joint, by a force that acts on both.",
+    {"mimic", "joint", false, "A coupling that makes the joint follow another joint; its force acts on both joints.",
      mimic, "physics"},
-    {"breakable_joint", "world", true, "A joint that fixes links of two objects to each other until it is overloaded.",
+    {"breakable_joint", "world", true, "A joint that rigidly connects links of two objects until it is overloaded.",
      breakable_joint, "physics"},
     {"physics", "world", false, "Settings of the physics simulation.", physics, "physics"},
-    {"population", "world", true, "Instances of one model, placed by the seed of the run.", population, "placement"},
+    {"population", "world", true, "Instances of one model, placed in the world by a layout and the seed of the run.",
+     population, "placement"},
     {"placement", "population", false, "Placement of the instances of a population.", placement, "placement"},
     {"uniform", "placement", false, "Uniformly distributed positions in a rectangle.", uniform, "placement"},
     {"gaussian", "placement", false, "Normally distributed positions around a point.", gaussian, "placement"},

@@ -15,8 +15,9 @@
 ///     inline constexpr auto table_of<GroundSensors> = KeyTable{
 ///         sensor("ground_sensors", "Infrared sensors that point down."),
 ///         link_key(&GroundSensors::link, "link that carries the sensors; the rays point along its -z axis"),
-///         key("place", &GroundSensors::places_L, vector, "m", "", "origin of a ray in the link frame; may be
-///         repeated"), key("range", &GroundSensors::range, positive, "m", "", "length of the rays"),
+///         key("place", &GroundSensors::places_L, vector, "m", "",
+///             "origin of the ray of one sensor in the link frame; may be repeated"),
+///         key("range", &GroundSensors::range, positive, "m", "", "length of the rays"),
 ///     };
 ///
 /// Each row is a key, which is used to check files and to make manuals (`extension_of`), and the member for its value.

@@ -8,7 +8,7 @@
 int main(int argc, char** argv) {
   using namespace cohort;
   bridges::BridgeProgram program("cohort-ardupilot-bridge", "firmware",
-                                 "Connects ArduPilot's SITL to robots of a simulation, through its JSON interface.");
+                                 "Connects ArduPilot's SITL to robots of a simulation through its JSON interface.");
   const autopilots::AutopilotProgram options(program, "udp", 9002, 10);
   program.app().footer(
       "Example: cohort serve worlds/experiments/ardupilot.yaml & cohort-ardupilot-bridge --robots 0,1");

@@ -16,8 +16,8 @@ AutopilotProgram::AutopilotProgram(bridges::BridgeProgram& program, std::string 
       ->type_name("ADDRESS")
       ->capture_default_str();
   app.add_option("--port", port_,
-                 "Port of the first robot; each next robot's is " + std::to_string(port_step) +
-                     " higher, as for instances of the autopilot. 0: any free ports")
+                 "Port of the first robot; the port of each further robot is " + std::to_string(port_step) +
+                     " higher, as with several instances of the autopilot. 0: any free ports")
       ->type_name("N")
       ->check(CLI::Range(0U, 65535U))
       ->capture_default_str();
@@ -26,7 +26,7 @@ AutopilotProgram::AutopilotProgram(bridges::BridgeProgram& program, std::string 
          [this](const std::vector<std::string>& texts) {
            for (const std::string& text : texts) outputs_.push_back(output_in(text));
          },
-         "Maps an output of the autopilot to a channel (repeatable); replaces the outputs of the robot's model")
+         "Map an output of the autopilot to a command channel (repeatable); replaces the outputs of the robot's model")
       ->type_name("NUMBER=CHANNEL:LOW..HIGH")
       ->allow_extra_args(false)
       ->check(
@@ -42,14 +42,14 @@ AutopilotProgram::AutopilotProgram(bridges::BridgeProgram& program, std::string 
   program.add_choice<bridges::Silence>(
       "--without-firmware", patience.silence,
       {{"wait", bridges::Silence::wait}, {"stand", bridges::Silence::stand}, {"hold", bridges::Silence::hold}},
-      "While an autopilot is silent or gone: simulated time stops (wait, the default), or the run continues and the "
-      "robot gets neutral commands (stand) or keeps its last ones (hold). Before its first command: always wait");
+      "Response to a silent or disconnected autopilot: stop simulated time (wait, the default), or continue the run "
+      "with neutral commands (stand) or the last commands (hold). Before the first command: always wait");
   app.add_option_function<double>(
          "--patience",
          [&patience](double seconds) {
            patience.at_most = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(seconds));
          },
-         "Wall-clock time after which an autopilot counts as silent (default: 1)")
+         "Wall time after which an autopilot counts as silent (default: 1)")
       ->type_name("S")
       ->check(CLI::Range(0.001, 3600.0));
 }

@@ -30,7 +30,7 @@ struct Given {
   double benchmark = 0.0;  // [s]
 };
 
-// The chip that the options name, else the file of pins, else the image.
+// Returns the chip: each property from the options, else from the pin map, else from the image.
 avr::Chip chip_for(const Given& given, const avr::Pins& pins, const avr::Image& image) {
   avr::Chip chip{given.mcu, given.frequency, pins.supply};
   if (chip.mcu.empty()) chip.mcu = !pins.mcu.empty() ? pins.mcu : image.mcu;
@@ -40,7 +40,7 @@ avr::Chip chip_for(const Given& given, const avr::Pins& pins, const avr::Image& 
   return chip;
 }
 
-// Reads all files, and tries each image on its chip.
+// Reads all images and checks that each one fits its chip.
 std::vector<avr::Robot::Options> read(const Given& given, const avr::Pins& pins) {
   std::vector<avr::Robot::Options> robots;
   for (const std::string& file : given.images) {
@@ -60,25 +60,29 @@ void add_options(bridges::BridgeProgram& program, Given& given) {
       ->required()
       ->delimiter(',')
       ->type_name("FILE[,FILE...]");
-  app.add_option("--pins", given.pins, "Wiring of the microcontroller's pins to devices of the robot (YAML)")
+  app.add_option("--pins", given.pins,
+                 "Pin map: how the microcontroller's pins are wired to devices of the robot (YAML)")
       ->type_name("FILE");
-  program.add_choice<BoardKind>("--board", given.board, {{"pins", BoardKind::pins}, {"kilobot", BoardKind::kilobot}},
-                                "Board of the microcontroller: as --pins describes (pins, the default), or a Kilobot");
-  program.add_choice<bool>("--overhead", given.overhead, {{"run", true}, {"none", false}},
-                           "Overhead controller of Kilobots: tells them to run after 1 s (run, the default), or none");
+  program.add_choice<BoardKind>(
+      "--board", given.board, {{"pins", BoardKind::pins}, {"kilobot", BoardKind::kilobot}},
+      "Board of the microcontroller: the one that --pins describes (pins, the default), or a Kilobot");
+  program.add_choice<bool>(
+      "--overhead", given.overhead, {{"run", true}, {"none", false}},
+      "Overhead controller of Kilobots: one that starts them after 1 s (run, the default), or none");
   app.add_option("--mcu", given.mcu, "Microcontroller, such as atmega328p, atmega2560 or atmega32u4")
       ->type_name("NAME");
   app.add_option("--frequency", given.frequency, "Clock frequency of the microcontroller")->type_name("HZ");
   program.add_choice<avr::SerialTo>(
       "--serial", given.serial,
       {{"log", avr::SerialTo::log}, {"pty", avr::SerialTo::pty}, {"none", avr::SerialTo::none}},
-      "Serial interface: lines on standard error (log, the default), a pseudo-terminal for each robot (pty), or none");
+      "Output of the serial port: lines on standard error (log, the default), a pseudo-terminal for each robot (pty), "
+      "or none");
   app.add_option("--threads", given.threads,
-                 "Threads that run microcontrollers (default: one for each CPU; 1 for Kilobots)")
+                 "Number of threads that run microcontrollers (default: one per CPU; 1 for Kilobots)")
       ->check(CLI::Range(1, 256))
       ->type_name("N");
   app.add_option("--benchmark", given.benchmark,
-                 "Runs the image for this simulated time without a server, and prints its speed")
+                 "Run the image for this simulated time without a server, and print the speed")
       ->check(CLI::Range(0.001, 1e6))
       ->type_name("SECONDS");
   app.footer(
@@ -109,13 +113,13 @@ ClientEnd run_pins(const Given& given, const ClientOptions& client) {
 
 ClientEnd run_kilobots(const Given& given, const ClientOptions& client) {
   avr::kilobot::Air air;
-  // Threads have to wait for each other so often that a second one slows down a busy machine.
+  // Threads wait for each other so often that a second thread slows down a busy machine.
   avr::Bridge bridge({client, read(given, {}), given.threads.value_or(1),
                       [&] { return avr::kilobot::make_board(air, given.overhead); }, avr::kilobot::prepare, &air});
   return bridge.run(stop_on_signals());
 }
 
-// A Kilobot has one microcontroller and one wiring.
+// Throws UsageError for options that a Kilobot fixes: its microcontroller, clock and wiring.
 void check_kilobot(const Given& given) {
   if (given.board != BoardKind::kilobot) return;
   if (!given.pins.empty()) throw bridges::UsageError("--pins cannot be used with --board kilobot");
@@ -129,7 +133,7 @@ int main(int argc, char** argv) {
   Given given;
   bridges::BridgeProgram program(
       "cohort-avr-bridge", "microcontroller",
-      "Runs unchanged, compiled images for AVR microcontrollers, which drive robots of a simulation.");
+      "Runs unmodified firmware images for AVR microcontrollers, which drive robots of a simulation.");
   add_options(program, given);
   return program.run(argc, argv, [&given](const ClientOptions& client) {
     check_kilobot(given);

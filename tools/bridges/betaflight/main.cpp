@@ -54,17 +54,19 @@ int main(int argc, char** argv) {
   CLI::App& app = program.app();
   auto* run =
       app.add_option("--run", path,
-                     "Betaflight's SITL program: started once for each robot, each in its own network namespace")
+                     "Betaflight's SITL program, which is started once for each robot in its own network namespace")
           ->type_name("PROGRAM");
-  app.add_option("--folder", folder, "Folder in which each program has a subfolder with its configuration and log")
+  app.add_option("--folder", folder, "Folder with a subfolder for the configuration and log of each program")
       ->type_name("DIR")
       ->capture_default_str()
       ->needs(run);
   app.add_option("--configure", configuration,
-                 "File with CLI commands for new subfolders (default: the commands that the pilot needs)")
+                 "File with Betaflight CLI commands that configure new subfolders (default: the commands that the "
+                 "bridge's pilot needs)")
       ->type_name("FILE")
       ->needs(run);
-  app.add_option("--listen", listen, "Without --run: IPv4 addresses that receive servo packets, one for each robot")
+  app.add_option("--listen", listen,
+                 "Without --run: IPv4 addresses at which the bridge receives servo packets, one for each robot")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("ADDRESS[,ADDRESS...]")
@@ -76,17 +78,17 @@ int main(int argc, char** argv) {
       ->type_name("ADDRESS[,ADDRESS...]")
       ->capture_default_str()
       ->excludes(run);
-  program.add_choice<bool>("--time", has_virtual_time, {{"simulated", true}, {"wall", false}},
-                           "Clock of the programs that --run starts: the simulation's (simulated, the default) or the "
-                           "machine's (wall)");
+  program.add_choice<bool>(
+      "--time", has_virtual_time, {{"simulated", true}, {"wall", false}},
+      "Clock of the programs that --run starts: simulated time (simulated, the default) or wall time (wall)");
   program.add_choice<bridges::Silence>(
       "--without-program", program.patience().silence,
       {{"wait", bridges::Silence::wait}, {"stand", bridges::Silence::stand}, {"hold", bridges::Silence::hold}},
-      "When the program is silent: simulated time stops (wait, the default), or after --patience the run continues and "
-      "the motors stop (stand) or keep their last commands (hold)");
+      "Response to a silent program: stop simulated time (wait, the default), or after --patience continue the run "
+      "with the motors stopped (stand) or with their last commands (hold)");
   app.add_option_function<unsigned>(
          "--patience", [&](unsigned given) { program.patience().at_most = std::chrono::milliseconds(given); },
-         "Longest wait for a servo packet, unless --without-program is wait (default: 1000)")
+         "Maximum wall time to wait for a servo packet, unless --without-program is wait (default: 1000)")
       ->type_name("MS")
       ->check(CLI::Range(1U, 60000U), "", "");
   app.footer(

@@ -42,7 +42,7 @@ std::vector<std::string> single_robots(const std::string& list) {
 BridgeProgram::BridgeProgram(std::string name, std::string who, const std::string& text)
     : name_(std::move(name)), who_(std::move(who)), app_(text, name_) {
   client_.name = name_;
-  app_.add_option("--robots", robots_, "Ids, ranges of ids or names of robots, separated by commas")
+  app_.add_option("--robots", robots_, "Robots: ids, ranges of ids or names, separated by commas")
       ->type_name("ROBOT[,ROBOT...]")
       ->capture_default_str();
   app_.add_option("--server", client_.server, "The server's IPv4 address or host name")
@@ -73,8 +73,9 @@ void BridgeProgram::add_choice_of(const std::string& option, const std::vector<s
 }
 
 CLI::Option& BridgeProgram::add_serial() {
-  return *app_.add_option("--serial", serial_,
-                          "Serial devices of hardware, one for each robot, such as /dev/ttyACM0:115200")
+  return *app_.add_option(
+                  "--serial", serial_,
+                  "Serial devices to which the hardware is connected, one for each robot, such as /dev/ttyACM0:115200")
               ->delimiter(',')
               ->allow_extra_args(false)
               ->type_name("DEVICE:BAUD[,DEVICE:BAUD...]");

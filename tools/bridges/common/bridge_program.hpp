@@ -26,9 +26,9 @@ class BridgeProgram {
   BridgeProgram(std::string name, std::string who, const std::string& text);
 
   /// Adds the option --run: programs for robots, started in virtual time. `text`: what it is for.
-  void offer_to_run_programs(
-      const std::string& text =
-          "Shell command that drives a robot: started once for each robot, with simulated time as its clock");
+  void offer_to_run_programs(const std::string& text =
+                                 "Shell command of a program that drives a robot: started once for each robot, with "
+                                 "simulated time as its clock");
   /// Returns the command of --run; empty: none was given.
   const std::string& command() const { return command_; }
 

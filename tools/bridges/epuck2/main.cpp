@@ -1,4 +1,4 @@
-// cohort-epuck2-bridge: programs written for the WiFi of an e-puck2 drive robots of a simulation
+// cohort-epuck2-bridge: programs that use the WiFi interface of an e-puck2 drive robots of a simulation
 // (docs/bridges/epuck2.md).
 
 #include <cstdint>
@@ -15,8 +15,9 @@ int main(int argc, char** argv) {
   std::uint16_t first_port = 1000;
   epuck2::Packets packets = epuck2::Packets::both;
 
-  bridges::BridgeProgram program("cohort-epuck2-bridge", "program",
-                                 "Connects programs for the WiFi of an e-puck2 to robots of a simulation.");
+  bridges::BridgeProgram program(
+      "cohort-epuck2-bridge", "program",
+      "Connects programs that use the WiFi interface of an e-puck2 to robots of a simulation.");
   CLI::App& app = program.app();
   app.add_option("--listen", addresses,
                  "IPv4 address of this machine at which programs connect, or one for each robot, separated by commas")
@@ -24,20 +25,21 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false)
       ->type_name("ADDRESS[,ADDRESS...]")
       ->capture_default_str();
-  app.add_option("--port", first_port,
-                 "Port of the first robot; with one address, the ports of the next robots follow it. 0: any free ports")
+  app.add_option(
+         "--port", first_port,
+         "TCP port of the first robot; with one address, the other robots use the next ports. 0: any free ports")
       ->type_name("N")
       ->capture_default_str();
   program.offer_to_run_programs();
   program.add_choice<bridges::Silence>(
       "--without-program", program.patience().silence,
       {{"wait", bridges::Silence::wait}, {"stand", bridges::Silence::stand}},
-      "When a program has disconnected: simulated time stops until another one commands (wait, the default), or the "
-      "robot stops and the run continues (stand)");
+      "Response when a program has disconnected: stop simulated time until another one sends commands (wait, the "
+      "default), or stop the robot and continue the run (stand)");
   program.add_choice<epuck2::Packets>(
       "--packets", packets, {{"both", epuck2::Packets::both}, {"in-turn", epuck2::Packets::in_turn}},
-      "Answer to a request for image and sensors: both (the default), or one of them in turn, for programs "
-      "that read a single packet after each command");
+      "Answer to a request for image and sensors: both packets (both, the default), or one of them in turn (in-turn), "
+      "for programs that read a single packet after each command");
   program.add_serial().excludes(app.get_option("--listen"))->excludes(app.get_option("--port"));
   app.footer("Example: cohort serve worlds/experiments/epuck2.yaml & cohort-epuck2-bridge --robots 0..3");
 

@@ -12,14 +12,14 @@
 int main(int argc, char** argv) {
   using namespace cohort;
   bridges::BridgeProgram program("cohort-px4-bridge", "firmware",
-                                 "Connects PX4 to robots of a simulation, through MAVLink's messages for simulators.");
+                                 "Connects PX4 to robots of a simulation through MAVLink's simulator messages.");
   const autopilots::AutopilotProgram options(program, "tcp", 4560, 1);
   px4::Autopilot::Options px4;
   std::vector<double> home{px4.home.latitude, px4.home.longitude, px4.home.altitude};
   program.app()
       .add_option("--home", home,
-                  "Position of the world's origin on Earth: latitude and longitude in degrees, metres above sea level "
-                  "(default: PX4's)")
+                  "Position of the world's origin on Earth: latitude and longitude in degrees, altitude above sea "
+                  "level in metres (default: that of PX4)")
       ->delimiter(',')
       ->expected(3)
       ->allow_extra_args(false)

@@ -21,11 +21,11 @@ ControlOptions control_options(const ClientOptions& client) {
   return {client.server, client.domain, client.secure, client.name};
 }
 
-// Asks the server for what its experiment was read from, and reads it here.
+// Requests the files of the server's experiment, and reads the experiment from them.
 std::shared_ptr<const description::Experiment> experiment_of(const ClientOptions& client) {
   ControlClient control(attach(control_options(client)));
   const messages::ExperimentFiles files = query_experiment([&](const wire::GetExperiment& question) {
-    constexpr std::chrono::hours at_most{24};  // the server may be yet to come
+    constexpr std::chrono::hours at_most{24};  // the server may not be running yet
     const std::optional<wire::Reply> reply = control.ask(question, at_most, stop_on_signals());
     if (!reply) throw std::runtime_error("the server does not send its experiment");
     if (!reply->is_done()) throw std::runtime_error(reply->error_message);
@@ -36,7 +36,7 @@ std::shared_ptr<const description::Experiment> experiment_of(const ClientOptions
                                std::chrono::nanoseconds(files.duration_ns)));
 }
 
-// As what is wrong in the command line: before it looks for a server.
+// Returns the ROS domain of the environment. Reports an invalid one like an error in the command line.
 ros2::RosDomain domain_of_environment() {
   try {
     return ros2::RosDomain::from_environment();
@@ -57,22 +57,22 @@ int main(int argc, char** argv) {
   bridges::BridgeProgram program("cohort-ros2-bridge", "node", "Connects ROS 2 nodes to robots of a simulation.");
   CLI::App& app = program.app();
   app.get_option("--robots")->default_str("as in the experiment");
-  app.add_option("--ros-domain", domain, "ROS domain (default: the experiment's, else ROS_DOMAIN_ID, else 0)")
+  app.add_option("--ros-domain", domain,
+                 "ROS domain (default: that of the experiment, or else $ROS_DOMAIN_ID, or else 0)")
       ->check(CLI::Range(0, 232))
       ->type_name("N");
-  program.add_choice<RosSync>(
-      "--sync", sync, {{"free", RosSync::free}, {"command", RosSync::command}},
-      "When the bridge answers a frame: at once, with the newest command (free), or after a new command (command). "
-      "Default: as in the experiment");
+  program.add_choice<RosSync>("--sync", sync, {{"free", RosSync::free}, {"command", RosSync::command}},
+                              "When the bridge answers the observations of a tick: immediately, with the newest "
+                              "command (free), or after a new command (command). Default: as in the experiment");
   program.offer_to_run_programs(
-      "Shell command that starts nodes with simulated time as their clock: the bridge answers each frame when they "
-      "have finished all work that is due at its time");
+      "Shell command that starts nodes with simulated time as their clock: the bridge answers observations when the "
+      "nodes have finished all work that is due at their tick");
   app.get_option("--run")->excludes(app.get_option("--sync"));
   const std::map<std::string, std::string> distributions = {
       {"auto", "auto"},     {"humble", "humble"},   {"iron", "iron"},      {"jazzy", "jazzy"},
       {"kilted", "kilted"}, {"lyrical", "lyrical"}, {"rolling", "rolling"}};
   program.add_choice<std::string>("--ros-distro", distribution, distributions,
-                                  "ROS 2 distribution of the nodes (default: auto, detected from the nodes)");
+                                  "ROS 2 distribution of the nodes (default: auto, which detects it)");
   app.add_flag("--no-services", has_no_services, "Do not offer the services of simulation_interfaces");
   app.footer("Example: cohort serve worlds/experiments/turtlebot3.yaml --speed 1 & cohort-ros2-bridge");
   return program.run(argc, argv, [&](ClientOptions client) {

@@ -44,10 +44,11 @@ LogFormat log_format(std::string text) {
 }  // namespace
 
 void add_log_flags(CommandLine line, LogFlags& flags) {
-  line.add_option("--log-format", flags.format, "Messages as text or as json (default: $COHORT_LOG_FORMAT, or text)")
+  line.add_option("--log-format", flags.format,
+                  "Format of messages: text or json (default: $COHORT_LOG_FORMAT, or text)")
       .check(one_of(log_formats))
       .type_name("text|json");
-  line.add_flag("--verbose", flags.verbose, "Print informational messages too; $COHORT_LOG selects other levels");
+  line.add_flag("--verbose", flags.verbose, "Also print informational messages; $COHORT_LOG selects other levels");
 }
 
 LogOptions log_options(const LogFlags& flags) {

@@ -74,12 +74,13 @@ Subcommand add_check(CommandLine app) {
   const auto command = std::make_shared<CheckCommand>();
   CommandLine line =
       app.add_subcommand("check", "Check a world, a model or an experiment for errors without running it");
-  line.add_option("FILE", command->file, "Experiment (.yaml), world or model, or the name of an example or a robot")
+  line.add_option("FILE", command->file,
+                  "Experiment (.yaml), world or model file, or the name of an example or a robot")
       .required()
       .type_name("");
   add_reading_options(line, command->runs_xacro);
   line.add_flag("--load-controllers", command->loads_controllers,
-                "Also load the controllers' plugins and start the controllers, which executes their code");
+                "Also load the controller plugins and start the controllers, which executes their code");
   line.footer("Example: cohort check worlds/arenas/obstacles.sdf");
   return {line, [command](Log& log, const std::atomic<bool>&) {
             return check(command->file, xacro_of(command->runs_xacro), command->loads_controllers, log);

@@ -30,8 +30,8 @@ inline constexpr InWhole view = {"view", "Show a recording or a running server i
 inline constexpr InWhole page = {"page", "Write a recording as one HTML file that plays in any browser"};
 inline constexpr InWhole completion = {"completion", "Print a shell's completion script"};
 inline constexpr InWhole man_page = {"man-page", "Print the manual page, which contains the help of all commands"};
-inline constexpr InWhole bench = {"bench",
-                                  "Compare the performance of Cohort and other physics engines on the same scenes"};
+inline constexpr InWhole bench = {
+    "bench", "Compare the performance of Cohort with that of other physics engines on the same scenes"};
 }  // namespace in_whole
 
 /// Each function adds its command to `app`. The functions that take `flags` show the message options after their own in

@@ -150,9 +150,10 @@ int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop) {
 
 Subcommand add_diff(CommandLine app) {
   const auto command = std::make_shared<DiffCommand>();
-  CommandLine line = app.add_subcommand("diff", "Find the tick at which two recorded runs diverge, and what differs");
+  CommandLine line =
+      app.add_subcommand("diff", "Find the first tick at which two recorded runs differ, and show the differences");
   line.add_option("FIRST", command->first, "Recording (MCAP)").required().type_name("");
-  line.add_option("SECOND", command->second, "Another one").required().type_name("");
+  line.add_option("SECOND", command->second, "Recording to compare it with (MCAP)").required().type_name("");
   line.add_flag("--json", command->json, "Print the result as JSON");
   line.footer("Example: cohort diff monday.mcap tuesday.mcap");
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return diff(*command, log, stop); }};

@@ -49,8 +49,7 @@ int copy_to(const fs::path& folder) {
 Subcommand add_examples(CommandLine app) {
   const auto folder = std::make_shared<fs::path>();
   CommandLine line = app.add_subcommand("examples", "List the experiments that come with Cohort, or copy them");
-  line.add_option("--copy", *folder, "Copy the examples, with all files that they need, to this folder")
-      .type_name("DIR");
+  line.add_option("--copy", *folder, "Copy the examples and all files that they need to this folder").type_name("DIR");
   line.footer("Example: cohort examples --copy worlds");
   return {line, [folder](Log&, const std::atomic<bool>&) { return folder->empty() ? list() : copy_to(*folder); }};
 }

@@ -265,12 +265,13 @@ class TimedRun {
 
 Subcommand add_exec(CommandLine app) {
   const auto command = std::make_shared<ExecCommand>();
-  CommandLine line = app.add_subcommand("exec", "Run an unmodified program on simulated time");
+  CommandLine line = app.add_subcommand("exec", "Run an unmodified program with simulated time as its clock");
   line.add_option("PROGRAM", command->program, "Program and its arguments, after --").required();
-  line.add_option("--date", command->date, "Date that the program sees at simulated time 0, in seconds since 1970")
+  line.add_option("--date", command->date,
+                  "Date that the program's clock shows at simulated time 0, in seconds since 1970")
       .type_name("SECONDS")
       .capture_default_str();
-  line.add_option("--period", command->period, "Ticks by which the program's time advances at once")
+  line.add_option("--period", command->period, "Number of ticks by which the program's clock advances at once")
       .check(whole_number(1, 1'000'000))
       .type_name("TICKS")
       .capture_default_str();
@@ -279,7 +280,8 @@ Subcommand add_exec(CommandLine app) {
   add_secure_option(line, command->connection.secure,
                     "Folder of an identity that may control the run (default: $COHORT_SECURE)");
   line.footer(
-      "Example: cohort serve braitenberg & cohort exec -- python3 controller.py\nThe exit code is the program's.");
+      "Example: cohort serve braitenberg & cohort exec -- python3 controller.py\nThe exit code is that of the "
+      "program.");
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return TimedRun(*command, log, stop).run(); }};
 }
 

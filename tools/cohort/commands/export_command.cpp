@@ -46,9 +46,9 @@ int export_world(const ExportCommand& command, Log& log) {
 Subcommand add_export(CommandLine app) {
   const auto command = std::make_shared<ExportCommand>();
   CommandLine line = app.add_subcommand("export", "Write a world, or the world of an experiment, as SDF or YAML");
-  line.add_option("FILE", command->file, "World, model or experiment").required().type_name("");
+  line.add_option("FILE", command->file, "World, model or experiment file").required().type_name("");
   line.add_option("-o,--output", command->output, "File to write (.sdf or .yaml)").required().type_name("FILE");
-  line.add_option("--seed", command->seed, "Seed for placing populations (default: the experiment's seed)")
+  line.add_option("--seed", command->seed, "Seed for the placement of populations (default: the experiment's seed)")
       .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       .type_name("N");
   add_reading_options(line, command->runs_xacro);

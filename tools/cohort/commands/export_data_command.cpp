@@ -56,11 +56,11 @@ int export_data(const ExportDataCommand& command, Log& log) {
 
 Subcommand add_export_data(CommandLine app) {
   const auto command = std::make_shared<ExportDataCommand>();
-  CommandLine line = app.add_subcommand("export-data", "Write a recording as tables");
+  CommandLine line = app.add_subcommand("export-data", "Convert a recording to tables");
   line.add_option("FILE", command->file, "Recording (MCAP)").required().type_name("");
   CommandLine target = line.add_alternatives("Target");
-  target.add_option("--csv", command->csv, "Folder in which each table becomes a CSV file").type_name("DIR");
-  target.add_option("--hdf5", command->hdf5, "HDF5 file for all tables").type_name("FILE");
+  target.add_option("--csv", command->csv, "Folder to which each table is written as a CSV file").type_name("DIR");
+  target.add_option("--hdf5", command->hdf5, "HDF5 file to which all tables are written").type_name("FILE");
   add_robots_of_recording(line, command->robots);
   add_part_options(line, command->part);
   line.footer("Example: cohort export-data run.mcap --csv tables");

@@ -50,14 +50,14 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
 
 Subcommand add_host(CommandLine app, LogFlags& flags) {
   const auto command = std::make_shared<HostCommand>();
-  CommandLine line = app.add_subcommand("host", "Run a controller for some robots of a server");
-  line.add_option("PLUGIN", command->plugin, "Name of a controller, or path to its plugin or Python file")
+  CommandLine line = app.add_subcommand("host", "Run a controller that drives robots of a server");
+  line.add_option("PLUGIN", command->plugin, "Name of a controller, or path of its plugin or Python file")
       .required()
       .type_name("");
   add_client_options(line, command->client);
   add_log_flags(line, flags);
   line.add_flag("--inline", command->inline_step,
-                "Step controllers on the receiving thread for less delay, as long as a step takes less than 1 ms");
+                "Step controllers on the receiving thread, which reduces latency; for steps shorter than 1 ms");
   line.add_flag("--for-run", command->for_run).hide();  // for `cohort run` only
   line.footer("Example: cohort host obstacle_avoidance --robots 0..7 --server 10.0.0.5 --domain 7");
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return host(*command, log, stop); }};

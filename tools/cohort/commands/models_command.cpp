@@ -38,14 +38,16 @@ int show_model(const ShowCommand& command, Log& log, const std::atomic<bool>& st
 
 Subcommand add_models(CommandLine app) {
   const auto command = std::make_shared<ShowCommand>();
-  CommandLine line = app.add_subcommand("models", "Show the parts of models as Cohort reads them");
+  CommandLine line = app.add_subcommand("models", "Show how Cohort has read a model");
   line.require_subcommand();
-  CommandLine of = line.add_subcommand("show", "Print links, masses, joints and limits of a model or a world");
-  of.add_option("FILE", command->file, "Model (SDF, URDF or YAML), world, experiment, or the name of a robot model")
+  CommandLine of = line.add_subcommand("show", "Print the links, masses, joints and limits of a model or a world");
+  of.add_option("FILE", command->file,
+                "Model (SDF, URDF or YAML), world or experiment file, or the name of a robot model")
       .required()
       .type_name("");
-  of.add_flag("--json", command->as_json, "Print JSON, with inertias, axes, poses and velocities too");
-  of.add_option("--after", command->seconds, "Simulate this many seconds first; a single model is placed on a plane")
+  of.add_flag("--json", command->as_json, "Print JSON, which also includes inertias, axes, poses and velocities");
+  of.add_option("--after", command->seconds,
+                "Simulate for this time first, in seconds; a single model is placed on a plane")
       .check(number_from_zero(most_seconds))
       .type_name("SECONDS");
   add_reading_options(of, command->runs_xacro);

@@ -174,15 +174,15 @@ int plot(const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
 
 Subcommand add_plot(CommandLine app) {
   const auto command = std::make_shared<PlotCommand>();
-  CommandLine line = app.add_subcommand("plot", "Draw the paths, speeds or sensor readings of a recording");
+  CommandLine line = app.add_subcommand("plot", "Plot the paths, speeds or sensor readings in a recording");
   line.add_option("FILE", command->file, "Recording (MCAP)").required().type_name("");
   line.add_option("-o,--output", command->output, "Picture to write (.svg, .png or .pdf)").required().type_name("FILE");
   line.add_option("--what", command->what,
-                  "paths (the default); or over time: speed, or channels such as proximity/3/reading")
+                  "paths (the default), or quantities over time: speed, or channels such as proximity/3/reading")
       .comma_separated()
       .type_name("WHAT[,WHAT...]");
   add_robots_of_recording(line, command->robots);
-  add_viewpoint_option(line, "--view", "Of paths", command->viewpoint);
+  add_viewpoint_option(line, "--view", "Viewpoint of paths", command->viewpoint);
   add_part_options(line, command->part);
   line.footer("Example: cohort plot run.mcap --what speed,proximity/0/reading --robots 0..3 -o speeds.svg");
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return plot(*command, log, stop); }};

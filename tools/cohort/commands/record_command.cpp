@@ -166,7 +166,7 @@ int record(const RecordCommand& command, Log& log, const std::atomic<bool>& stop
 
 Subcommand add_record(CommandLine app) {
   const auto command = std::make_shared<RecordCommand>();
-  CommandLine line = app.add_subcommand("record", "Record a server's run, starting now");
+  CommandLine line = app.add_subcommand("record", "Record the run of a server from now on");
   line.add_option("-o,--output", command->file, "File to write (MCAP)").required().type_name("FILE");
   add_recorded_options(line, command->record, "--");
   add_server_option(line, command->connection.server);

@@ -6,10 +6,12 @@
 namespace cohort::tool {
 
 void add_part_options(CommandLine line, RecordingPart& part) {
-  line.add_option("--from", part.from, "Start time in the recording, in simulated seconds (default: 0)")
+  line.add_option("--from", part.from,
+                  "Start of the part, in simulated seconds from the start of the recording (default: 0)")
       .check(number_from_zero(most_seconds))
       .type_name("S");
-  line.add_option("--to", part.to, "End time in the recording, in simulated seconds (default: the end)")
+  line.add_option("--to", part.to,
+                  "End of the part, in simulated seconds from the start of the recording (default: its end)")
       .check(number_from_zero(most_seconds))
       .type_name("S");
 }

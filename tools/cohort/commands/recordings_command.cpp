@@ -30,14 +30,14 @@ void list(const std::filesystem::path& file) {
 Subcommand add_recordings(CommandLine app) {
   const auto files = std::make_shared<std::vector<std::filesystem::path>>();
   CommandLine line =
-      app.add_subcommand("recordings", "Show what recordings contain, and make them readable as rosbag2 bags");
+      app.add_subcommand("recordings", "Show the contents of recordings, or make them readable as rosbag2 bags");
   line.require_subcommand();
-  CommandLine of = line.add_subcommand("list", "Print the metadata of each run, and the attached files");
+  CommandLine of = line.add_subcommand("list", "Print the metadata and the attached files of each recording");
   of.add_option("FILE", *files, "Recordings (.mcap)").required().type_name("");
   of.footer("Example: cohort recordings list run.mcap");
   CommandLine bag = line.add_subcommand(
-      "rosbag2", "Write metadata.yaml beside each recording, so that 'ros2 bag' reads its folder as a bag");
-  bag.add_option("FILE", *files, "Recordings (.mcap), each in a folder of its own").required().type_name("");
+      "rosbag2", "Write metadata.yaml beside each recording, so that 'ros2 bag' can read its folder as a bag");
+  bag.add_option("FILE", *files, "Recordings (.mcap), each in its own folder").required().type_name("");
   bag.footer("Example: cohort recordings rosbag2 house/run.mcap");
   line.footer("Example: cohort recordings list run.mcap");
   return {line, [files, bag](Log&, const std::atomic<bool>&) {

@@ -36,7 +36,7 @@ int recover(const RecoverCommand& command, Log& log) {
 
 Subcommand add_recover(CommandLine app) {
   const auto command = std::make_shared<RecoverCommand>();
-  CommandLine line = app.add_subcommand("recover", "Make a valid recording from the readable part of a damaged one");
+  CommandLine line = app.add_subcommand("recover", "Repair a damaged recording: keep its readable part");
   line.add_option("FILE", command->file, "Recording (.mcap)").required().type_name("");
   line.add_option("-o,--output", command->output, "File to write (default: replace FILE)").type_name("FILE");
   line.footer("Example: cohort recover run.mcap");

@@ -135,11 +135,12 @@ void add_ros2_options(CommandLine line, ReplayCommand& command, Option ros2) {
   line.add_option_function<std::string>(
           "--speed",
           [&playback](const std::string& speed) { playback.speed = speed == "max" ? 0.0 : *parse_real(speed); },
-          "With --ros2: limit the speed, in recorded seconds per second (default: 1)")
+          "With --ros2: limit of recorded seconds per second of wall time (default: 1)")
       .check(max_or_number_above_zero(1e9))
       .type_name("max|X")
       .needs(ros2);
-  line.add_option("--wait", playback.awaited, "With --ros2: begin when nodes have N subscriptions to the played topics")
+  line.add_option("--wait", playback.awaited,
+                  "With --ros2: start when nodes have N subscriptions to the published topics")
       .check(whole_number(1, 1'000'000))
       .type_name("N")
       .needs(ros2);
@@ -155,21 +156,21 @@ void add_ros2_options(CommandLine line, ReplayCommand& command, Option ros2) {
 Subcommand add_replay(CommandLine app) {
   const auto command = std::make_shared<ReplayCommand>();
   CommandLine line =
-      app.add_subcommand("replay", "Replay a recorded run without controllers, or play its messages to ROS 2 nodes");
+      app.add_subcommand("replay", "Replay a recorded run without controllers, or publish its messages to ROS 2 nodes");
   line.add_option("FILE", command->file, "Recording (MCAP)").required().type_name("");
   const Option verify =
-      line.add_flag("--verify", command->verify, "Compare the state hash of every tick with the recorded hash");
+      line.add_flag("--verify", command->verify, "Compare the state hash at every tick with the recorded hash");
   add_part_options(line, command->part);
   const Option threads =
-      line.add_option("--threads", command->threads, "Threads that step the world (default: one per core)")
+      line.add_option("--threads", command->threads, "Number of threads that step the world (default: one per core)")
           .check(whole_number(1, 1024))
           .type_name("N");
   const Option ros2 = line.add_flag("--ros2", command->is_for_ros2,
-                                    "Publish the recorded messages and /clock to ROS 2 nodes, without simulating")
+                                    "Publish the recorded messages and /clock to ROS 2 nodes, without simulation")
                           .excludes(verify)
                           .excludes(threads);
   add_ros2_options(line, *command, ros2);
-  line.add_flag("--quiet", command->quiet, "Print errors and differences only");
+  line.add_flag("--quiet", command->quiet, "Print only errors and differences");
   line.footer("Example: cohort replay run.mcap --verify\n         cohort replay run.mcap --ros2 --speed 2");
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return replay(*command, log, stop); }};
 }

@@ -52,18 +52,19 @@ int take_samples(const SamplesCommand& command) {
 
 Subcommand add_samples(CommandLine app) {
   const auto command = std::make_shared<SamplesCommand>();
-  CommandLine line = app.add_subcommand("samples", "Write the readings of a ring of proximity sensors near a cylinder");
+  CommandLine line = app.add_subcommand(
+      "samples", "Compute a sample file: the readings of a ring of proximity sensors near a cylinder");
   constexpr double longest = 1e3;  // [m]
-  line.add_option("MODEL", command->file, "Model, or a world, of which the first robot is used")
+  line.add_option("MODEL", command->file, "Model file, or a world file, whose first robot is used")
       .required()
       .type_name("");
-  line.add_option("DEVICE", command->device, "Name of the robot's proximity_ring").required().type_name("");
-  line.add_option("-o,--output", command->output, "File to write").required().type_name("FILE");
-  line.add_option("--radius", command->grid.radius, "Radius of the cylinder in metres")
+  line.add_option("DEVICE", command->device, "Name of a proximity_ring of the robot").required().type_name("");
+  line.add_option("-o,--output", command->output, "Sample file to write").required().type_name("FILE");
+  line.add_option("--radius", command->grid.radius, "Radius of the cylinder [m]")
       .check(number_above_zero(longest))
       .capture_default_str()
       .type_name("M");
-  line.add_option("--height", command->grid.height, "Height of the cylinder in metres")
+  line.add_option("--height", command->grid.height, "Height of the cylinder [m]")
       .check(number_above_zero(longest))
       .capture_default_str()
       .type_name("M");

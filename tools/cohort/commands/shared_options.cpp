@@ -33,7 +33,7 @@ void add_client_options(CommandLine line, ClientSide& client) {
       .type_name("SEL[,SEL...]");
   add_server_option(line, client.connection.server);
   add_domain_option(line, client.connection.domains,
-                    "DDS domain of the server, or a range from which one is chosen (default: 0)");
+                    "DDS domain of the server, or a range from which Cohort chooses one (default: 0)");
   add_secure_option(line, client.connection.secure, "Folder of this client's identity (default: $COHORT_SECURE)");
 }
 
@@ -43,41 +43,42 @@ void add_reading_options(CommandLine line, bool& runs_xacro) {
           [](const std::string& folders) {
             ::setenv("COHORT_ALLOW_FILES", folders.c_str(), 1);
           },  // the parser reads this variable
-          "More folders from which the world may read files, separated by colons (default: $COHORT_ALLOW_FILES)")
+          "Additional folders from which the world may read files, separated by colons (default: $COHORT_ALLOW_FILES)")
       .type_name("DIR[:DIR...]");
   line.add_flag("--xacro", runs_xacro,
-                "Expand FILE with xacro, which executes code in FILE: use it only for files that you trust");
+                "Expand FILE with xacro, which executes code in FILE: use this only for trusted files");
 }
 
 void add_robots_of_recording(CommandLine line, std::vector<std::string>& robots) {
-  line.add_option("--robots", robots, "Robots, selected as by --robots of 'cohort host' (default: all)")
+  line.add_option("--robots", robots, "Robots to include, selected as with --robots of 'cohort host' (default: all)")
       .comma_separated()
       .type_name("SEL[,SEL...]");
 }
 
 void add_recorded_options(CommandLine line, RecordOptions& options, const std::string& prefix) {
   constexpr double most_hertz = 1e9;
-  line.add_option(prefix + "poses", options.pose_rate, "Recorded poses per simulated second (0: none)")
+  line.add_option(prefix + "poses", options.pose_rate, "Poses to record per simulated second (0: none)")
       .check(number_from_zero(most_hertz))
       .type_name("HZ");
   line.add_option(prefix + "joints", options.joint_rate,
-                  "Recorded joint states and link poses per simulated second (0: none)")
+                  "Joint states and link poses to record per simulated second (0: none)")
       .check(number_from_zero(most_hertz))
       .type_name("HZ");
   line.add_option(prefix + "observations", options.observation_rate,
-                  "Recorded observations of each robot per simulated second (0: none)")
+                  "Observations of each robot to record per simulated second (0: none)")
       .check(number_from_zero(most_hertz))
       .type_name("HZ");
   line.add_option(prefix + "robots", options.robots,
-                  "Robots whose observations are recorded, selected as by --robots of 'cohort host'")
+                  "Robots whose observations are recorded, selected as with --robots of 'cohort host'")
       .comma_separated()
       .type_name("SEL[,SEL...]");
   line.add_option(prefix + "snapshots", options.snapshot_interval,
-                  "Simulated seconds between recorded snapshots (0: none)")
+                  "Simulated time between recorded snapshots, in seconds (0: none)")
       .check(number_from_zero(most_seconds))
       .type_name("S");
-  line.add_flag(prefix + "rosbag2", options.makes_rosbag2,
-                "Write metadata.yaml beside the recording at the end, so that 'ros2 bag' reads its folder as a bag");
+  line.add_flag(
+      prefix + "rosbag2", options.makes_rosbag2,
+      "At the end, write metadata.yaml beside the recording, so that 'ros2 bag' can read its folder as a bag");
 }
 
 void add_viewpoint_option(CommandLine line, const std::string& name, const std::string& subject, Viewpoint& viewpoint) {

@@ -27,7 +27,8 @@ struct Connection {
   std::uint32_t domain() const { return domains.empty() ? 0 : domains.front(); }
 };
 
-inline constexpr const char* domain_of_server = "DDS domain of the server, the first if it has several (default: 0)";
+inline constexpr const char* domain_of_server =
+    "DDS domain of the server; the first domain if it has several (default: 0)";
 
 void add_server_option(CommandLine line, std::string& server);
 void add_domain_option(CommandLine line, std::vector<std::uint32_t>& domains, const std::string& text);

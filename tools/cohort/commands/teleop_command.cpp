@@ -109,7 +109,7 @@ int teleop(const ClientSide& client, Log& log, const std::atomic<bool>& stop) {
 
 Subcommand add_teleop(CommandLine app) {
   const auto client = std::make_shared<ClientSide>();
-  CommandLine line = app.add_subcommand("teleop", "Drive robots of a server by keyboard");
+  CommandLine line = app.add_subcommand("teleop", "Drive robots of a server with the keyboard");
   add_client_options(line, *client);
   line.footer("Example: cohort teleop --robots 0");
   return {line, [client](Log& log, const std::atomic<bool>& stop) { return teleop(*client, log, stop); }};

@@ -99,19 +99,21 @@ void add_scenes_options(CommandLine line, BenchCommand& command) {
       .comma_separated()
       .check(one_of(bench::engine_names()))
       .type_name("NAME[,NAME...]");
-  line.add_option("--robots", options.robots, "Numbers of robots, one run for each (default: depends on the scene)")
+  line.add_option("--robots", options.robots,
+                  "Numbers of robots; one measurement for each (default: depends on the scene)")
       .comma_separated()
       .check(whole_number(1, 100'000))
       .type_name("N[,N...]");
-  line.add_option("--seconds", options.seconds, "Simulated seconds of each repetition")
+  line.add_option("--seconds", options.seconds, "Duration of each repetition, in simulated seconds")
       .check(number_above_zero(1e6))
       .capture_default_str()
       .type_name("S");
-  line.add_option("--repetitions", options.repetitions, "Repetitions; engines alternate")
+  line.add_option("--repetitions", options.repetitions, "Number of repetitions; the engines alternate")
       .check(whole_number(1, 1000))
       .capture_default_str()
       .type_name("N");
-  line.add_option("--threads", options.threads, "Also run Cohort with this many threads, alternating with one thread")
+  line.add_option("--threads", options.threads,
+                  "Also measure Cohort with this number of threads, in turn with one thread")
       .check(whole_number(1, 1024))
       .capture_default_str()
       .type_name("N");
@@ -121,12 +123,12 @@ void add_scenes_options(CommandLine line, BenchCommand& command) {
       .type_name("N");
   line.add_option("--json", command.json, "Write the results to this file as JSON").type_name("FILE");
   line.footer(
-      "Scenes of robots: crowd (in a walled square), free (without contacts between robots), crowd_wheels (Cohort\n"
-      "also has wheels as bodies), crowd_planar (Cohort in the plane only) and chain (connected robots).\n"
+      "Scenes with robots: crowd (in a walled square), free (no contacts between robots), crowd_wheels (Cohort\n"
+      "simulates wheels too), crowd_planar (Cohort simulates the plane only) and chain (connected robots).\n"
       "Other scenes: rays, build (time and memory) and accuracy (compared with closed-form solutions).\n"
       "Engines: cohort (Bullet's bodies), cohort-matrix (the same with 'dynamics: cohort'), bullet (Bullet's own\n"
       "world), ode-worldstep, ode-quickstep, mujoco and enki.\n"
-      "All engines simulate the same robots, poses, commands and steps in this process, alternating. Their models\n"
+      "All engines take turns in this process, with the same robots, poses, commands and steps. Their models\n"
       "differ: the others have wheels where Cohort has tracks. The torque of MuJoCo's motors decreases with speed.\n"
       "Enki is planar, without turrets, joints or torque limits. docs/bench.md describes scenes and engines.\n"
       "Example: cohort bench --scene crowd --robots 128,1000 --json results.json");
@@ -134,11 +136,12 @@ void add_scenes_options(CommandLine line, BenchCommand& command) {
 
 void add_thesis_options(CommandLine line, BenchCommand& command) {
   bench::ThesisOptions& options = command.thesis;
-  line.add_option("--seconds", options.seconds, "Simulated seconds per cell")
+  line.add_option("--seconds", options.seconds, "Simulated seconds for each cell of a table")
       .check(number_above_zero(1e6))
       .capture_default_str()
       .type_name("S");
-  line.add_option("--budget", options.budget, "Limit of CPU seconds per cell; longer runs are extrapolated")
+  line.add_option("--budget", options.budget,
+                  "Limit of CPU seconds for each cell; the results of longer runs are extrapolated")
       .check(number_above_zero(1e6))
       .capture_default_str()
       .type_name("S");
@@ -151,16 +154,18 @@ void add_thesis_options(CommandLine line, BenchCommand& command) {
       .check(one_of(bench::thesis_tables()))
       .type_name("NAME[,NAME...]");
   line.add_option("--robots", options.robots,
-                  "Numbers of robots, one row for each (default: those of the thesis, and larger ones)")
+                  "Numbers of robots; one row for each (default: those of the thesis and larger ones)")
       .comma_separated()
       .check(whole_number(1, 100'000))
       .type_name("N[,N...]");
   line.add_option("--json", command.json, "Write the results to this file as JSON").type_name("FILE");
   line.footer(
-      "Tables 5.1 (random movement) and 5.2 (connected robots): the times of the thesis, compared with Cohort and\n"
-      "ODE, the engine of the thesis. Both run on this machine with steps of 10 ms. ODE also runs with the 100 ms of\n"
-      "the thesis, and the behaviour of its robots is shown. Tables 5.3 (proximity sensors) and 5.4 (light and\n"
-      "sound): robots at rest, compared with rays of ODE. docs/bench.md describes the tables.");
+      "Tables 5.1 (random movement) and 5.2 (connected robots): the times in the thesis, compared with Cohort and "
+      "with\n"
+      "ODE, the engine of the thesis. Both run on this machine with steps of 10 ms. ODE also runs with the step of "
+      "the\n"
+      "thesis, 100 ms, and the table shows how its robots then behave. Tables 5.3 (proximity sensors) and 5.4 (light\n"
+      "and sound): robots at rest, compared with ray casts in ODE. docs/bench.md describes the tables.");
 }
 
 void add_lockstep_options(CommandLine line, BenchCommand& command) {
@@ -173,28 +178,29 @@ void add_lockstep_options(CommandLine line, BenchCommand& command) {
       .capture_default_str()
       .type_name("N[,N...]");
   line.add_option("--placement", command.placements,
-                  "Controllers per process: all in one, groups of eight, or one each (default: all three)")
+                  "Controllers per process: all in one process, eight, or one (default: measure all three)")
       .comma_separated()
       .check(one_of(names))
       .type_name("WHERE[,WHERE...]");
-  line.add_option("--seconds", options.seconds, "Wall time of each repetition, for Cohort and for UDP, in seconds")
+  line.add_option("--seconds", options.seconds, "Wall time of each repetition, for each of Cohort and UDP, in seconds")
       .check(number_above_zero(1e4))
       .capture_default_str()
       .type_name("S");
-  line.add_option("--repetitions", options.repetitions, "Repetitions; Cohort and UDP alternate")
+  line.add_option("--repetitions", options.repetitions, "Number of repetitions; Cohort and UDP alternate")
       .check(whole_number(1, 1000))
       .capture_default_str()
       .type_name("N");
   line.add_flag("--own-thread{false}", options.inline_step,
-                "Clients step on a separate thread, as 'cohort host' does without --inline");
+                "Step clients on a separate thread, like 'cohort host' without --inline");
   const Option look_ahead =
       line.add_flag("--look-ahead", options.look_ahead,
-                    "Measure physics and controllers that take equal time to compute, with and without a delay");
+                    "With controllers that take as long as physics, measure runs with and without a command delay");
   line.add_option("--json", command.json, "Write the results to this file as JSON").type_name("FILE");
   line.add_option("--svg", command.svg, "Draw the results to this file as SVG").type_name("FILE").excludes(look_ahead);
   line.footer(
-      "Compares a server and its clients in lockstep over DDS with the same bytes sent between the same number of\n"
-      "processes over raw UDP, alternating. docs/bench.md describes the measurement.\n"
+      "Compares a server and its clients in lockstep over DDS with the same number of processes that exchange the "
+      "same\n"
+      "bytes over raw UDP. The two alternate. docs/bench.md describes the measurement.\n"
       "Example: cohort bench lockstep --robots 8,128 --placement eights");
 }
 
@@ -221,9 +227,10 @@ Subcommand add_bench(CommandLine app) {
     sub.callback([command, what] { command->what = what; });
     return sub;
   };
-  add_thesis_options(add("thesis", "Repeat the benchmark tables of the thesis of 2005", What::thesis), *command);
+  add_thesis_options(
+      add("thesis", "Repeat the benchmark tables of the 2005 thesis that Cohort continues", What::thesis), *command);
   add_lockstep_options(
-      add("lockstep", "Measure the cost of the lockstep barrier, compared with raw UDP", What::lockstep), *command);
+      add("lockstep", "Measure the overhead of the lockstep barrier compared with raw UDP", What::lockstep), *command);
   CommandLine client = add("client", "", What::client);
   client.hide();
   add_client_options(client, command->client);

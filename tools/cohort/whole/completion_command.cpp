@@ -203,7 +203,7 @@ const std::map<std::string, std::string (*)(const CommandTree&)> scripts = {
 Subcommand add_completion(CommandLine app) {
   const auto shell = std::make_shared<std::string>();
   CommandLine line = app.add_subcommand(in_whole::completion.name, in_whole::completion.text);
-  line.add_option("SHELL", *shell, "Which one")
+  line.add_option("SHELL", *shell, "Shell that runs the script")
       .required()
       .check(one_of({"bash", "zsh", "fish"}))
       .type_name("bash|zsh|fish");

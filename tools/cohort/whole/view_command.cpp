@@ -176,38 +176,38 @@ Subcommand add_view(CommandLine app) {
   line.add_option("--secure-control", command->secure_control,
                   "With --control: folder of an identity that may control the run")
       .type_name("DIR");
-  line.add_option("--secure-drive", command->secure_drive,
-                  "Folder of the identity that drives robots from the page (default: the folder of --secure-control)")
+  line.add_option(
+          "--secure-drive", command->secure_drive,
+          "With --control: folder of an identity that may drive robots (default: the folder of --secure-control)")
       .type_name("DIR");
   line.add_flag("--open", command->opens, "Open the page in a browser");
   line.add_flag("--play-when-seen", command->plays_when_seen,
-                "Resume a run that starts paused when the first viewer connects");
+                "When the first viewer connects, resume a run that started paused");
   line.add_flag("--while-watched", command->while_watched, "Exit when the server has ended and no viewer is connected");
-  line.add_option("--written", command->written, "Recording that the server writes, shown when the server has ended")
+  line.add_option("--written", command->written,
+                  "Recording that the server writes; it is shown when the server has ended")
       .excludes(recording)
       .type_name("FILE");
-  line.add_option("--again", command->again, "Command line that repeats the run, shown to viewers when it has ended")
+  line.add_option("--again", command->again, "Command line that repeats the run; viewers see it when the run has ended")
       .type_name("TEXT");
-  line.add_option("--port", command->port,
-                  "TCP port to serve browsers on (default: 8080, or a free port if 8080 is in use)")
+  line.add_option("--port", command->port, "TCP port of the page (default: 8080, or any free port if 8080 is taken)")
       .check(whole_number(0, std::numeric_limits<std::uint16_t>::max()))
       .type_name("N");
-  line.add_option("--network", command->network, "Address of the network interface to serve browsers on")
+  line.add_option("--network", command->network, "Address of the network interface to which browsers connect")
       .capture_default_str()
       .type_name("ADDRESS");
   line.add_option("--token", command->token,
                   "Token that browsers must send (default: none on the loopback interface, otherwise a random token)")
       .type_name("TEXT");
   line.add_option("--origin", command->origins,
-                  "Origins of other pages that may connect, such as https://app.foxglove.dev")
+                  "Origins of other web pages that may connect, such as https://app.foxglove.dev")
       .comma_separated()
       .type_name("URL[,URL...]");
-  line.add_option("--threads", command->threads, "Threads that replay a recording (default: one per core)")
+  line.add_option("--threads", command->threads, "Number of threads that replay a recording (default: one per core)")
       .check(whole_number(1, 1024))
       .type_name("N");
   add_domain_option(line, command->connection.domains, domain_of_server);
-  add_secure_option(line, command->connection.secure,
-                    "Folder of the identity of an observer (default: $COHORT_SECURE)");
+  add_secure_option(line, command->connection.secure, "Folder of an observer's identity (default: $COHORT_SECURE)");
   line.footer("Example: cohort view run.mcap");
   return {line, [command](Log& log, const std::atomic<bool>& stop) {
             return command->recording.empty() ? view_server(*command, log, stop) : view_recording(*command, log, stop);

@@ -1,4 +1,4 @@
-"""Learning environments: for Gymnasium (`VectorEnv`, `Env`) and PettingZoo (`parallel_env`).
+"""Reinforcement learning environments for Gymnasium (`VectorEnv`, `Env`) and PettingZoo (`parallel_env`).
 
     import cohort, cohort.gym
 

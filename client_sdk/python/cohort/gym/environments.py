@@ -15,21 +15,23 @@ def _box(bounds, shape, dtype):
 class VectorEnv(gymnasium.vector.VectorEnv):
     """Many worlds of one experiment as a `gymnasium.vector.VectorEnv`. Worlds are stepped in C++.
 
-    One agent observes and commands all chosen robots of a world. Observations and actions are [env, robots * values].
-    Spaces have the bounds of the channels. The same seeds give the same trajectories for any number of threads and
-    environments. The first episode of environment i after `reset(seed=s)` is that of the experiment with seed s + i.
+    In each world, one agent observes and commands all selected robots. Observations and actions are arrays [env,
+    robots * values], and their spaces have the bounds of the channels. The same seeds give the same trajectories,
+    regardless of the number of threads and environments. After `reset(seed=s)`, the first episode of environment i is
+    the experiment with seed s + i.
 
     Args:
-        experiment: an `Experiment`, or an argument of `Experiment.read`.
+        experiment: an `Experiment`, or a file for `Experiment.read`.
         num_envs: number of worlds.
-        reward: called after each step with a `State`; returns an array [env].
-        done: called after each step with a `State`; returns an array [env] of bool, True to terminate the episode. An
-            episode also terminates if a stop condition of the experiment holds, or if a robot has an invalid state.
-        horizon: number of steps after which an episode is truncated. It is also truncated at the end of the
+        reward: function that is called after each step with a `State` and returns an array [env].
+        done: function that is called after each step with a `State` and returns an array [env] of bool, True to
+            terminate the episode. An episode also terminates if a stop condition of the experiment is met, or if a
+            robot has an invalid state.
+        horizon: number of steps after which an episode is truncated. An episode is also truncated at the end of the
             experiment's duration.
-        observe, act: patterns of channels, such as `["proximity/*/reading"]`; by default all.
+        observe, act: patterns of channel names, such as `["proximity/*/reading"]`; by default all channels.
         robots: names or patterns of robots with consecutive ids; by default all. Other robots keep neutral commands.
-        ticks_per_step: ticks of the world per step.
+        ticks_per_step: number of ticks per step.
         threads: number of threads that step the worlds.
         autoreset_mode: a `gymnasium.vector.AutoresetMode`.
         dtype: type of observations and actions.
@@ -85,9 +87,9 @@ class VectorEnv(gymnasium.vector.VectorEnv):
         """Starts the next episodes.
 
         Args:
-            seed: environment i gets seed + i; or a list with one seed per environment. By default, seeds continue from
-                those of the last episodes.
-            options: `{"reset_mask": array [env] of bool}` resets only these environments.
+            seed: an int, so that environment i gets seed + i, or a list with one seed per environment. By default, the
+                seeds are derived from those of the previous episodes.
+            options: `{"reset_mask": array [env] of bool}` selects the environments to reset.
         """
         which = numpy.ones(self.num_envs, dtype=bool)
         if options is not None and "reset_mask" in options:
@@ -152,7 +154,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):
 
 
 class Env(gymnasium.Env):
-    """One world as a `gymnasium.Env`: one agent observes and commands all chosen robots.
+    """One world as a `gymnasium.Env`: one agent observes and commands all selected robots.
 
     Its arguments are those of `VectorEnv`.
     """
@@ -165,7 +167,7 @@ class Env(gymnasium.Env):
         self.action_space = self._envs.single_action_space
 
     def reset(self, *, seed=None, options=None):
-        """Starts the next episode, with the given seed of the experiment if there is one."""
+        """Starts the next episode, as the experiment with `seed` if one is given."""
         super().reset(seed=seed)
         observations, _ = self._envs.reset(seed=seed)
         return observations[0], {}

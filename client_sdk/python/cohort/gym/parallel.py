@@ -9,8 +9,8 @@ from cohort.gym.worlds import Worlds
 def parallel_env(experiment, *, done=None, **arguments):
     """Returns one world as a `pettingzoo.ParallelEnv`: each robot is an agent with its scoped name.
 
-    Arguments are those of `VectorEnv`, except `num_envs` and `autoreset_mode`. `reward` and `done` return an array [1,
-    robot] or [robot], or one value for all.
+    The arguments are those of `VectorEnv`, except `num_envs` and `autoreset_mode`. `reward` and `done` return an array
+    [1, robot] or [robot], or one value for all robots.
     """
     import pettingzoo
 

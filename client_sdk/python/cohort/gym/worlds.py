@@ -1,4 +1,4 @@
-"""Common parts of the environments: worlds, observed and commanded channels, rewards, seeds."""
+"""Common parts of the environments: worlds, observed and commanded channels, rewards and seeds."""
 
 import numpy
 
@@ -7,14 +7,14 @@ from cohort.experiment import Experiment
 
 
 class State:
-    """The argument of `reward` and `done`: all worlds after a step.
+    """The argument of `reward` and `done`: the state of all worlds after a step.
 
     Attributes:
-        observations: [env, robot, value], all channels, also those that the environment does not observe; read-only.
-        commands: [env, robot, value], the commands of the step.
-        poses: [env, robot, 7], x y z [m] and quaternion w x y z in the world frame; read-only.
+        observations: [env, robot, value], observations of all channels, not only the observed ones; read-only.
+        commands: [env, robot, value], commands of the step.
+        poses: [env, robot, 7], x y z [m] and a quaternion w x y z in the world frame; read-only.
         last_poses: [env, robot, 7], poses before the step.
-        steps: [env], steps in the episode so far, including this one.
+        steps: [env], number of steps in the episode so far, including this one.
         seconds: simulated time of a step [s].
     """
 
@@ -31,14 +31,14 @@ class State:
         self.seconds = seconds
 
     def __getitem__(self, pattern):
-        """Returns the observations of the channels that match a pattern, an array [env, robot, value]."""
+        """Returns the observations of the channels that match a pattern: an array [env, robot, value]."""
         places = self._places.get(pattern)
         if places is None:
             places = self._places[pattern] = self._observation_channels.indices(pattern)
         return self.observations[:, :, places]
 
     def commands_of(self, pattern):
-        """Returns the commands of the channels that match a pattern, an array [env, robot, value]."""
+        """Returns the commands of the channels that match a pattern: an array [env, robot, value]."""
         places = self._places.get((pattern,))
         if places is None:
             places = self._places[(pattern,)] = self._command_channels.indices(pattern)
@@ -62,7 +62,7 @@ def _places(channels, patterns):
 
 
 def _seeds_of_episode(seeds, episodes):
-    """Returns distinct seeds for each episode; those of episode 0 are `seeds`. SplitMix64 (Steele et al., 2014)."""
+    """Returns `seeds` for episode 0, and distinct seeds for other episodes (SplitMix64, Steele et al., 2014)."""
     with numpy.errstate(over="ignore"):
         mixed = seeds + episodes * numpy.uint64(0x9E3779B97F4A7C15)
         mixed = (mixed ^ (mixed >> numpy.uint64(30))) * numpy.uint64(0xBF58476D1CE4E5B9)
@@ -152,12 +152,12 @@ class Worlds:
         return found
 
     def seed(self, seeds, which):
-        """Sets the seeds of worlds; the next episode uses the seed itself."""
+        """Sets the seeds of the worlds `which`. The next episode of each uses this seed itself."""
         self._seeds[which] = seeds[which]
         self._episodes[which] = 0
 
     def reset(self, which):
-        """Starts the next episode of these worlds, an array [env] of bool."""
+        """Starts the next episode of the worlds `which`, an array [env] of bool."""
         self.batch.reset(_seeds_of_episode(self._seeds, self._episodes), which)
         self._episodes[which] += numpy.uint64(1)
         self.state.steps[which] = 0
@@ -166,7 +166,7 @@ class Worlds:
     def step(self, actions, which=None):
         """Steps worlds with actions [env, robot, value].
 
-        Returns rewards, terminations and truncations. `state` is then that after the step.
+        Returns rewards, terminations and truncations. Updates `state`.
         """
         lower, upper = self.command_bounds
         if not numpy.isfinite(actions).all():
@@ -193,12 +193,12 @@ class Worlds:
         return values
 
     def rewards_per_env(self, rewards):
-        """Returns rewards as an array [env] of float64. Raises ValueError for another shape or NaN."""
+        """Returns rewards as an array [env] of float64. Raises ValueError if they have another shape or contain NaN."""
         rewards = self._per_env(rewards, "reward").astype(numpy.float64)
         if numpy.isnan(rewards).any():
             raise ValueError(f"reward(state) is NaN for environment {int(numpy.argmax(numpy.isnan(rewards)))}")
         return rewards
 
     def observations(self):
-        """Returns the observed channels of all worlds, a new array [env, robot, value]."""
+        """Returns the values of the observed channels of all worlds: a new array [env, robot, value]."""
         return self.state.observations[:, :, self._observation_places].astype(self.dtype)

@@ -163,7 +163,7 @@ int ctl(const CtlCommand& command, Log& log, const std::atomic<bool>& stop) {
 Subcommand add_ctl(CommandLine app) {
   const auto command = std::make_shared<CtlCommand>();
   CommandLine line =
-      app.add_subcommand("ctl", "Control a run: pause it, step it, change its world, save it, show its status");
+      app.add_subcommand("ctl", "Control a run: pause or step it, change its world, save it, or show its status");
   add_ctl_options(line, *command);
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return ctl(*command, log, stop); }};
 }

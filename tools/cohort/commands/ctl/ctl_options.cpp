@@ -98,7 +98,7 @@ class Requests {
 };
 
 void add_name(CommandLine sub, std::string& entity) {
-  sub.add_option("NAME", entity, "Name of the object; its scope is needed only if several objects have this name")
+  sub.add_option("NAME", entity, "Name of the object; the scope is needed only if several objects have the same name")
       .required()
       .type_name("");
 }
@@ -112,8 +112,7 @@ Option add_vector(CommandLine sub, const std::string& name, Vector3& vector, con
 
 void add_pose(CommandLine sub, WorldPose& pose) {
   sub.add_option_function<std::string>(
-         "--pose", [&pose](const std::string& value) { pose = pose_in(value); },
-         "Pose in the world frame, in metres and radians")
+         "--pose", [&pose](const std::string& value) { pose = pose_in(value); }, "Pose in the world frame [m, rad]")
       .type_name("\"X Y Z [ROLL PITCH YAW]\"")
       .required();
 }
@@ -123,19 +122,19 @@ void add_time_commands(Requests& requests) {
                         [](Control& control, const Nothing&) { return control.pause(); });
   requests.add<Nothing>("resume", "Resume the run", [](Control& control, const Nothing&) { return control.play(); });
   auto [step, steps] =
-      requests.add<std::uint64_t>("step", "Advance a paused run by N ticks and wait until they are done",
+      requests.add<std::uint64_t>("step", "Advance a paused run by N ticks, and return when they are done",
                                   [](Control& control, std::uint64_t count) { return control.step(count); });
   steps = 1;
   step.add_option("N", steps, "Number of ticks (default: 1)")
       .check(whole_number(1, std::uint64_t{1} << 62))
       .type_name("");
   auto [speed, set_speed] =
-      requests.add<double>("speed", "Limit the speed, in simulated seconds per second",
+      requests.add<double>("speed", "Limit the real-time factor, the simulated seconds per second of wall time",
                            [](Control& control, double factor) { return control.set_speed(factor); });
   speed
       .add_option_function<std::string>(
           "X", [&set = set_speed](const std::string& text) { set = text == "max" ? 0.0 : *parse_real(text); },
-          "max or a number")
+          "Real-time factor, or max for no limit")
       .required()
       .check(max_or_number_above_zero(1e9))
       .type_name("");
@@ -148,9 +147,9 @@ void add_time_commands(Requests& requests) {
       .check(whole_number(0, most))
       .type_name("N");
   auto [back, go_back] =
-      requests.add<double>("back", "Go back to the last snapshot at or before a time",
+      requests.add<double>("back", "Return to the last kept snapshot at or before a simulated time",
                            [](Control& control, double seconds) { return control.back(nanoseconds(seconds)); });
-  back.add_option("T", go_back, "Simulated seconds since the start of the run")
+  back.add_option("T", go_back, "Simulated time since the start of the run, in seconds")
       .required()
       .check(number_from_zero(most_seconds))
       .type_name("");
@@ -214,13 +213,15 @@ ControlReply ask_of_object(Control& control, const std::string& name, Ask ask) {
 void add_spawn_commands(Requests& requests) {
   auto [spawn, to_spawn] = requests.add<Spawn>("spawn", "Add an object or a robot to the world", spawn_model);
   spawn
-      .add_option("MODEL", to_spawn.model,
-                  "Model file (.sdf, .urdf, .yaml), or name of a model of the world or of one installed with Cohort")
+      .add_option(
+          "MODEL", to_spawn.model,
+          "Model file (.sdf, .urdf, .yaml), or the name of a model in the world or of a model installed with Cohort")
       .required()
       .type_name("");
   spawn.add_option("--name", to_spawn.name, "Name of the new object in the world").required().type_name("NAME");
-  spawn.add_option("--team", to_spawn.team, "Team that a robot joins, if more than one is possible").type_name("NAME");
-  spawn.add_flag("--rename", to_spawn.allow_renaming, "Choose another name if this one is taken");
+  spawn.add_option("--team", to_spawn.team, "Team that the robot joins; needed only if several are possible")
+      .type_name("NAME");
+  spawn.add_flag("--rename", to_spawn.allow_renaming, "Choose another name if this name is taken");
   add_pose(spawn, to_spawn.pose);
   auto [remove, to_remove] = requests.add<std::string>(
       "remove", "Remove an object from the world", [](Control& control, const std::string& entity) {
@@ -231,7 +232,7 @@ void add_spawn_commands(Requests& requests) {
 
 void add_motion_commands(Requests& requests) {
   auto [pose, new_pose] = requests.add<EntityState>(
-      "set-pose", "Move an object to a pose, at rest", [](Control& control, const auto& state) {
+      "set-pose", "Move an object to a pose and stop it", [](Control& control, const auto& state) {
         return ask_of_object(control, state.entity,
                              [&](const std::string& name) { return control.set_pose(name, state.pose); });
       });
@@ -243,8 +244,8 @@ void add_motion_commands(Requests& requests) {
                              [&](const std::string& name) { return control.set_twist(name, state.twist); });
       });
   add_name(velocity, new_twist.entity);
-  add_vector(velocity, "--linear", new_twist.twist.linear, "Linear velocity in the world frame, in m/s").required();
-  add_vector(velocity, "--angular", new_twist.twist.angular, "Angular velocity in the world frame, in rad/s");
+  add_vector(velocity, "--linear", new_twist.twist.linear, "Linear velocity in the world frame [m/s]").required();
+  add_vector(velocity, "--angular", new_twist.twist.angular, "Angular velocity in the world frame [rad/s]");
   struct Push {
     std::string entity;
     AppliedForce force;
@@ -256,12 +257,12 @@ void add_motion_commands(Requests& requests) {
       });
   AppliedForce& push = to_push.force;
   add_name(force, to_push.entity);
-  add_vector(force, "--force", push.force, "Force in the world frame, in N");
-  add_vector(force, "--torque", push.torque, "Torque in the world frame, in N m");
+  add_vector(force, "--force", push.force, "Force at the centre of mass, in the world frame [N]");
+  add_vector(force, "--torque", push.torque, "Torque in the world frame [N m]");
   force
       .add_option_function<double>(
           "--duration", [&push](const double& seconds) { push.duration = nanoseconds(seconds); },
-          "Duration in simulated seconds (default: one step)")
+          "Duration in simulated time, in seconds (default: one step)")
       .check(number_above_zero(9e9))
       .type_name("S");
   force.add_option("--link", push.link, "Link of the object (default: the root link)").type_name("LINK");
@@ -276,7 +277,11 @@ void add_light_command(Requests& requests) {
       "set-light", "Switch a light on or off, or set its intensity and color",
       [](Control& control, const Switched& to) { return control.set_light(to.light, to.setting); });
   LightSetting& set = switched.setting;
-  add_name(light, switched.light);
+  light
+      .add_option("NAME", switched.light,
+                  "Scoped name of a light (OBJECT/LIGHT), of an object (all of its lights), or a light of the world")
+      .required()
+      .type_name("");
   light
       .add_option_function<std::string>(
           "STATE", [&set](const std::string& state) { set.on = state == "on"; }, "on or off")
@@ -285,7 +290,8 @@ void add_light_command(Requests& requests) {
       .type_name("on|off");
   light
       .add_option_function<double>(
-          "--intensity", [&set](const double& intensity) { set.intensity = intensity; }, "Intensity of the light")
+          "--intensity", [&set](const double& intensity) { set.intensity = intensity; },
+          "Intensity of the light at 1 m")
       .type_name("X");
   light
       .add_option_function<std::string>(
@@ -294,7 +300,7 @@ void add_light_command(Requests& requests) {
             const Vector3 color = vector_in(value);
             set.color = Color{color.x, color.y, color.z};
           },
-          "Red, green and blue from 0 to 1")
+          "Red, green and blue, each from 0 to 1")
       .type_name("\"X Y Z\"");
 }
 
@@ -316,7 +322,7 @@ void add_ctl_options(CommandLine line, CtlCommand& command) {
   add_server_option(line, command.connection.server);
   line.add_option(
           "--timeout", command.timeout,
-          "Time limit in seconds (default: 5 to find the server, 30 for a reply, none for step, reset and load)")
+          "Time limit in seconds (default: 5 to find the server, 30 for a reply, none for step, reset, back and load)")
       .check(number_above_zero(9e6))
       .type_name("S");
   Requests requests(line, command);
@@ -331,20 +337,20 @@ void add_ctl_options(CommandLine line, CtlCommand& command) {
     sub.callback([&command, what] { command.what = what; });
   };
   add_file("save", "Save a snapshot of the run to a file", CtlCommand::What::save);
-  add_file("load", "Load a snapshot, from which the run continues", CtlCommand::What::load);
-  CommandLine status =
-      line.add_subcommand("status", "Show the state of the run, and the controllers that it waits for");
+  add_file("load", "Load a snapshot and continue the run from it", CtlCommand::What::load);
+  CommandLine status = line.add_subcommand("status", "Show the state of the run and the controllers that it waits for");
   status.add_flag("--watch", command.watch, "Update the status twice a second");
   status.add_flag("--json", command.json, "Print JSON; with --watch, one object per line");
   status.callback([&] { command.what = CtlCommand::What::status; });
   CommandLine history =
-      line.add_subcommand("history", "Show the events of the run, and the snapshots that it can go back to");
+      line.add_subcommand("history", "Show the events of the run and the snapshots to which it can return");
   history.add_flag("--json", command.json, "Print JSON");
   history.callback([&] { command.what = CtlCommand::What::history; });
   auto [entities, filter] = requests.add<std::string>(
       "entities", "List the objects in the world",
       [](Control& control, const std::string& expression) { return control.entities(expression); });
-  entities.add_option("FILTER", filter, "POSIX extended regular expression").type_name("");
+  entities.add_option("FILTER", filter, "POSIX extended regular expression: list only names that contain a match")
+      .type_name("");
   line.footer(
       "Examples: cohort ctl step 10\n"
       "          cohort ctl spawn post --name post_1 --pose \"1.6 0 0\"\n"

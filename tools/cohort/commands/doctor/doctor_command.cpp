@@ -90,20 +90,22 @@ int doctor(DoctorCommand command) {
 
 Subcommand add_doctor(CommandLine app) {
   const auto command = std::make_shared<DoctorCommand>();
-  CommandLine line = app.add_subcommand("doctor", "Diagnose common problems of the machine and the network");
+  CommandLine line = app.add_subcommand("doctor", "Diagnose common problems with the machine and the network");
   line.add_option("--server", command->server,
-                  "Address of a server that is expected to answer (default: any server on this machine)")
+                  "Address of a server that should be running (default: look for a server on this machine)")
       .envname("COHORT_SERVER")
       .type_name("ADDRESS");
   line.add_option("--domain", command->domain, "DDS domain of the server (default: 0)")
       .envname("COHORT_DOMAIN")
       .check(whole_number(0, last_domain))
       .type_name("N");
-  line.add_option("--network", command->network, "Address of the network interface to serve on")
+  line.add_option("--network", command->network,
+                  "Address of the network interface that a server on this machine would use")
       .envname("COHORT_NETWORK")
       .capture_default_str()
       .type_name("ADDRESS");
-  line.add_option("--secure", command->secure, "Folder made by 'cohort security', or the folder of one identity in it")
+  line.add_option("--secure", command->secure,
+                  "Folder created by 'cohort security', or the folder of one identity in it")
       .envname("COHORT_SECURE")
       .type_name("DIR");
   line.add_flag("--json", command->json, "Print the findings as JSON");

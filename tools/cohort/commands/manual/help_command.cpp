@@ -61,12 +61,13 @@ int help(const HelpCommand& command, Log& log) {
 Subcommand add_help(CommandLine app) {
   const auto command = std::make_shared<HelpCommand>();
   CommandLine line =
-      app.add_subcommand("help", "Show the manual of the elements and keys of worlds and experiments, or of a robot");
+      app.add_subcommand("help", "Show the manual of a robot, or of the elements and keys of worlds and experiments");
   const Option named =
-      line.add_option("TOPIC", command->topic, "Topic, such as sensors, placement, proximity_ring, events or robot")
+      line.add_option("TOPIC", command->topic,
+                      "Topic, such as sensors, placement, proximity_ring, events or robot (default: list all topics)")
           .type_name("");
-  line.add_option("NAME", command->name, "After 'robot': name of a robot, or a model file").type_name("");
-  line.add_option("--markdown", command->markdown, "Write the reference of all topics to this folder, in Markdown")
+  line.add_option("NAME", command->name, "With the topic robot: name of a robot, or a model file").type_name("");
+  line.add_option("--markdown", command->markdown, "Write the manual of all topics to this folder, as Markdown pages")
       .type_name("DIR")
       .excludes(named);
   line.footer("Example: cohort help robot sbot");

@@ -91,7 +91,7 @@ std::string manual_contents() {
   }
   return text +
          "Each name is also a topic. docs/worlds.md and docs/devices.md are guides with examples.\n"
-         "'cohort help robot NAME' describes a robot: its channels with units and ranges, its size and its mass.\n";
+         "'cohort help robot NAME' describes a robot: its size, its mass, and its channels with units and ranges.\n";
 }
 
 std::optional<std::string> nearest_topic(const std::string& unknown) {

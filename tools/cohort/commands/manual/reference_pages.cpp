@@ -194,7 +194,8 @@ std::string page_text(const Page& page) {
 std::string index_text() {
   std::string text = fmt::format(
       "{}\n# Reference\n\nThese pages list every `cohort:` element of a world and every key of an experiment. They are "
-      "made\nfrom the tables that Cohort checks files against. `cohort help TOPIC` prints the same in a terminal.\n"
+      "generated\nfrom the tables against which Cohort checks files. `cohort help TOPIC` prints the same in a "
+      "terminal.\n"
       "[Worlds and experiments](../worlds.md) and [devices](../devices.md) are the guides.\n\n"
       "## Values\n\n{}",
       made_by, parsing::details_of_topic("values"));

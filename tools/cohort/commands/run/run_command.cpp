@@ -387,22 +387,22 @@ Subcommand add_run(CommandLine app, LogFlags& flags) {
                                                                 {"per-robot", Controllers::per_robot},
                                                                 {"external", Controllers::external}};
   const auto command = std::make_shared<RunCommand>();
-  CommandLine line = app.add_subcommand("run", "Run an experiment with its controllers");
+  CommandLine line = app.add_subcommand("run", "Run an experiment and its controllers");
   line.add_option("FILE", command->files.emplace_back(),
-                  "Experiment (YAML), name of an example, or a world or model, which runs without controllers")
+                  "Experiment (YAML), name of an example, or a world or model, which is simulated without controllers")
       .required()
       .type_name("");
   add_run_options(line, *command, flags);
   line.add_option_function<std::string>(
           "--controllers",
           [&command = *command](const std::string& where) { command.controllers = placements.at(where); },
-          "Where controllers run: one process per team (process, the default), one per robot (per-robot), the server's "
-          "process (inprocess), or started elsewhere (external)")
+          "Processes of the controllers: one per team (process, the default), one per robot (per-robot), that of the "
+          "server (inprocess), or started separately (external)")
       .check(one_of({"process", "per-robot", "inprocess", "external"}))
       .type_name("process|per-robot|inprocess|external");
   line.add_option("--jobs", command->jobs,
-                  "With --seeds: runs at once, each in a process, with the same results (default: by the cores that it "
-                  "may use)")
+                  "With --seeds: number of runs at the same time, each in its own process; results do not depend on it "
+                  "(default: depends on the available cores)")
       .check(whole_number(1, 1024))
       .type_name("N");
   line.add_flag("--is-part", command->is_part).hide();
@@ -413,13 +413,14 @@ Subcommand add_run(CommandLine app, LogFlags& flags) {
 Subcommand add_serve(CommandLine app, LogFlags& flags) {
   const auto command = std::make_shared<RunCommand>();
   command->controllers = Controllers::external;
-  CommandLine line = app.add_subcommand("serve", "Run an experiment's world and wait for controllers to attach");
+  CommandLine line =
+      app.add_subcommand("serve", "Simulate an experiment's world for controllers that attach over the network");
   line.add_option("FILE", command->files,
-                  "Experiments (YAML), names of examples, worlds or models, run one after the other")
+                  "Experiments (YAML), names of examples, worlds or models, which run one after the other")
       .required()
       .type_name("");
   add_run_options(line, *command, flags);
-  line.add_option("--network", command->network, "Address of the network interface to serve on")
+  line.add_option("--network", command->network, "Address of the network interface to which clients connect")
       .envname("COHORT_NETWORK")
       .capture_default_str()
       .type_name("ADDRESS");

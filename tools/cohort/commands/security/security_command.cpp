@@ -147,13 +147,14 @@ void list(const SecurityCommand& command) {
 
 Subcommand add_security(CommandLine app) {
   const auto command = std::make_shared<SecurityCommand>();
-  CommandLine line = app.add_subcommand("security", "Create certificates and permissions, and list them");
+  CommandLine line =
+      app.add_subcommand("security", "Create and list certificates and permissions for the server and its clients");
   line.require_subcommand();
   const auto add_folder = [command](CommandLine sub) {
     sub.add_option("DIR", command->folder, "Folder of the identities").required().type_name("");
   };
   const auto add_days = [command](CommandLine sub) {
-    sub.add_option("--days", command->days, "Validity of the certificates in days")
+    sub.add_option("--days", command->days, "Period of validity of the certificates, in days")
         .check(whole_number(1, longest_validity))
         .capture_default_str()
         .type_name("N");
@@ -163,7 +164,8 @@ Subcommand add_security(CommandLine app) {
   add_folder(init_line);
   init_line
       .add_option("--client", command->clients,
-                  "Client, and the robots it may drive, or control; may be repeated (default: controllers=all)")
+                  "Client and its rights: the robots that it may drive, and 'control' to control the run; may be "
+                  "repeated (default: controllers=all)")
       .one_value()
       .type_name("NAME=SEL[,SEL...]");
   init_line.add_flag("--encrypt", command->encrypt, "Encrypt all messages (default: sign them)");
@@ -175,9 +177,9 @@ Subcommand add_security(CommandLine app) {
   add_folder(add_line);
   add_line.add_option("NAME", command->name, "Name of the client: letters, digits, _ and -").required().type_name("");
   add_line
-      .add_option(
-          "--robots", command->robots,
-          "Robots it may drive (all, an id, ids A..B, a name with *, or none), and control, separated by commas")
+      .add_option("--robots", command->robots,
+                  "Rights, separated by commas: the robots that it may drive (all, an id, ids A..B, a name with *, or "
+                  "none), and 'control' to control the run")
       .required()
       .comma_separated()
       .type_name("SEL[,SEL...]");
@@ -185,7 +187,8 @@ Subcommand add_security(CommandLine app) {
   add_line.callback([command] { command->what = SecurityCommand::What::add; });
   add_line.footer("Example: cohort security add keys green --robots green/*");
 
-  CommandLine list_line = line.add_subcommand("list", "List clients, their rights, and when their certificates expire");
+  CommandLine list_line =
+      line.add_subcommand("list", "List the clients, their rights, and the expiry dates of their certificates");
   add_folder(list_line);
   list_line.callback([command] { command->what = SecurityCommand::What::list; });
   list_line.footer("Example: cohort security list keys");

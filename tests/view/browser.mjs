@@ -74,8 +74,8 @@ async function click(page, name) {
       .clone()
       .set(x, y, z + 0.08)
       .project(viewer.stage.camera);
-    const { width, height } = document.getElementById("canvas").getBoundingClientRect();
-    return { x: 0.5 * (seen.x + 1) * width, y: 0.5 * (1 - seen.y) * height };
+    const { left, top, width, height } = document.getElementById("canvas").getBoundingClientRect();
+    return { x: left + 0.5 * (seen.x + 1) * width, y: top + 0.5 * (1 - seen.y) * height };
   }, name);
   await page.mouse.click(at.x, at.y);
 }
@@ -405,8 +405,8 @@ async function steersServer(page) {
       [0.25, -0.2],
     ].map(([x, y]) => {
       const seen = viewer.cameras.target.clone().set(x, y, 0.05).project(viewer.stage.camera);
-      const { width, height } = document.getElementById("canvas").getBoundingClientRect();
-      return { x: 0.5 * (seen.x + 1) * width, y: 0.5 * (1 - seen.y) * height };
+      const { left, top, width, height } = document.getElementById("canvas").getBoundingClientRect();
+      return { x: left + 0.5 * (seen.x + 1) * width, y: top + 0.5 * (1 - seen.y) * height };
     });
   });
   await page.keyboard.down("Shift");

@@ -187,7 +187,7 @@ async function drawsOverlays(page) {
     const { viewer } = window.cohort;
     viewer.home();
     viewer.draw(performance.now() + 1000);
-    const { width, height } = document.getElementById("canvas").getBoundingClientRect();
+    const { left, top, width, height } = document.getElementById("canvas").getBoundingClientRect();
     const shown = [...document.querySelectorAll("#labels span:not([hidden])")].map((each) => {
       const box = each.getBoundingClientRect();
       return [each.textContent, 0.5 * (box.left + box.right), box.bottom];
@@ -198,7 +198,7 @@ async function drawsOverlays(page) {
         .clone()
         .set(a, b, c + 0.12)
         .project(viewer.stage.camera);
-      return { name, beside: Math.hypot(0.5 * (at.x + 1) * width - x, 0.5 * (1 - at.y) * height - y) };
+      return { name, beside: Math.hypot(left + 0.5 * (at.x + 1) * width - x, top + 0.5 * (1 - at.y) * height - y) };
     });
   });
   assert.deepEqual(names.map(({ name }) => name).sort(), ["held", "holder", "lookout", "runner"]);

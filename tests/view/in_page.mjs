@@ -43,14 +43,14 @@ export const pausedTick = (page) =>
     return document.getElementById("factor").textContent === "paused" && shown === said && shown;
   });
 
-/** Where in the picture a place of the world is. */
+/** Where in the page a place of the world is seen. */
 export const seenAt = (page, place) =>
   page.evaluate(([x, y, z]) => {
     const { viewer } = window.cohort;
     viewer.draw(performance.now() + 1000); // past the blend of the last two frames
     const at = viewer.cameras.target.clone().set(x, y, z).project(viewer.stage.camera);
-    const { width, height } = document.getElementById("canvas").getBoundingClientRect();
-    return { x: 0.5 * (at.x + 1) * width, y: 0.5 * (1 - at.y) * height };
+    const { left, top, width, height } = document.getElementById("canvas").getBoundingClientRect();
+    return { x: left + 0.5 * (at.x + 1) * width, y: top + 0.5 * (1 - at.y) * height };
   }, place);
 
 /** Pixels of the picture at places of the world: red, green, blue of each. */

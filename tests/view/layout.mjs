@@ -241,16 +241,18 @@ async function isAccessible(page) {
   await check("phone");
 }
 
-// A run of two seconds that may be controlled.
+// A run of two seconds that begins paused and may be controlled.
 async function runsAgain(page) {
   const ended = () => until(page, () => document.getElementById("phase").innerText.includes("The run has finished"));
+  await run(page, "play");
   await ended();
   const card = await text(page, "phase-text");
   assert.match(card, /200 ticks, state hash [0-9a-f]{16}/);
   assert.equal(await text(page, "phase-word"), "■ finished");
   await page.locator("#again").click();
   await until(page, () => document.getElementById("phase").hidden);
-  await until(page, () => document.getElementById("phase-word").textContent === "▶ running");
+  await until(page, () => document.getElementById("phase-word").textContent === "❚❚ paused");
+  await run(page, "play");
   await ended();
   assert.equal(await text(page, "phase-text"), card);
 }

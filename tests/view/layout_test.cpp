@@ -31,7 +31,7 @@ TEST_F(Layout, StatisticsOfSelectedRobotsAreTheirs) { check("tells_of_many"); }
 TEST_F(Layout, AxeFindsNothingInAnyState) { check("is_accessible"); }
 
 TEST_F(Layout, ARunIsRepeatedFromThePage) {
-  Process run({cohort_program(), "run", demo_experiment(), "--view", "--control", "--duration", "2"});
+  Process run({cohort_program(), "run", demo_experiment(), "--view", "--control", "--paused", "--duration", "2"});
   ASSERT_TRUE(run.wait_for_output("http://127.0.0.1:")) << run.output();
   const std::string output = run.output();
   const std::size_t begin = output.find("http://");

@@ -191,17 +191,21 @@ export class Viewer {
 
   pickAt(x: number, y: number): number | undefined {
     if (!this.poses?.frame || !this.instances) return undefined;
-    const { width, height } = this.canvas.getBoundingClientRect();
-    return pick(this.poses, this.instances, this.stage.camera, new Vector2((2 * x) / width - 1, 1 - (2 * y) / height));
+    return pick(this.poses, this.instances, this.stage.camera, this.inPicture(x, y));
   }
 
-  /** Where the picture shows a height of the world [m]; nothing above the horizon. */
+  /** Where the picture shows a height of the world [m] at a place of the page; nothing above the horizon. */
   placeAt(x: number, y: number, height: number): [number, number] | undefined {
-    const { width, height: rows } = this.canvas.getBoundingClientRect();
     const raycaster = new Raycaster();
-    raycaster.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / rows), this.stage.camera);
+    raycaster.setFromCamera(this.inPicture(x, y), this.stage.camera);
     const at = raycaster.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -height), new Vector3());
     return at ? [at.x, at.y] : undefined;
+  }
+
+  // Returns a place of the page in the picture: from -1 at its left and lower edges to 1.
+  private inPicture(x: number, y: number): Vector2 {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    return new Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height);
   }
 
   find(name: string): number | undefined {

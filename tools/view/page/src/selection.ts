@@ -49,7 +49,7 @@ export function pick(poses: Poses, instances: Instances, camera: Camera, at: Vec
 /** An outline around the selected entity. */
 export class Outline {
   readonly group = new Group();
-  private readonly material = new MeshBasicMaterial({ color: 0x1f8fff, side: BackSide });
+  private readonly material = new MeshBasicMaterial({ color: 0x1f8fff, side: BackSide, toneMapped: false });
   private parts: { mesh: Mesh; link: number }[] = [];
   private entity: number | undefined;
 

@@ -1,9 +1,16 @@
-import { Plane, Quaternion, Raycaster, Vector2, Vector3 } from "three";
+import { Plane, Quaternion, Raycaster, Sphere, Vector2, Vector3 } from "three";
+import { Bounds } from "./bounds";
 import { Cameras } from "./cameras";
+import { ContactShadows } from "./contact_shadows";
 import { element } from "./element";
+import { fixed } from "./format";
+import { unionOf } from "./framing";
+import { Gizmo } from "./gizmo";
 import { Glow } from "./glow";
 import { Inspector } from "./inspector";
 import { Instances } from "./instances";
+import { Labels } from "./labels";
+import { type LegendEntry, legendOf } from "./legend";
 import {
   none,
   type Scene,
@@ -14,16 +21,17 @@ import {
   type SceneSignals,
   seconds,
 } from "./messages";
-import { Contacts, Labels, Rays, Trails } from "./overlays";
+import { Contacts, Rays, Trails } from "./overlays";
 import { Poses } from "./poses";
+import { levels } from "./quality";
 import { Outline, pick } from "./selection";
 import { Sound } from "./sound";
 import { Stage } from "./stage";
 
 export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sound" | "collisions";
 
-const homeMargin = 0.4; // [m] around robots
 const manyEntities = 1500; // above, shadows are off unless asked for
+const boundsShare = 12; // the times that finding where everything is takes, between two of them
 
 /** The picture and sound of the world. */
 export class Viewer {
@@ -36,6 +44,8 @@ export class Viewer {
   selected: number | undefined;
   signals: SceneSignals | undefined;
   framesDrawn = 0;
+  /** Is called when the page itself switches a layer. */
+  onLayers: () => void = () => undefined;
 
   private instances: Instances | undefined;
   private glow: Glow | undefined;
@@ -45,7 +55,15 @@ export class Viewer {
   private readonly rays = new Rays();
   private readonly trails = new Trails();
   private readonly labels = new Labels(element("labels"));
+  private readonly gizmo: Gizmo;
+  private bounds: Bounds | undefined;
+  private contactShadows: ContactShadows | undefined;
+  private areShadowsByHand = false;
+  private areBoundsStale = false;
+  private nextBounds = 0; // [ms]
+  private lastAspect = 0;
   private lastDrawn = performance.now();
+  private lastPicture: number | undefined; // [ms] of the page's clock; nothing if the page was hidden since
   private world = "";
 
   constructor(
@@ -57,6 +75,11 @@ export class Viewer {
     this.inspector = new Inspector(() => this.select(undefined));
     this.stage.add(this.outline.group, this.contacts.group, this.rays.group, this.trails.group);
     this.contacts.group.visible = false;
+    this.gizmo = new Gizmo(canvas);
+    document.addEventListener("visibilitychange", () => {
+      this.lastPicture = undefined;
+      this.stage.quality.forget();
+    });
   }
 
   // Data from the server.
@@ -64,20 +87,18 @@ export class Viewer {
   show(scene: Scene): void {
     const selected = this.selectedEntity?.name;
     const followed = this.cameras.followedEntity !== undefined ? this.cameras.mode : undefined;
-    if (this.instances) this.stage.remove(this.instances.group);
     if (this.glow) this.stage.remove(this.glow.group);
-    this.instances?.dispose();
     this.poses = new Poses(scene);
     this.glow = new Glow(this.poses);
     this.glow.wear(this.stage.theme === "dark");
+    this.stage.lay(scene);
     this.build(this.poses);
     this.stage.add(this.glow.group);
-    this.stage.lay(scene);
     this.trails.clear();
     const again = scene.entities.findIndex(({ name }) => name === selected);
     this.select(again >= 0 ? again : undefined);
     if (followed) this.cameras.choose(again >= 0 ? followed : "orbit", again);
-    if (scene.entities.length > manyEntities && scene.world !== this.world) this.layers.delete("shadows");
+    if (scene.world !== this.world) this.switchShadows();
     this.apply();
   }
 
@@ -87,6 +108,7 @@ export class Viewer {
     if (!this.poses?.take(frame, performance.now())) return;
     if (before && (frame.run !== before.run || frame.tick < before.tick)) this.trails.clear();
     this.instances?.update();
+    this.areBoundsStale = true;
     if (isFirst && this.signals) this.glow?.take(this.signals);
     if (isFirst && this.poses.scene.world !== this.world) {
       this.world = this.poses.scene.world;
@@ -149,30 +171,23 @@ export class Viewer {
     return found >= 0 ? found : undefined;
   }
 
-  /** All robots, or everything where there are none. */
+  /** Shows all bodies, and keeps them in the picture until the user moves the camera. */
   home(): void {
-    const { poses } = this;
-    if (!poses?.frame) return;
-    const position = new Vector3();
-    const low = new Vector3(Infinity, Infinity, Infinity);
-    const high = low.clone().negate();
-    const robots = this.robotEntities();
-    const wanted = robots.length > 0 ? robots : poses.scene.entities.map((_, entity) => entity);
-    for (const entity of wanted.filter((each) => !poses.absent.has(each))) {
-      poses.read(poses.placeOf(entity), position, new Quaternion());
-      low.min(position);
-      high.max(position);
-    }
-    if (low.x > high.x) return;
-    const centre = low.clone().add(high).multiplyScalar(0.5);
-    this.cameras.choose("orbit");
-    this.cameras.frame(centre, homeMargin + 0.5 * low.distanceTo(high));
+    if (this.poses?.frame && this.bounds) this.cameras.home(this.bounds.boxes());
+  }
+
+  /** Returns the colours of the picture and their meanings. */
+  legend(): LegendEntry[] {
+    if (!this.poses) return [];
+    const rays = this.layers.has("rays") && this.selectedEntity !== undefined && this.selectedEntity.robot !== none;
+    return legendOf(this.poses.scene, { rays, contacts: this.layers.has("contacts") });
   }
 
   toggle(layer: Layer): boolean {
     const isOn = !this.layers.has(layer);
     if (isOn) this.layers.add(layer);
     else this.layers.delete(layer);
+    if (layer === "shadows") this.areShadowsByHand = true;
     this.apply(layer);
     return isOn;
   }
@@ -181,6 +196,7 @@ export class Viewer {
     document.documentElement.dataset.theme = theme;
     this.stage.wear(theme);
     this.glow?.wear(theme === "dark");
+    this.contactShadows?.wear(theme === "dark");
   }
 
   robotEntities(): number[] {
@@ -200,7 +216,9 @@ export class Viewer {
     const elapsed = Math.min(0.1, Math.max(0, now - this.lastDrawn) / 1000);
     this.lastDrawn = now;
     const { poses, stage } = this;
+    this.adapt();
     if (poses?.frame) {
+      if (poses.blend < 1 || this.areBoundsStale) stage.isShadowStale = true;
       poses.advance(now);
       this.instances?.draw();
       this.glow?.draw(this.canvas.height);
@@ -209,8 +227,10 @@ export class Viewer {
       this.sound.draw(poses, stage.camera);
       this.showPose();
     }
+    this.findBounds();
     this.cameras.advance(poses, elapsed);
     stage.draw(this.cameras.target);
+    this.gizmo.draw(stage.camera, this.cameras.target);
     const named = this.layers.has("labels") ? this.robotEntities() : this.selected === undefined ? [] : [this.selected];
     this.labels.draw(
       poses?.frame ? poses : undefined,
@@ -218,6 +238,7 @@ export class Viewer {
       stage.camera,
       this.canvas.clientWidth,
       this.canvas.clientHeight,
+      this.selected,
     );
     ++this.framesDrawn;
   }
@@ -225,14 +246,60 @@ export class Viewer {
   private showPose(): void {
     if (this.selected === undefined) return;
     const { position, heading } = this.poseOf(this.selected);
-    const [x, y, z] = position.map((each) => each.toFixed(3));
-    this.inspector.showPose(`x ${x}  y ${y}  z ${z} m · ${((180 * heading) / Math.PI).toFixed(0)}°`);
+    const [x, y, z] = position.map((each) => fixed(each, 3));
+    this.inspector.showPose(`x ${x}  y ${y}  z ${z} m · ${fixed((180 * heading) / Math.PI, 0)}°`);
   }
 
   private build(poses: Poses): void {
+    for (const each of [this.instances, this.contactShadows]) {
+      if (each) this.stage.remove(each.group);
+      each?.dispose();
+    }
     this.instances = new Instances(poses, this.layers.has("collisions") ? "collision" : "visual");
+    this.bounds = new Bounds(poses, this.instances);
     this.stage.add(this.instances.group);
+    this.contactShadows = undefined;
+    const height = this.stage.groundHeight;
+    if (height !== undefined) {
+      this.contactShadows = new ContactShadows(poses, this.instances, height);
+      this.contactShadows.wear(this.stage.theme === "dark");
+      this.stage.add(this.contactShadows.group);
+    }
     if (poses.frame) this.instances.update();
+    this.areBoundsStale = true;
+  }
+
+  // Looks where everything is: for the camera that keeps it in the picture, and for shadows.
+  private findBounds(): void {
+    const begin = performance.now();
+    const { aspect } = this.stage.camera;
+    const isDue = this.areBoundsStale || aspect !== this.lastAspect;
+    if (!isDue || begin < this.nextBounds || !this.bounds || !this.poses?.frame) return;
+    this.areBoundsStale = false;
+    this.lastAspect = aspect;
+    const boxes = this.bounds.boxes();
+    this.stage.surroundings = unionOf(this.bounds.all).getBoundingSphere(new Sphere());
+    if (boxes.length > 0) this.cameras.watch(boxes);
+    this.nextBounds = performance.now() + boundsShare * (performance.now() - begin);
+  }
+
+  // Draws coarser if the pictures come slowly, and finer again.
+  private adapt(): void {
+    const now = performance.now();
+    const elapsed = this.lastPicture === undefined ? 0 : now - this.lastPicture;
+    this.lastPicture = now;
+    if (!this.stage.adapt(elapsed)) return;
+    this.switchShadows();
+    this.stage.cast(this.layers.has("shadows"));
+    this.onLayers();
+  }
+
+  // As the page chooses, unless the user has chosen.
+  private switchShadows(): void {
+    if (this.areShadowsByHand || !this.poses) return;
+    const isOn = this.poses.scene.entities.length <= manyEntities && levels[this.stage.quality.level].shadows;
+    if (isOn) this.layers.add("shadows");
+    else this.layers.delete("shadows");
   }
 
   private apply(changed?: Layer): void {
@@ -241,8 +308,6 @@ export class Viewer {
     this.sound.switch(this.layers.has("sound"));
     if (!this.layers.has("trails")) this.trails.clear();
     if (changed === "collisions" && this.poses && this.instances) {
-      this.stage.remove(this.instances.group);
-      this.instances.dispose();
       this.build(this.poses);
       this.outline.select(this.selected, this.poses, this.instances);
     }

@@ -13,7 +13,7 @@ const eyeHeight = 0.05; // [m] above the root link's origin
 const flySpeed = 1.5; // [m/s]
 const fromAbove = new Vector3(0, 1e-3, -1);
 const heading = 0.35; // [rad] of the first view, to the left of the y axis
-const elevations = [17, 29]; // [degrees] of the first view, of what is tall and of what is flat
+const elevations = [16, 25]; // [degrees] of the first view, of what is tall and of what is flat
 const hasReducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
 
 /** Where people look from. */

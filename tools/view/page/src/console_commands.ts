@@ -4,6 +4,7 @@ import { type Command, type Commands, command } from "./commands";
 import type { Connection, ViewRequest } from "./connection";
 import type { ConsolePanel } from "./console";
 import { element } from "./element";
+import { fixed } from "./format";
 import type { TimeBar } from "./time_bar";
 import type { Layer, Viewer } from "./viewer";
 
@@ -124,7 +125,7 @@ function cameraCommands({ viewer }: Parts): Command[] {
       "prints a position and heading",
       ([name]) => {
         const { position, heading } = viewer.poseOf(entityOf(name));
-        return `${position.map((each) => each.toFixed(4)).join(" ")} m, heading ${heading.toFixed(3)} rad`;
+        return `${position.map((each) => fixed(each, 4)).join(" ")} m, heading ${fixed(heading, 3)} rad`;
       },
       names,
     ),
@@ -186,12 +187,13 @@ function pictureCommands({ viewer, connection, console, timeBar, commands, canva
       () => ["light", "dark"],
     ),
     command("screenshot", "saves the picture as PNG", async () => {
-      download(await screenshot(canvas, () => viewer.draw(performance.now())), "cohort.png");
+      download(await screenshot(canvas, () => viewer.drawFinely()), "cohort.png");
       return "cohort.png";
     }),
     command("film", "starts or stops recording the picture as WebM", () => {
       if (film.isOn) film.stop();
       else film.start();
+      viewer.stage.quality.isHeld = film.isOn;
       return film.isOn ? "recording; 'film' ends it" : "cohort.webm";
     }),
     command("fullscreen", "enters or leaves full screen", async () => {

@@ -1,12 +1,4 @@
-import {
-  Box3,
-  BufferAttribute,
-  Group,
-  InstancedBufferGeometry,
-  Matrix4,
-  Mesh,
-  ShaderMaterial,
-} from "three";
+import { Box3, BufferAttribute, Group, InstancedBufferGeometry, Matrix4, Mesh, ShaderMaterial } from "three";
 import { growBy } from "./framing";
 import { type Instances, placeDeclarations } from "./instances";
 import type { Poses } from "./poses";
@@ -46,7 +38,7 @@ void main() {
   vec2 beyond = abs(at) - size.xy + 0.4 * size.z;
   float outside = length(max(beyond, 0.0)) + min(max(beyond.x, beyond.y), 0.0);
   float shade = 1.0 - smoothstep(-0.2 * size.z, 1.4 * size.z, outside);
-  gl_FragColor = vec4(0.0, 0.0, 0.0, darkness * strength * shade * shade);
+  gl_FragColor = vec4(0.05, 0.07, 0.11, darkness * strength * shade * shade);
 }`;
 
 /** Soft shadows where bodies meet the ground, which need no shadow map and no pass of their own. */

@@ -1,4 +1,4 @@
-import { Box3, Matrix4, Vector3 } from "three";
+import { Box3, type Matrix4, Vector3 } from "three";
 
 /** Where a camera is and what it looks at. */
 export interface View {

@@ -51,7 +51,12 @@ export class Gizmo {
     this.svg.setAttribute("aria-label", "Axes and scale");
     this.svg.setAttribute("width", "220");
     this.svg.setAttribute("height", "64");
-    Object.assign(this.svg.style, { position: "absolute", pointerEvents: "none", overflow: "visible", color: "inherit" });
+    Object.assign(this.svg.style, {
+      position: "absolute",
+      pointerEvents: "none",
+      overflow: "visible",
+      color: "inherit",
+    });
     const cross = added(this.svg, "g", { transform: "translate(30 34)" });
     this.arms = axes.map(({ color, name }) => {
       const group = added(cross, "g", {});

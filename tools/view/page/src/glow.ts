@@ -150,7 +150,9 @@ export class Glow {
   }
 
   private addLamp({ range }: SceneEmitter, texture: CanvasTexture): Lamp {
-    const glow = new Sprite(new SpriteMaterial({ map: texture, transparent: true, depthWrite: false, toneMapped: false }));
+    const glow = new Sprite(
+      new SpriteMaterial({ map: texture, transparent: true, depthWrite: false, toneMapped: false }),
+    );
     glow.scale.setScalar(0.35);
     glow.visible = false;
     const hasReach = range > 0 && range < 1e4;

@@ -8,7 +8,7 @@ float lineOf(vec2 at, float spacing, float width) {
   vec2 scaled = at / spacing;
   vec2 slope = fwidth(scaled);
   vec2 distance = abs(fract(scaled - 0.5) - 0.5) / max(slope, vec2(1e-6));
-  float fading = 1.0 - smoothstep(0.1, 0.5, max(slope.x, slope.y));
+  float fading = 1.0 - smoothstep(0.06, 0.26, max(slope.x, slope.y));
   return (1.0 - min(min(distance.x, distance.y) / width, 1.0)) * fading;
 }
 float squareOf(vec2 at, float spacing) {

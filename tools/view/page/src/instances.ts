@@ -143,7 +143,13 @@ export class Instances {
     const shareOf = (shape: SceneShape): number => teamShare(shape, dominant);
     const shape = count > 0 ? linkGeometry(scene, shapes, count, shareOf) : undefined;
     if (!shape?.boundingSphere) return;
-    this.links.push({ model, link, geometry: shape, sphere: shape.boundingSphere, parts: shape.userData.parts as Box3[] });
+    this.links.push({
+      model,
+      link,
+      geometry: shape,
+      sphere: shape.boundingSphere,
+      parts: shape.userData.parts as Box3[],
+    });
     const geometry = new InstancedBufferGeometry();
     for (const name of ["position", "normal", "color", "teamShare"])
       geometry.setAttribute(name, shape.getAttribute(name));

@@ -48,9 +48,22 @@ export function legendOf(scene: Scene, { rays, contacts }: ShownOverlays): Legen
   };
   const teams = teamColors(scene);
   for (const [name, color] of teams) add(`team ${name}`, color, "team");
-  if (teams.size === 0) add("robots", ofModel(({ robot }) => robot !== none), "robot");
-  add("movable objects", ofModel(({ robot, model }) => robot === none && !scene.models[model].is_static), "movable");
-  add("walls and other fixed objects", ofModel(({ model }) => isWall(scene, model)), "wall");
+  if (teams.size === 0)
+    add(
+      "robots",
+      ofModel(({ robot }) => robot !== none),
+      "robot",
+    );
+  add(
+    "movable objects",
+    ofModel(({ robot, model }) => robot === none && !scene.models[model].is_static),
+    "movable",
+  );
+  add(
+    "walls and other fixed objects",
+    ofModel(({ model }) => isWall(scene, model)),
+    "wall",
+  );
   if (scene.leds.length > 0) add("LEDs that are on", "#e5484d", "led");
   if (scene.lamps.length > 0) add("lamps and their range", hexText(overlayColors.lamp), "lamp");
   if (rays) {

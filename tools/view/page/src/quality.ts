@@ -5,19 +5,20 @@ export interface Level {
   shadows: boolean;
   /** Whether surfaces reflect the sky. */
   reflections: boolean;
+  /** Time between pictures of which the page draws coarser [ms]. */
+  slow: number;
 }
 
 /** From the finest to the coarsest. */
 export const levels: readonly Level[] = [
-  { resolution: 1, shadows: true, reflections: true },
-  { resolution: 1, shadows: true, reflections: false },
-  { resolution: 0.75, shadows: true, reflections: false },
-  { resolution: 0.5, shadows: true, reflections: false },
-  { resolution: 0.5, shadows: false, reflections: false },
-  { resolution: 0.35, shadows: false, reflections: false },
+  { resolution: 1, shadows: true, reflections: true, slow: 40 },
+  { resolution: 1, shadows: true, reflections: false, slow: 55 },
+  { resolution: 0.75, shadows: true, reflections: false, slow: 55 },
+  { resolution: 0.5, shadows: true, reflections: false, slow: 70 },
+  { resolution: 0.5, shadows: false, reflections: false, slow: 130 },
+  { resolution: 0.35, shadows: false, reflections: false, slow: Infinity },
 ];
 
-const slow = 55; // [ms] between pictures, of which the page draws coarser
 const fast = 24; // [ms], of which it tries to draw finer
 const pause = 1000; // [ms]; longer without a picture is not slow drawing, unless it lasts
 const leastTime = 700; // [ms] of slow pictures before it draws coarser
@@ -50,7 +51,7 @@ export class Quality {
   take(elapsed: number): boolean {
     if (this.isHeld || elapsed <= 0) return false;
     this.average += smoothing * (Math.min(elapsed, pause) - this.average);
-    this.slowFor = this.average > slow ? this.slowFor + elapsed : 0;
+    this.slowFor = this.average > levels[this.level].slow ? this.slowFor + elapsed : 0;
     this.fastFor = this.average < fast ? this.fastFor + elapsed : 0;
     if (this.slowFor > leastTime && this.level < this.coarsest) {
       if (this.isAttempt) this.wait = Math.min(longestWait, 2 * this.wait);

@@ -93,7 +93,9 @@ export function linkGeometry(
     });
   if (parts.length === 0) return undefined;
   const merged = mergeGeometries(parts);
-  merged.userData.parts = parts.map((part) => new Box3().setFromBufferAttribute(part.getAttribute("position") as BufferAttribute));
+  merged.userData.parts = parts.map((part) =>
+    new Box3().setFromBufferAttribute(part.getAttribute("position") as BufferAttribute),
+  );
   merged.computeBoundingSphere();
   return merged;
 }

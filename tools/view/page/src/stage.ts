@@ -70,6 +70,7 @@ export class Stage {
   private readonly fog = new Fog(0, 25, 160);
   private ground: Ground | undefined;
   private chosenRatio: number;
+  private isFine = false;
   private reflections: Texture | undefined;
 
   constructor(canvas: HTMLCanvasElement) {
@@ -145,15 +146,16 @@ export class Stage {
     return true;
   }
 
-  /** Draws at full resolution once, such as for a picture that is kept. */
+  /** Draws at full resolution until the next picture, such as for one that is kept. */
   drawFinely(target: Vector3): void {
-    const ratio = this.renderer.getPixelRatio();
-    if (ratio === this.chosenRatio) this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, mostPixelRatio));
+    this.setRatio(Math.min(window.devicePixelRatio, mostPixelRatio));
     this.draw(target);
-    this.renderer.setPixelRatio(ratio);
+    this.isFine = true;
   }
 
   draw(target: Vector3): void {
+    if (this.isFine) this.setRatio(this.ratio());
+    this.isFine = false;
     const distance = this.camera.position.distanceTo(target);
     this.fog.near = Math.max(8, 1.5 * distance);
     this.fog.far = Math.max(90, 9 * distance);
@@ -205,13 +207,16 @@ export class Stage {
     return Math.min(window.devicePixelRatio, mostPixelRatio) * levels[this.quality.level].resolution;
   }
 
-  // A ratio that someone else has set stays.
   private applyQuality(): void {
-    if (this.renderer.getPixelRatio() === this.chosenRatio) {
-      this.chosenRatio = this.ratio();
-      this.renderer.setPixelRatio(this.chosenRatio);
-    }
+    this.setRatio(this.ratio());
     this.reflect();
+  }
+
+  // A ratio that someone else has set stays.
+  private setRatio(ratio: number): void {
+    if (this.renderer.getPixelRatio() !== this.chosenRatio || ratio === this.chosenRatio) return;
+    this.chosenRatio = ratio;
+    this.renderer.setPixelRatio(ratio);
   }
 
   private reflect(): void {
@@ -241,7 +246,10 @@ function reflectionsOf(renderer: WebGLRenderer, { sky, ground }: (typeof looks)[
     const up = positions.getZ(i) / 10;
     const color = up < -0.02 ? below.clone() : horizon.clone().lerp(zenith, Math.max(0, up) ** 0.6);
     const towardsSun = new Vector3().fromBufferAttribute(positions, i).normalize().dot(sunDirection);
-    color.lerp(new Color(0xffffff), 0.3).multiplyScalar(1 + 6 * Math.max(0, towardsSun) ** 24).toArray(colors, 3 * i);
+    color
+      .lerp(new Color(0xffffff), 0.3)
+      .multiplyScalar(1 + 6 * Math.max(0, towardsSun) ** 24)
+      .toArray(colors, 3 * i);
   }
   geometry.setAttribute("color", new BufferAttribute(colors, 3));
   const material = new MeshBasicMaterial({ vertexColors: true, side: BackSide, toneMapped: false });

@@ -8,7 +8,9 @@ const shareWithoutDominant = 0.55; // where files of meshes have the colours
 
 /** Returns the colour of each team, in the order of its first robot; nothing if all robots are of one team. */
 export function teamColors(scene: Scene): Map<string, Color> {
-  const names = new Set(scene.entities.filter(({ robot, team }) => robot !== none && team !== "").map(({ team }) => team));
+  const names = new Set(
+    scene.entities.filter(({ robot, team }) => robot !== none && team !== "").map(({ team }) => team),
+  );
   if (names.size < 2) return new Map();
   return new Map(
     [...names].map((name, i) => {

@@ -10,7 +10,7 @@ import { Glow } from "./glow";
 import { Inspector } from "./inspector";
 import { Instances } from "./instances";
 import { Labels } from "./labels";
-import { type LegendEntry, legendOf } from "./legend";
+import { type LegendEntry, legendOf, showLegend } from "./legend";
 import {
   none,
   type Scene,
@@ -142,6 +142,7 @@ export class Viewer {
     this.outline.select(entity, this.poses, this.instances);
     const chosen = this.selectedEntity;
     this.inspector.select(chosen, chosen && this.poses?.scene.models[chosen.model]);
+    this.showLegend();
     this.onSelect(chosen && chosen.robot !== none ? chosen.robot : undefined);
   }
 
@@ -183,6 +184,11 @@ export class Viewer {
     return legendOf(this.poses.scene, { rays, contacts: this.layers.has("contacts") });
   }
 
+  private showLegend(): void {
+    const panel = document.getElementById("legend");
+    if (panel) showLegend(panel, this.legend());
+  }
+
   toggle(layer: Layer): boolean {
     const isOn = !this.layers.has(layer);
     if (isOn) this.layers.add(layer);
@@ -216,7 +222,9 @@ export class Viewer {
     const elapsed = Math.min(0.1, Math.max(0, now - this.lastDrawn) / 1000);
     this.lastDrawn = now;
     const { poses, stage } = this;
-    this.adapt();
+    const clock = performance.now();
+    this.adapt(this.lastPicture === undefined ? 0 : clock - this.lastPicture);
+    this.lastPicture = clock;
     if (poses?.frame) {
       if (poses.blend < 1 || this.areBoundsStale) stage.isShadowStale = true;
       poses.advance(now);
@@ -241,6 +249,12 @@ export class Viewer {
       this.selected,
     );
     ++this.framesDrawn;
+  }
+
+  /** Draws at full resolution, for a picture that is kept. */
+  drawFinely(): void {
+    this.draw(performance.now());
+    this.stage.drawFinely(this.cameras.target);
   }
 
   private showPose(): void {
@@ -283,11 +297,8 @@ export class Viewer {
     this.nextBounds = performance.now() + boundsShare * (performance.now() - begin);
   }
 
-  // Draws coarser if the pictures come slowly, and finer again.
-  private adapt(): void {
-    const now = performance.now();
-    const elapsed = this.lastPicture === undefined ? 0 : now - this.lastPicture;
-    this.lastPicture = now;
+  /** Draws coarser if the pictures come slowly, and finer again, by the time since the picture before [ms]. */
+  adapt(elapsed: number): void {
     if (!this.stage.adapt(elapsed)) return;
     this.switchShadows();
     this.stage.cast(this.layers.has("shadows"));
@@ -305,6 +316,7 @@ export class Viewer {
   private apply(changed?: Layer): void {
     this.stage.cast(this.layers.has("shadows"));
     this.contacts.group.visible = this.layers.has("contacts");
+    this.showLegend();
     this.sound.switch(this.layers.has("sound"));
     if (!this.layers.has("trails")) this.trails.clear();
     if (changed === "collisions" && this.poses && this.instances) {

@@ -18,6 +18,7 @@ import {
 } from "./in_page.mjs";
 
 const isBlue = ([red, green, blue]) => blue > 100 && blue > 1.4 * red && blue > green;
+const isYellow = ([red, green, blue]) => red > 120 && red > 1.2 * green && green > 1.5 * blue;
 const isOrange = ([red, green, blue]) => red > 120 && red > 1.5 * green && green > blue;
 
 async function draws(page, file) {
@@ -186,7 +187,7 @@ async function keepsInFrame(page) {
   assert.equal(await keeps(), false, "while it follows");
 }
 
-// Two teams of s-bots on a plane: those of the first are blue, those of the second orange.
+// Two teams of s-bots on a plane: those of the first are blue, those of the second are a yellowish orange.
 async function coloursTeams(page, file) {
   const expected = JSON.parse(readFileSync(file, "utf8"));
   await run(page, `pause; seek ${expected.time}`);
@@ -204,7 +205,7 @@ async function coloursTeams(page, file) {
     expected.robots.map(({ x, y }) => [x, y, 0.1]),
   );
   for (const [i, { name }] of expected.robots.entries()) {
-    const hasColour = name.startsWith("a/") ? isBlue : isOrange;
+    const hasColour = name.startsWith("a/") ? isBlue : isYellow;
     assert.ok(hasColour(pixels[i]), `where ${name} is, the picture is ${pixels[i]}`);
   }
 }

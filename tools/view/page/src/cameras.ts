@@ -22,6 +22,8 @@ export class Cameras {
   mode: CameraMode = "orbit";
   /** Keys that are held and fly the camera: forward, back, left, right, up, down. */
   readonly held = new Set<string>();
+  /** Whether the camera stands still even if something leaves the picture, such as while the user aims. */
+  isHeld: () => boolean = () => false;
   private followed: number | undefined;
   private readonly at = new Vector3();
   private readonly before = new Vector3();
@@ -112,7 +114,7 @@ export class Cameras {
     if (poses?.frame && this.followedEntity !== undefined) this.move(poses, this.followedEntity);
     if (this.mode === "fly") this.fly(elapsed);
     this.letGo();
-    if (this.grabbed === undefined)
+    if (this.grabbed === undefined && !this.isHeld())
       this.keeper.follow({ position: this.camera.position, target: this.target }, elapsed, !hasReducedMotion.matches);
     if (this.mode !== "eye") this.controls.update();
   }

@@ -6,38 +6,46 @@ const above = 0.12; // [m]; height of a label above an entity
 const gap = 2; // [pixels] between labels
 const newGap = 8; // [pixels] around one that was not there before, so that labels do not come and go
 const keeping = 0.6; // ratio by which a label that is there counts as nearer
-const mostCandidates = 400; // that are tried, the best first
 
 /** A name that may be shown, at a place of the picture in pixels: the middle of its lower edge. */
 export interface Candidate {
   entity: number;
   x: number;
   y: number;
-  width: number;
-  height: number;
   /** The smaller, the sooner it is shown. */
   rank: number;
   isShown: boolean;
+}
+
+/** The size of a label [pixels]. */
+export interface Size {
+  width: number;
+  height: number;
 }
 
 /**
  * Chooses labels that do not overlap, in the order of their ranks and at most `most`. Labels that are shown already are
  * preferred, and others need more free space, so that the choice is stable while things move.
  */
-export function chooseLabels(candidates: readonly Candidate[], most = mostLabels): Candidate[] {
-  const chosen: Candidate[] = [];
+export function chooseLabels(
+  candidates: readonly Candidate[],
+  sizeOf: (entity: number) => Size,
+  most = mostLabels,
+): Candidate[] {
+  const chosen: (Candidate & Size)[] = [];
   const order = [...candidates].sort((a, b) => preferred(a) - preferred(b) || a.entity - b.entity);
-  for (const each of order.slice(0, mostCandidates)) {
+  for (const each of order) {
     if (chosen.length >= most) break;
     const free = each.isShown ? gap : newGap;
-    if (!chosen.some((other) => overlap(each, other, free))) chosen.push(each);
+    const label = { ...each, ...sizeOf(each.entity) };
+    if (!chosen.some((other) => overlap(label, other, free))) chosen.push(label);
   }
   return chosen;
 }
 
 const preferred = ({ rank, isShown }: Candidate): number => (isShown ? keeping * rank : rank);
 
-function overlap(a: Candidate, b: Candidate, free: number): boolean {
+function overlap(a: Candidate & Size, b: Candidate & Size, free: number): boolean {
   const isBeside = Math.abs(a.x - b.x) >= 0.5 * (a.width + b.width) + free;
   const isAbove = a.y + free <= b.y - b.height || b.y + free <= a.y - a.height;
   return !isBeside && !isAbove;
@@ -47,8 +55,7 @@ function overlap(a: Candidate, b: Candidate, free: number): boolean {
 export class Labels {
   private readonly shown = new Map<number, HTMLElement>();
   private readonly spare: HTMLElement[] = [];
-  private readonly widths = new Map<string, number>();
-  private lineHeight = 0;
+  private readonly sizes = new Map<string, Size>();
   private readonly measure: HTMLElement;
   private readonly at = new Vector3();
   private readonly turn = new Quaternion();
@@ -56,6 +63,7 @@ export class Labels {
   constructor(private readonly parent: HTMLElement) {
     this.measure = parent.appendChild(document.createElement("span"));
     this.measure.hidden = true;
+    this.measure.style.visibility = "hidden";
   }
 
   /** `first` is shown in any case. */
@@ -68,7 +76,7 @@ export class Labels {
     first?: number,
   ): void {
     const candidates = poses ? this.candidates(poses, entities, camera, width, height, first) : [];
-    const chosen = chooseLabels(candidates);
+    const chosen = chooseLabels(candidates, (entity) => this.sizeOf(poses?.scene.entities[entity].name ?? ""));
     const kept = new Set(chosen.map(({ entity }) => entity));
     for (const [entity, label] of this.shown) {
       if (kept.has(entity)) continue;
@@ -106,17 +114,9 @@ export class Labels {
         entity,
         x: 0.5 * (x + 1) * width,
         y: 0.5 * (1 - y) * height,
-        width: 0,
-        height: 0,
         rank,
         isShown,
       });
-    }
-    found.sort((a, b) => preferred(a) - preferred(b));
-    found.length = Math.min(found.length, mostCandidates);
-    for (const each of found) {
-      each.width = this.widthOf(poses.scene.entities[each.entity].name);
-      each.height = this.lineHeight;
     }
     return found;
   }
@@ -128,17 +128,16 @@ export class Labels {
     return label;
   }
 
-  // Measures a name once, as it is drawn.
-  private widthOf(name: string): number {
-    const known = this.widths.get(name);
-    if (known !== undefined) return known;
+  // Measures a name once, as it is drawn. Digits are of one width.
+  private sizeOf(entityName: string): Size {
+    const name = entityName.replace(/\d/g, "0");
+    const known = this.sizes.get(name);
+    if (known) return known;
     this.measure.textContent = name;
     this.measure.hidden = false;
-    this.measure.style.visibility = "hidden";
-    const { offsetWidth, offsetHeight } = this.measure;
+    const size = { width: this.measure.offsetWidth, height: this.measure.offsetHeight };
     this.measure.hidden = true;
-    this.lineHeight = offsetHeight;
-    this.widths.set(name, offsetWidth);
-    return offsetWidth;
+    this.sizes.set(name, size);
+    return size;
   }
 }

@@ -31,6 +31,7 @@ export class Objects {
     private readonly canvas: HTMLCanvasElement,
   ) {
     viewer.stage.add(this.ghost.group);
+    viewer.cameras.isHeld = () => this.isAdding || this.isDragging;
     this.models.addEventListener("change", () => this.suggestName());
     element("adding-close").addEventListener("click", () => this.close());
     element("remove").addEventListener("click", () => void this.remove());

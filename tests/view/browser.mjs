@@ -10,17 +10,22 @@ import {
   patience,
   pausedTick,
   pixelsAt,
+  reachInPicture,
   run,
   runScenario,
+  setShadows,
   tick,
   until,
 } from "./in_page.mjs";
 
+const isBlue = ([red, green, blue]) => blue > 100 && blue > 1.4 * red && blue > green;
+const isYellow = ([red, green, blue]) => red > 120 && red > 1.2 * green && green > 1.5 * blue;
 const isOrange = ([red, green, blue]) => red > 120 && red > 1.5 * green && green > blue;
 
 async function draws(page, file) {
   const expected = JSON.parse(readFileSync(file, "utf8"));
-  await run(page, `pause; seek ${expected.time}; toggle shadows`);
+  await run(page, `pause; seek ${expected.time}`);
+  await setShadows(page, false);
   await atTick(page, expected.tick);
   assert.equal(expected.robots.length, 16);
   await expectRobots(page, expected);
@@ -35,6 +40,13 @@ async function draws(page, file) {
     assert.ok(isOrange(pixel), `where ${expected.robots[i].name} is, the picture is ${pixel}`);
   const [ground] = await pixelsAt(page, [[1.9, 1.9, 0]]);
   assert.ok(!isOrange(ground), `the ground is ${ground}`);
+  for (const { name } of expected.robots) {
+    await run(page, `select ${name}`);
+    await drawn(page, 1);
+    const pose = await page.evaluate(() => document.getElementById("pose").textContent);
+    assert.match(pose, /^x -?\d+\.\d{3} /);
+    assert.doesNotMatch(pose, /-0\.000|-0°/);
+  }
 }
 
 async function drawsMany(page, file) {
@@ -63,6 +75,150 @@ async function drawsMany(page, file) {
   );
   const [pixel] = await pixelsAt(page, [[x, y, 0.1]]);
   assert.ok(isOrange(pixel), `where robot 7 is, the picture is ${pixel}`);
+
+  for (const line of ["home", "top"]) {
+    await run(page, line);
+    const reach = await reachInPicture(page);
+    assert.ok(reach <= 1, `after '${line}', a robot is at ${reach} of half the picture`);
+    assert.ok(reach > 0.7, `after '${line}', robots take only ${reach} of half the picture`);
+  }
+  await run(page, "toggle labels");
+  const labels = await shownLabels(page);
+  assert.ok(labels.length > 5 && labels.length <= 30, `${labels.length} names`);
+  assertApart(labels);
+  const again = await shownLabels(page);
+  assert.deepEqual(
+    again.map(({ name }) => name),
+    labels.map(({ name }) => name),
+    "other names, though nothing has moved",
+  );
+}
+
+// Draws once; the names that are shown, and where.
+const shownLabels = (page) =>
+  page.evaluate(() => {
+    window.cohort.viewer.draw(performance.now() + 1000);
+    return [...document.querySelectorAll("#labels span:not([hidden])")].map((each) => {
+      const { left, right, top, bottom } = each.getBoundingClientRect();
+      return { name: each.textContent, left, right, top, bottom };
+    });
+  });
+function assertApart(labels) {
+  for (const [i, a] of labels.entries())
+    for (const b of labels.slice(i + 1)) {
+      const overlaps = a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+      assert.ok(!overlaps, `the names ${a.name} and ${b.name} overlap`);
+    }
+}
+
+// A recording of 40 s.
+async function keepsInFrame(page) {
+  await drawCoarsely(page);
+  const isInside = async (what) => {
+    let reach = Infinity;
+    for (const end = Date.now() + patience; reach > 1 && Date.now() < end; ) {
+      await drawn(page, 1);
+      reach = await reachInPicture(page);
+    }
+    assert.ok(reach <= 1, `${what}, a robot is at ${reach} of half the picture`);
+  };
+  const keeps = () => page.evaluate(() => window.cohort.viewer.cameras.keepsAll);
+  await run(page, "pause");
+  for (const time of [0, 10, 40]) {
+    await run(page, `seek ${time}`);
+    await atTick(page, 100 * time);
+    await isInside(`at ${time} s`);
+  }
+  await page.setViewportSize({ width: 500, height: 640 });
+  await isInside("in a narrow picture");
+  await page.setViewportSize({ width: 960, height: 640 });
+  await run(page, "top; seek 0");
+  await atTick(page, 0);
+  await isInside("from above");
+  await run(page, "orbit");
+  await isInside("from the side again");
+
+  // A click leaves the camera to itself, a drag takes it.
+  const { x, y, width, height } = await page.locator("#canvas").boundingBox();
+  const place = [x + 0.3 * width, y + 0.6 * height]; // which no panel covers
+  await page.mouse.click(...place);
+  await drawn(page, 2);
+  assert.equal(await keeps(), true, "after a click");
+  await page.mouse.move(...place);
+  await page.mouse.down();
+  await page.mouse.move(place[0] + 60, place[1] + 5, { steps: 4 });
+  await drawn(page, 2);
+  await page.mouse.up();
+  await until(page, () => !window.cohort.viewer.cameras.keepsAll);
+  await run(page, "home");
+  assert.equal(await keeps(), true, "after 'home'");
+  await page.mouse.wheel(0, -200);
+  await until(page, () => !window.cohort.viewer.cameras.keepsAll);
+  const stays = () =>
+    page.evaluate(() => {
+      const { viewer } = window.cohort;
+      for (let i = 0; i < 200; ++i) viewer.cameras.controls.update(); // until the wheel's movement has faded
+      return viewer.stage.camera.position.toArray();
+    });
+  const before = await stays();
+  await run(page, "seek 40");
+  await atTick(page, 4000);
+  await drawn(page, 3);
+  const after = await stays();
+  assert.ok(Math.hypot(...after.map((each, i) => each - before[i])) < 1e-3, "the camera is the user's");
+  await run(page, "home");
+  await isInside("after 'home'");
+  await run(page, "select 0; follow");
+  assert.equal(await keeps(), false, "while it follows");
+}
+
+// Two teams of s-bots on a plane: those of the first are blue, those of the second are a yellowish orange.
+async function coloursTeams(page, file) {
+  const expected = JSON.parse(readFileSync(file, "utf8"));
+  await run(page, `pause; seek ${expected.time}`);
+  await atTick(page, expected.tick);
+  await setShadows(page, false);
+  await run(page, "home; top");
+  await drawn(page, 2);
+  const legend = await page.evaluate(() => window.cohort.viewer.legend().filter(({ kind }) => kind === "team"));
+  assert.deepEqual(legend, [
+    { label: "team first", color: "#0072b2", kind: "team" },
+    { label: "team second", color: "#e69f00", kind: "team" },
+  ]);
+  const pixels = await pixelsAt(
+    page,
+    expected.robots.map(({ x, y }) => [x, y, 0.1]),
+  );
+  for (const [i, { name }] of expected.robots.entries()) {
+    const hasColour = name.startsWith("a/") ? isBlue : isYellow;
+    assert.ok(hasColour(pixels[i]), `where ${name} is, the picture is ${pixels[i]}`);
+  }
+}
+
+// The page draws coarser when pictures come slowly, finer when they come fast, and leaves alone what people choose.
+async function drawsAsItCan(page) {
+  await run(page, "pause");
+  // Feeds times between pictures; returns what comes of it, before the page measures its own.
+  const feed = (interval, count) =>
+    page.evaluate(
+      ([each, times]) => {
+        const { viewer } = window.cohort;
+        for (let i = 0; i < times; ++i) viewer.adapt(each);
+        const button = document.querySelector('[data-command="toggle shadows"]');
+        return {
+          ratio: viewer.stage.renderer.getPixelRatio(),
+          shadows: viewer.layers.has("shadows"),
+          isPressed: button.classList.contains("on"),
+        };
+      },
+      [interval, count],
+    );
+  assert.deepEqual(await feed(500, 100), { ratio: 0.35, shadows: false, isPressed: false });
+  assert.deepEqual(await feed(16, 100_000), { ratio: 1, shadows: true, isPressed: true });
+  await setShadows(page, true);
+  assert.deepEqual(await feed(500, 100), { ratio: 0.35, shadows: true, isPressed: true });
+  await page.evaluate(() => window.cohort.viewer.stage.renderer.setPixelRatio(0.25));
+  assert.equal((await feed(16, 100_000)).ratio, 0.25);
 }
 
 async function click(page, name) {
@@ -396,7 +552,8 @@ async function steersServer(page) {
     throw new Error(`${error.message}\n${await run(page, "where sbot_3")}`);
   });
   // By the mouse.
-  await run(page, "home; top; toggle shadows");
+  await run(page, "home; top");
+  await setShadows(page, false);
   const [from, to] = await page.evaluate(() => {
     const { viewer } = window.cohort;
     viewer.draw(performance.now() + 1000);
@@ -515,6 +672,9 @@ async function isSuspended(page) {
 await runScenario({
   draws,
   draws_many: drawsMany,
+  keeps_in_frame: keepsInFrame,
+  colours_teams: coloursTeams,
+  draws_as_it_can: drawsAsItCan,
   steers_recording: steersRecording,
   plots,
   plots_server: plotsServer,

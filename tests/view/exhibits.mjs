@@ -1,7 +1,7 @@
 // Tries what the page shows of tests/view/exhibits: node exhibits.mjs SCENARIO ADDRESS [FILE]. Ends with 0 if all is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { atTick, coloursIn, drawn, look, patience, pixelsAt, run, runScenario, until } from "./in_page.mjs";
+import { atTick, coloursIn, drawn, look, patience, pixelsAt, run, runScenario, setShadows, until } from "./in_page.mjs";
 
 const near = (found, wanted, by, what) =>
   assert.ok(Math.abs(found - wanted) <= by, `${what} is ${found}, not ${wanted}`);
@@ -27,12 +27,13 @@ async function films(page) {
   await drawn(page, 30);
   await run(page, "theme light; top");
   await drawn(page, 20);
+  const canvasWidth = await page.evaluate(() => document.getElementById("canvas").width);
   const [film] = await Promise.all([page.waitForEvent("download", { timeout: patience }), run(page, "film")]);
   const bytes = readFileSync(await film.path());
   assert.equal(film.suggestedFilename(), "cohort.webm");
   assert.equal(bytes.subarray(0, 4).toString("hex"), "1a45dfa3", "EBML, which WebM is");
   const { width, colours } = await coloursIn(page, bytes, "video/webm");
-  assert.equal(width, await page.evaluate(() => document.getElementById("canvas").width));
+  assert.equal(width, canvasWidth);
   assert.ok(colours > 50, `the film has ${colours} colours`);
 }
 
@@ -183,26 +184,35 @@ async function keepsLooks(page) {
 async function drawsOverlays(page) {
   await run(page, "pause; seek 0.5; toggle trails; toggle labels; toggle contacts");
   await atTick(page, 50);
-  const names = await page.evaluate(() => {
-    const { viewer } = window.cohort;
-    viewer.home();
-    viewer.draw(performance.now() + 1000);
-    const { left, top, width, height } = document.getElementById("canvas").getBoundingClientRect();
-    const shown = [...document.querySelectorAll("#labels span:not([hidden])")].map((each) => {
-      const box = each.getBoundingClientRect();
-      return [each.textContent, 0.5 * (box.left + box.right), box.bottom];
+  // The names that are shown, each where its robot is.
+  const names = async () => {
+    const found = await page.evaluate(() => {
+      const { viewer } = window.cohort;
+      viewer.draw(performance.now() + 1000);
+      const { left, top, width, height } = document.getElementById("canvas").getBoundingClientRect();
+      const shown = [...document.querySelectorAll("#labels span:not([hidden])")].map((each) => {
+        const box = each.getBoundingClientRect();
+        return [each.textContent, 0.5 * (box.left + box.right), box.bottom];
+      });
+      return shown.map(([name, x, y]) => {
+        const [a, b, c] = viewer.poseOf(viewer.find(name)).position;
+        const at = viewer.cameras.target
+          .clone()
+          .set(a, b, c + 0.12)
+          .project(viewer.stage.camera);
+        return { name, beside: Math.hypot(left + 0.5 * (at.x + 1) * width - x, top + 0.5 * (1 - at.y) * height - y) };
+      });
     });
-    return shown.map(([name, x, y]) => {
-      const [a, b, c] = viewer.poseOf(viewer.find(name)).position;
-      const at = viewer.cameras.target
-        .clone()
-        .set(a, b, c + 0.12)
-        .project(viewer.stage.camera);
-      return { name, beside: Math.hypot(left + 0.5 * (at.x + 1) * width - x, top + 0.5 * (1 - at.y) * height - y) };
-    });
-  });
-  assert.deepEqual(names.map(({ name }) => name).sort(), ["held", "holder", "lookout", "runner"]);
-  for (const { name, beside } of names) assert.ok(beside < 3, `the name of ${name} is ${beside} pixels beside it`);
+    for (const { name, beside } of found) assert.ok(beside < 3, `the name of ${name} is ${beside} pixels beside it`);
+    return found.map(({ name }) => name).sort();
+  };
+  await run(page, "home");
+  const all = await names(); // those of the held and its holder would overlap
+  assert.ok(all.length === 3 && all[0].startsWith("h"), `the names are ${all}`);
+  assert.deepEqual(all.slice(1), ["lookout", "runner"]);
+  await look(page, [-1.94, 1.2, 0.5], [-1.94, 2, 0.1]);
+  assert.deepEqual(await names(), ["held", "holder"]);
+  await run(page, "home");
 
   // A picture that began before its frame came.
   assert.equal(
@@ -304,6 +314,7 @@ const brightness = ([red, green, blue]) => red + green + blue;
 async function drawsShapes(page) {
   await run(page, "pause; seek 1");
   await atTick(page, 100);
+  await setShadows(page, true);
   // The sun is at -x -y: the pole's shadow goes to the other side.
   await look(page, [-0.5, -2.2, 1.6], [-0.8, -0.9, 0]);
   const shadow = [-0.8, -0.845, 0];
@@ -311,7 +322,7 @@ async function drawsShapes(page) {
   await drawn(page, 2);
   const [dark, bright] = await pixelsAt(page, [shadow, lit]);
   assert.ok(brightness(dark) < 0.85 * brightness(bright), `the shadow is ${dark}, beside it is ${bright}`);
-  await run(page, "toggle shadows");
+  await setShadows(page, false);
   const [without] = await pixelsAt(page, [shadow]);
   assert.ok(brightness(without) > 0.95 * brightness(bright), `without shadows it is ${without}`);
 

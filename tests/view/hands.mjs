@@ -1,7 +1,7 @@
 // In these scenarios a person drives robots, and adds, drags and removes objects.
 import assert from "node:assert/strict";
 import { Guest } from "./guest.mjs";
-import { drawCoarsely, run, runScenario, seenAt, tick, until } from "./in_page.mjs";
+import { drawCoarsely, look, run, runScenario, seenAt, tick, until } from "./in_page.mjs";
 
 const poseOf = (page, name) =>
   page.evaluate((text) => {
@@ -307,7 +307,8 @@ async function drivesFirst(page) {
 
 async function handlesObjects(page) {
   await drawCoarsely(page);
-  await run(page, "home; top; add bar");
+  await look(page, [0, -0.01, 5], [0, 0, 0]); // from so far that no card covers anything
+  await run(page, "top; add bar");
   await run(page, "move others/driven -4 -4"); // or it comes and pushes what is put down
   assert.deepEqual(await page.locator("#adding-model option").allTextContents(), ["lamp_post", "bar"]);
   assert.equal(await page.locator("#adding-name").inputValue(), "bar_1");

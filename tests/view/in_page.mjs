@@ -17,13 +17,20 @@ export async function tick(page) {
 export const atTick = (page, wanted) =>
   until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
 
+/** Switches shadows by hand: then the page itself leaves them alone. */
+export const setShadows = (page, on) =>
+  page.evaluate(
+    (wanted) =>
+      window.cohort.run(
+        window.cohort.viewer.layers.has("shadows") === wanted ? "toggle shadows; toggle shadows" : "toggle shadows",
+      ),
+    on,
+  );
 /** A picture that is coarse enough for software to draw it often: people steer by what they see. */
-export const drawCoarsely = (page) =>
-  page.evaluate(() => {
-    const { stage } = window.cohort.viewer;
-    stage.renderer.setPixelRatio(0.25);
-    return window.cohort.run("toggle shadows");
-  });
+export async function drawCoarsely(page) {
+  await page.evaluate(() => window.cohort.viewer.stage.renderer.setPixelRatio(0.25));
+  await setShadows(page, false);
+}
 /** The next pictures are drawn, so many of them. */
 export const drawn = (page, count) =>
   page.evaluate(
@@ -69,6 +76,35 @@ export const pixelsAt = (page, places) =>
       return [...pixel.slice(0, 3)];
     });
   }, places);
+
+/**
+ * Returns how far robots reach from the middle of the picture: at most 1 if all their corners are in it. By the
+ * vertices that are drawn.
+ */
+export const reachInPicture = (page) =>
+  page.evaluate(() => {
+    const { viewer } = window.cohort;
+    viewer.draw(performance.now() + 1000); // past the blend of the last two frames
+    const { poses, instances, stage } = viewer;
+    const vector = () => viewer.cameras.target.clone();
+    const [place, at, turn] = [vector(), vector(), stage.camera.quaternion.clone()];
+    stage.camera.updateMatrixWorld();
+    const robots = new Set(viewer.robotEntities());
+    let most = 0;
+    for (const { model, link, geometry } of instances.links) {
+      const corners = geometry.getAttribute("position");
+      const step = Math.max(1, Math.floor(corners.count / 200));
+      for (const entity of poses.entitiesOf(model)) {
+        if (!robots.has(entity) || poses.absent.has(entity)) continue;
+        poses.read(poses.placeOf(entity, link), place, turn, 1);
+        for (let i = 0; i < corners.count; i += step) {
+          at.fromBufferAttribute(corners, i).applyQuaternion(turn).add(place).project(stage.camera);
+          most = Math.max(most, at.z > 1 ? Infinity : 0, Math.abs(at.x), Math.abs(at.y));
+        }
+      }
+    }
+    return most;
+  });
 
 /** Looks from a place to another one. */
 export const look = (page, position, target) =>

@@ -193,6 +193,45 @@ TEST_P(ManyRobotsInTheBrowser, AreDrawnAtOnce) {
 }
 INSTANTIATE_TEST_SUITE_P(AThousandAndTenThousand, ManyRobotsInTheBrowser, ::testing::Values(1000, 10'000));
 
+// Two teams of 8 s-bots each on a plane.
+TEST_F(InTheBrowser, RobotsHaveTheColoursOfTheirTeams) {
+  write_file(scratch / "world.yaml", R"(world:
+  name: field
+  model: {name: ground, static: true, link: {name: body, collision: {name: floor, geometry: {plane: {normal: [0, 0, 1], size: [3, 3]}}}}}
+  cohort:physics: {fidelity: planar}
+  cohort:population:
+    - {name: a, uri: model://sbot, count: 8, placement: {uniform: {min: [-1, -1], max: [1, 1]}, gap: 0.05}}
+    - {name: b, uri: model://sbot, count: 8, placement: {uniform: {min: [-1, -1], max: [1, 1]}, gap: 0.05}}
+)");
+  write_file(scratch / "teams.yaml", R"(world: world.yaml
+duration: 0.1
+teams:
+  - {name: first, robots: a/*, controller: obstacle_avoidance}
+  - {name: second, robots: b/*, controller: obstacle_avoidance}
+)");
+  run_experiment(scratch / "teams.yaml", {"--controllers", "inprocess", "--record", scratch / "run.mcap"});
+  write_file(scratch / "expected.json", robots_at(scratch / "run.mcap", 0.05).dump());
+  const View view({scratch / "run.mcap"});
+  run_script("browser.mjs", {"colours_teams", view.address(), scratch / "expected.json"});
+}
+
+TEST_F(InTheBrowser, APageThatDrawsTooSlowlyDrawsCoarser) {
+  record_demo(scratch / "run.mcap", "1");
+  const View view({scratch / "run.mcap"});
+  run_script("browser.mjs", {"draws_as_it_can", view.address()});
+}
+
+class FramedInTheBrowser : public InTheBrowser, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(FramedInTheBrowser, RobotsStayInThePictureUntilTheUserMovesTheCamera) {
+  run_experiment(
+      std::string(COHORT_SOURCE_DIR "/worlds/experiments/") + GetParam() + ".yaml",
+      {"--controllers", "inprocess", "--duration", "40", "--record", scratch / "run.mcap", "--record-snapshots", "5"});
+  const View view({scratch / "run.mcap"});
+  run_script("browser.mjs", {"keeps_in_frame", view.address()});
+}
+INSTANTIATE_TEST_SUITE_P(OfExperiments, FramedInTheBrowser, ::testing::Values("obstacle_avoidance", "hexapod"));
+
 using ByItsProtocol = Viewing;
 
 TEST_F(ByItsProtocol, ItsOwnClientReadsWhatIsShown) {

@@ -1,5 +1,6 @@
-import { type PerspectiveCamera, Quaternion, Vector3 } from "three";
+import { type Box3, type PerspectiveCamera, Quaternion, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Keeper, type Lens, lensOf, unionOf } from "./framing";
 import type { Poses } from "./poses";
 
 export type CameraMode = "orbit" | "follow" | "top" | "eye" | "fly";
@@ -10,6 +11,10 @@ export interface Viewpoint {
 
 const eyeHeight = 0.05; // [m] above the root link's origin
 const flySpeed = 1.5; // [m/s]
+const fromAbove = new Vector3(0, 1e-3, -1);
+const heading = 0.35; // [rad] of the first view, to the left of the y axis
+const elevations = [16, 25]; // [degrees] of the first view, of what is tall and of what is flat
+const hasReducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
 
 /** Where people look from. */
 export class Cameras {
@@ -17,11 +22,16 @@ export class Cameras {
   mode: CameraMode = "orbit";
   /** Keys that are held and fly the camera: forward, back, left, right, up, down. */
   readonly held = new Set<string>();
+  /** Whether the camera stands still even if something leaves the picture, such as while the user aims. */
+  isHeld: () => boolean = () => false;
   private followed: number | undefined;
   private readonly at = new Vector3();
   private readonly before = new Vector3();
   private readonly turn = new Quaternion();
   private isFirst = true;
+  private readonly keeper = new Keeper();
+  private boxes: readonly Box3[] = [];
+  private grabbed: Vector3[] | undefined; // the camera and its target, when the user began to hold it
 
   constructor(
     private readonly camera: PerspectiveCamera,
@@ -32,8 +42,21 @@ export class Cameras {
     this.controls.dampingFactor = 0.12;
     this.controls.maxPolarAngle = Math.PI * 0.495;
     this.controls.minDistance = 0.05;
-    this.controls.maxDistance = 400;
+    this.controls.maxDistance = 2000;
     this.controls.zoomToCursor = true;
+    this.controls.addEventListener("start", () => {
+      this.grabbed = [camera.position.clone(), this.target.clone()];
+    });
+    this.controls.addEventListener("end", () => {
+      this.letGo();
+      this.grabbed = undefined;
+    });
+    canvas.addEventListener("wheel", () => this.keeper.end(), { passive: true });
+  }
+
+  /** Whether everything is kept in the picture. */
+  get keepsAll(): boolean {
+    return this.keeper.isOn;
   }
 
   get target(): Vector3 {
@@ -44,29 +67,43 @@ export class Cameras {
   }
 
   choose(mode: CameraMode, entity?: number): void {
+    const before = this.mode;
     this.mode = mode;
     this.followed = entity;
     this.isFirst = true;
     this.controls.enabled = mode !== "eye";
     this.controls.enableRotate = mode !== "top";
-    if (mode === "top") {
+    if (mode !== "orbit" && mode !== "top") this.keeper.end();
+    else if (this.keeper.isOn && mode !== before) this.home(this.boxes);
+    else if (mode === "top") {
       const height = Math.max(1, this.camera.position.distanceTo(this.target));
       this.camera.position.copy(this.target).add(new Vector3(0, -1e-3, height));
     }
   }
 
-  /** Looks at everything that is there. */
-  frame(centre: Vector3, radius: number): void {
-    const distance = (0.86 * radius) / Math.tan((this.camera.fov * Math.PI) / 360);
-    this.target.copy(centre);
-    this.camera.position.copy(centre).add(new Vector3(0.28, -0.78, 0.62).normalize().multiplyScalar(distance));
+  /** Shows all boxes, from above if the camera is there, and keeps them in the picture until the user moves it. */
+  home(boxes: readonly Box3[]): void {
+    if (boxes.length === 0) return;
+    this.boxes = boxes;
+    if (this.mode !== "top" && this.mode !== "orbit") this.choose("orbit");
+    const direction = this.mode === "top" ? fromAbove : firstDirection(boxes);
+    const { position, target } = this.keeper.begin(boxes, direction, this.lens);
+    this.camera.position.copy(position);
+    this.target.copy(target);
     this.controls.update();
+  }
+
+  /** Takes boxes that have moved, or a picture of another shape. */
+  watch(boxes: readonly Box3[]): void {
+    this.boxes = boxes;
+    this.keeper.watch(boxes, { position: this.camera.position, target: this.target }, this.lens);
   }
 
   viewpoint(): Viewpoint {
     return { position: this.camera.position.toArray(), target: this.target.toArray() };
   }
   look({ position, target }: Viewpoint): void {
+    this.keeper.end();
     this.choose("orbit");
     this.camera.position.fromArray(position);
     this.target.fromArray(target);
@@ -76,7 +113,21 @@ export class Cameras {
   advance(poses: Poses | undefined, elapsed: number): void {
     if (poses?.frame && this.followedEntity !== undefined) this.move(poses, this.followedEntity);
     if (this.mode === "fly") this.fly(elapsed);
+    this.letGo();
+    if (this.grabbed === undefined && !this.isHeld())
+      this.keeper.follow({ position: this.camera.position, target: this.target }, elapsed, !hasReducedMotion.matches);
     if (this.mode !== "eye") this.controls.update();
+  }
+
+  private get lens(): Lens {
+    return lensOf(this.camera.fov, this.camera.aspect);
+  }
+
+  // A click that moves nothing leaves the camera to itself.
+  private letGo(): void {
+    if (!this.grabbed) return;
+    const [position, target] = this.grabbed;
+    if (position.distanceTo(this.camera.position) + target.distanceTo(this.target) > 1e-6) this.keeper.end();
   }
 
   private move(poses: Poses, entity: number): void {
@@ -115,4 +166,13 @@ export class Cameras {
     this.camera.position.add(step);
     this.target.add(step);
   }
+}
+
+// What is flat is seen from higher up, and what is tall with the horizon behind it.
+function firstDirection(boxes: readonly Box3[]): Vector3 {
+  const { x, y, z } = unionOf(boxes).getSize(new Vector3());
+  const flatness = Math.min(1, Math.hypot(x, y) / Math.max(1e-6, 12 * z));
+  const elevation = (Math.PI / 180) * (elevations[0] + flatness * (elevations[1] - elevations[0]));
+  const ahead = Math.cos(elevation);
+  return new Vector3(-ahead * Math.sin(heading), ahead * Math.cos(heading), -Math.sin(elevation));
 }

@@ -200,12 +200,13 @@ function pictureCommands({ viewer, connection, console, timeBar, commands, canva
       () => ["light", "dark"],
     ),
     command("screenshot", "saves the picture as PNG", async () => {
-      download(await screenshot(canvas, () => viewer.draw(performance.now())), "cohort.png");
+      download(await screenshot(canvas, () => viewer.drawFinely()), "cohort.png");
       return "cohort.png";
     }),
     command("film", "starts or stops recording the picture as WebM", () => {
       if (film.isOn) film.stop();
       else film.start();
+      viewer.stage.quality.isHeld = film.isOn;
       return film.isOn ? "recording; 'film' ends it" : "cohort.webm";
     }),
     command("fullscreen", "enters or leaves full screen", async () => {

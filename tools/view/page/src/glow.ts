@@ -16,6 +16,7 @@ import {
   Vector3,
 } from "three";
 import type { SceneEmitter, SceneSignals } from "./messages";
+import { overlayColors } from "./overlays";
 import type { Poses } from "./poses";
 
 const ledSize = 0.028; // [m], with its glow
@@ -65,7 +66,7 @@ function reachCircle(radius: number, color: Color): LineLoop {
   });
   return new LineLoop(
     new BufferGeometry().setFromPoints(points),
-    new LineBasicMaterial({ color, transparent: true, opacity: 0.5 }),
+    new LineBasicMaterial({ color, transparent: true, opacity: 0.5, toneMapped: false }),
   );
 }
 
@@ -149,11 +150,13 @@ export class Glow {
   }
 
   private addLamp({ range }: SceneEmitter, texture: CanvasTexture): Lamp {
-    const glow = new Sprite(new SpriteMaterial({ map: texture, transparent: true, depthWrite: false }));
+    const glow = new Sprite(
+      new SpriteMaterial({ map: texture, transparent: true, depthWrite: false, toneMapped: false }),
+    );
     glow.scale.setScalar(0.35);
     glow.visible = false;
     const hasReach = range > 0 && range < 1e4;
-    const circle = hasReach ? reachCircle(range, new Color(0xd9a11f)) : undefined;
+    const circle = hasReach ? reachCircle(range, new Color(overlayColors.lamp)) : undefined;
     this.group.add(glow, ...(circle ? [circle] : []));
     return { glow, circle };
   }

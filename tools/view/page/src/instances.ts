@@ -1,5 +1,7 @@
 import {
+  type Box3,
   type BufferGeometry,
+  type Color,
   Group,
   InstancedBufferAttribute,
   InstancedBufferGeometry,
@@ -10,11 +12,13 @@ import {
   RGBADepthPacking,
   type Sphere,
 } from "three";
-import { type SceneShape, ShapeRole } from "./messages";
+import { none, type SceneShape, ShapeRole } from "./messages";
 import type { Poses } from "./poses";
 import { linkGeometry } from "./shapes";
+import { dominantColor, teamColors, teamShare } from "./teams";
 
-const declarations = `
+/** Shader functions that place a vertex by its link. */
+export const placeDeclarations = `
 attribute vec3 linkPosition;
 attribute vec4 linkOrientation;
 attribute vec3 linkPositionBefore;
@@ -32,11 +36,15 @@ function placeByLink(material: Material, blend: { value: number }): void {
   material.onBeforeCompile = (shader) => {
     shader.uniforms.blend = blend;
     shader.vertexShader =
-      declarations +
+      `${placeDeclarations}attribute float teamShare;\nattribute vec4 teamColor;\n` +
       shader.vertexShader
         .replace(
           "#include <beginnormal_vertex>",
           "#include <beginnormal_vertex>\nobjectNormal = turned(objectNormal, linkTurn());",
+        )
+        .replace(
+          "#include <color_vertex>",
+          "#include <color_vertex>\n#ifdef USE_COLOR\nvColor.rgb = mix(vColor.rgb, teamColor.rgb, teamColor.a * teamShare);\n#endif",
         )
         .replace(
           "#include <begin_vertex>",
@@ -45,8 +53,17 @@ function placeByLink(material: Material, blend: { value: number }): void {
   };
 }
 
+/** Surfaces by what a body is: paint of robots shines a little, walls are matt. */
+const surfaces = {
+  robot: { roughness: 0.45, metalness: 0.08 },
+  movable: { roughness: 0.65, metalness: 0.02 },
+  static: { roughness: 0.9, metalness: 0 },
+};
+
 interface Drawn {
   geometry: InstancedBufferGeometry;
+  model: number;
+  link: number;
   first: number;
   count: number;
 }
@@ -57,6 +74,8 @@ export interface LinkShape {
   link: number;
   geometry: BufferGeometry;
   sphere: Sphere;
+  /** Boxes around its shapes, in the link's frame. */
+  parts: readonly Box3[];
 }
 
 /** All links of a scene, each drawn at once for all entities that have it. */
@@ -64,7 +83,8 @@ export class Instances {
   readonly group = new Group();
   readonly links: LinkShape[] = [];
   private readonly drawn: Drawn[] = [];
-  private readonly blend = { value: 1 };
+  private readonly teams: ReadonlyMap<string, Color>;
+  readonly blend = { value: 1 };
 
   constructor(
     private readonly poses: Poses,
@@ -73,13 +93,15 @@ export class Instances {
     const { scene } = poses;
     const isShown = (shape: SceneShape): boolean =>
       role === "visual" ? shape.role !== ShapeRole.collision : shape.role !== ShapeRole.visual;
+    this.teams = teamColors(scene);
     for (const [model, { links }] of scene.models.entries()) {
+      const dominant = dominantColor(scene, scene.models[model]);
       for (const [link, { shapes }] of links.entries()) {
         const shown = shapes.filter(isShown);
         const opaque = shown.filter(({ color }) => color[3] >= 1);
         const translucent = shown.filter(({ color }) => color[3] > 0 && color[3] < 1);
-        this.add(model, link, opaque);
-        this.add(model, link, translucent);
+        this.add(model, link, opaque, dominant);
+        this.add(model, link, translucent, dominant);
       }
     }
   }
@@ -100,6 +122,11 @@ export class Instances {
     }
   }
 
+  /** Returns the attributes that place a link, for whatever else is drawn there. */
+  placesOf(model: number, link: number): InstancedBufferGeometry | undefined {
+    return this.drawn.find((each) => each.model === model && each.link === link)?.geometry;
+  }
+
   draw(): void {
     this.blend.value = this.poses.blend;
   }
@@ -109,23 +136,34 @@ export class Instances {
     for (const child of this.group.children as Mesh[]) (child.material as Material).dispose();
   }
 
-  private add(model: number, link: number, shapes: SceneShape[]): void {
-    const count = this.poses.entitiesOf(model).length;
-    const shape = count > 0 ? linkGeometry(this.poses.scene, shapes, count) : undefined;
+  private add(model: number, link: number, shapes: SceneShape[], dominant: Float32Array | undefined): void {
+    const { scene } = this.poses;
+    const entities = this.poses.entitiesOf(model);
+    const count = entities.length;
+    const shareOf = (shape: SceneShape): number => teamShare(shape, dominant);
+    const shape = count > 0 ? linkGeometry(scene, shapes, count, shareOf) : undefined;
     if (!shape?.boundingSphere) return;
-    this.links.push({ model, link, geometry: shape, sphere: shape.boundingSphere });
+    this.links.push({
+      model,
+      link,
+      geometry: shape,
+      sphere: shape.boundingSphere,
+      parts: shape.userData.parts as Box3[],
+    });
     const geometry = new InstancedBufferGeometry();
-    for (const name of ["position", "normal", "color"]) geometry.setAttribute(name, shape.getAttribute(name));
+    for (const name of ["position", "normal", "color", "teamShare"])
+      geometry.setAttribute(name, shape.getAttribute(name));
     geometry.instanceCount = count;
     for (const name of ["linkPosition", "linkPositionBefore"])
       geometry.setAttribute(name, new InstancedBufferAttribute(new Float32Array(3 * count), 3));
     for (const name of ["linkOrientation", "linkOrientationBefore"])
       geometry.setAttribute(name, new InstancedBufferAttribute(new Int16Array(4 * count), 4, true));
+    geometry.setAttribute("teamColor", this.colorsOf(entities));
     const opacity = shapes[0].color[3];
+    const isRobot = scene.entities[entities[0]].robot !== none;
     const material = new MeshStandardMaterial({
       vertexColors: true,
-      roughness: 0.62,
-      metalness: 0.05,
+      ...surfaces[isRobot ? "robot" : scene.models[model].is_static ? "static" : "movable"],
       opacity,
       transparent: opacity < 1,
     });
@@ -137,6 +175,16 @@ export class Instances {
     mesh.castShadow = opacity >= 1;
     mesh.receiveShadow = true;
     this.group.add(mesh);
-    this.drawn.push({ geometry, first: this.poses.firstPlace(model, link), count });
+    this.drawn.push({ geometry, model, link, first: this.poses.firstPlace(model, link), count });
+  }
+
+  // Red, green and blue of the team of each entity, and whether it has one.
+  private colorsOf(entities: readonly number[]): InstancedBufferAttribute {
+    const values = new Float32Array(4 * entities.length);
+    entities.forEach((entity, i) => {
+      this.teams.get(this.poses.scene.entities[entity].team)?.toArray(values, 4 * i);
+      values[4 * i + 3] = this.teams.has(this.poses.scene.entities[entity].team) ? 1 : 0;
+    });
+    return new InstancedBufferAttribute(values, 4);
   }
 }

@@ -220,6 +220,7 @@ const resize = (): void => viewer.stage.resize(canvas.clientWidth, canvas.client
 new ResizeObserver(resize).observe(canvas);
 resize();
 viewer.wear(preferredTheme());
+viewer.onLayers = () => showPressed(viewer);
 showPressed(viewer);
 function draw(now: number): void {
   viewer.draw(now);

@@ -36,6 +36,7 @@ export class Objects {
   ) {
     viewer.stage.add(this.ghost.group);
     this.removal = new Removal(viewer, (name) => this.ask({ operation: "remove", name }));
+    viewer.cameras.isHeld = () => this.isAdding || this.isDragging;
     this.models.addEventListener("change", () => this.suggestName());
     element("adding-close").addEventListener("click", () => this.close());
     element("remove").addEventListener("click", () => {

@@ -5,7 +5,6 @@ import {
   Line,
   LineBasicMaterial,
   LineSegments,
-  type PerspectiveCamera,
   Points,
   PointsMaterial,
   Quaternion,
@@ -18,13 +17,15 @@ import type { Poses } from "./poses";
 const metresPerNewton = 0.02;
 const trailLength = 1500; // points
 const trailSpacing = 0.01; // [m]
-const mostLabels = 400;
 const leastHit = 0.05; // share of the range; less may be a sensor's noise
+
+/** Colours of what is drawn over the picture, which the legend names. */
+export const overlayColors = { contact: 0xe5484d, grip: 0x30a46c, rayFree: 0x2f8f6b, rayHit: 0xe5484d, lamp: 0xd9a11f };
 
 function segments(color: number, opacity = 1): LineSegments<BufferGeometry, LineBasicMaterial> {
   const lines = new LineSegments(
     new BufferGeometry(),
-    new LineBasicMaterial({ color, transparent: opacity < 1, opacity }),
+    new LineBasicMaterial({ color, transparent: opacity < 1, opacity, toneMapped: false }),
   );
   lines.frustumCulled = false;
   return lines;
@@ -45,16 +46,23 @@ function setPoints(geometry: BufferGeometry, points: ArrayLike<number>): void {
 
 // In front of everything: what touches hides where it touches.
 function dots(color: number, size: number): Points<BufferGeometry, PointsMaterial> {
-  const material = new PointsMaterial({ color, size, sizeAttenuation: false, depthTest: false, transparent: true });
+  const material = new PointsMaterial({
+    color,
+    size,
+    sizeAttenuation: false,
+    depthTest: false,
+    transparent: true,
+    toneMapped: false,
+  });
   return new Points(new BufferGeometry(), material);
 }
 
 /** Contact points, the forces there, and what is gripped. */
 export class Contacts {
   readonly group = new Group();
-  private readonly points = dots(0xe5484d, 5);
-  private readonly grips = dots(0x30a46c, 9);
-  private readonly forces = segments(0xe5484d);
+  private readonly points = dots(overlayColors.contact, 5);
+  private readonly grips = dots(overlayColors.grip, 9);
+  private readonly forces = segments(overlayColors.contact);
 
   constructor() {
     this.points.frustumCulled = this.grips.frustumCulled = false;
@@ -79,8 +87,8 @@ export class Contacts {
 /** Rays of the selected robot's sensors: to their range, or to the first hit. */
 export class Rays {
   readonly group = new Group();
-  private readonly free = segments(0x2f8f6b, 0.55);
-  private readonly hit = segments(0xe5484d);
+  private readonly free = segments(overlayColors.rayFree, 0.55);
+  private readonly hit = segments(overlayColors.rayHit);
 
   constructor() {
     this.group.add(this.free, this.hit);
@@ -169,7 +177,7 @@ export class Trails {
   }
 
   private begin(entity: number, count: number): { line: Line; points: number[]; last: Vector3 } {
-    const material = new LineBasicMaterial({ transparent: true, opacity: 0.8 });
+    const material = new LineBasicMaterial({ transparent: true, opacity: 0.8, toneMapped: false });
     material.color.setHSL((entity % Math.max(1, count)) / Math.max(1, count), 0.6, 0.5);
     const line = new Line(new BufferGeometry(), material);
     line.frustumCulled = false;
@@ -177,37 +185,5 @@ export class Trails {
     const trail = { line, points: [], last: new Vector3(Infinity, 0, 0) };
     this.trails.set(entity, trail);
     return trail;
-  }
-}
-
-/** Names beside entities, as elements over the picture. */
-export class Labels {
-  private readonly labels: HTMLElement[] = [];
-
-  constructor(private readonly parent: HTMLElement) {}
-
-  draw(
-    poses: Poses | undefined,
-    entities: readonly number[],
-    camera: PerspectiveCamera,
-    width: number,
-    height: number,
-  ): void {
-    const shown = poses ? entities.slice(0, mostLabels) : [];
-    while (this.labels.length < shown.length) this.labels.push(this.parent.appendChild(document.createElement("span")));
-    const at = new Vector3();
-    const turn = new Quaternion();
-    this.labels.forEach((label, i) => {
-      const entity = shown[i];
-      label.hidden = !poses || entity === undefined || poses.absent.has(entity);
-      if (!poses || label.hidden) return;
-      poses.read(poses.placeOf(entity), at, turn);
-      at.z += 0.12;
-      at.project(camera);
-      label.hidden = at.z > 1;
-      const { name } = poses.scene.entities[entity];
-      if (label.textContent !== name) label.textContent = name;
-      label.style.transform = `translate(${(0.5 * (at.x + 1) * width).toFixed(1)}px, ${(0.5 * (1 - at.y) * height).toFixed(1)}px) translate(-50%, -100%)`;
-    });
   }
 }

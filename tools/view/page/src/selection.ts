@@ -50,7 +50,7 @@ export function pick(poses: Poses, instances: Instances, camera: Camera, at: Vec
 /** An outline around the selected entities, up to a number that can be drawn. */
 export class Outline {
   readonly group = new Group();
-  private readonly material = new MeshBasicMaterial({ color: 0x1f8fff, side: BackSide });
+  private readonly material = new MeshBasicMaterial({ color: 0x1f8fff, side: BackSide, toneMapped: false });
   private parts: { mesh: Mesh; entity: number; link: number }[] = [];
 
   select(entities: readonly number[], poses: Poses | undefined, instances: Instances | undefined): void {

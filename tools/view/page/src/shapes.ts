@@ -1,4 +1,5 @@
 import {
+  Box3,
   BoxGeometry,
   BufferAttribute,
   BufferGeometry,
@@ -53,6 +54,12 @@ export function matrixOf(pose: ArrayLike<number>): Matrix4 {
   );
 }
 
+/** Adds how much of a team's colour each vertex takes. */
+function withTeamShare(geometry: BufferGeometry, share: number): BufferGeometry {
+  const shares = new Float32Array(geometry.getAttribute("position").count).fill(share);
+  return geometry.setAttribute("teamShare", new BufferAttribute(shares, 1));
+}
+
 /** `geometry` has three vertices for each triangle, in their order. */
 function coloured(geometry: BufferGeometry, scene: Scene, shape: SceneShape): BufferGeometry {
   const count = geometry.getAttribute("position").count;
@@ -66,11 +73,15 @@ function coloured(geometry: BufferGeometry, scene: Scene, shape: SceneShape): Bu
   return geometry.setAttribute("color", new BufferAttribute(colors, 3));
 }
 
-/** The shapes of one link as one piece with colours, in the link's frame; nothing if there are none. */
+/**
+ * Returns the shapes of one link as one piece with colours, in the link's frame; nothing if there are none. `shareOf`
+ * gives how much of a team's colour a shape takes.
+ */
 export function linkGeometry(
   scene: Scene,
   shapes: readonly SceneShape[],
   instances: number,
+  shareOf: (shape: SceneShape) => number = () => 0,
 ): BufferGeometry | undefined {
   const parts = shapes
     .filter(({ kind }) => kind !== ShapeKind.plane)
@@ -78,10 +89,13 @@ export function linkGeometry(
       const geometry = plainGeometry(scene, shape, segmentsOf(instances));
       const plain = geometry.index ? geometry.toNonIndexed() : geometry;
       plain.deleteAttribute("uv");
-      return coloured(plain.applyMatrix4(matrixOf(shape.pose)), scene, shape);
+      return withTeamShare(coloured(plain.applyMatrix4(matrixOf(shape.pose)), scene, shape), shareOf(shape));
     });
   if (parts.length === 0) return undefined;
   const merged = mergeGeometries(parts);
+  merged.userData.parts = parts.map((part) =>
+    new Box3().setFromBufferAttribute(part.getAttribute("position") as BufferAttribute),
+  );
   merged.computeBoundingSphere();
   return merged;
 }

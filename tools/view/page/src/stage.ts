@@ -1,63 +1,96 @@
 import {
+  BackSide,
+  BufferAttribute,
   Color,
   DirectionalLight,
   Fog,
   HemisphereLight,
   Mesh,
-  MeshStandardMaterial,
+  MeshBasicMaterial,
+  NeutralToneMapping,
   type Object3D,
   PCFShadowMap,
   PerspectiveCamera,
-  PlaneGeometry,
-  Quaternion,
+  PMREMGenerator,
+  type Sphere,
+  SphereGeometry,
+  type Texture,
   Scene as ThreeScene,
   Vector3,
   WebGLRenderer,
 } from "three";
+import { Ground } from "./ground";
 import { type Scene, ShapeKind } from "./messages";
+import { levels, Quality } from "./quality";
+import { Sky } from "./sky";
 
 export type Theme = "light" | "dark";
 
 const looks = {
-  light: { sky: 0xe9edf1, ground: 0xdfe3e7, line: 0x8793a0, sun: 2.4, fill: 1.5 },
-  dark: { sky: 0x14181d, ground: 0x22282f, line: 0x5a6673, sun: 1.7, fill: 0.75 },
+  light: {
+    sky: { zenith: 0x79a3d3, horizon: 0xe9eff5, depth: 0xa9b4c0, glow: 0xfffaf0 },
+    glow: 0.55,
+    ground: { color: 0xc6ccd2, line: 0x566473 },
+    sun: { intensity: 2.5, color: 0xfff4e6 },
+    fill: { intensity: 1.6, sky: 0xeaf0fa, ground: 0xc4c0ba },
+    reflections: 0.28,
+  },
+  dark: {
+    sky: { zenith: 0x090d13, horizon: 0x364352, depth: 0x11161c, glow: 0x5b6b80 },
+    glow: 0.35,
+    ground: { color: 0x51565c, line: 0xa3b0be },
+    sun: { intensity: 2.3, color: 0xfff6ea },
+    fill: { intensity: 1.2, sky: 0xd3dcea, ground: 0x66686c },
+    reflections: 0.3,
+  },
 };
-const groundSize = 400; // [m]
+const fillWithoutReflections = 1.25; // ratio to the fill with them
+const sunDirection = new Vector3(-0.45, -0.35, 1).normalize();
 const shadowReach = 3; // [m]; around what the camera looks at, at the least
+const shadowTexels = 2048;
+const mostPixelRatio = 2;
 
-// Lines every 0.1, 1 and 10 m, of which the finer ones fade with distance.
-const gridLines = `
-float lineOf(vec2 at, float spacing, float width) {
-  vec2 scaled = at / spacing;
-  vec2 slope = fwidth(scaled);
-  vec2 distance = abs(fract(scaled - 0.5) - 0.5) / max(slope, vec2(1e-6));
-  float fading = 1.0 - smoothstep(0.15, 0.6, max(slope.x, slope.y));
-  return (1.0 - min(min(distance.x, distance.y) / width, 1.0)) * fading;
-}
-`;
-
-/** The surroundings of everything: the renderer, sun and ground. */
+/** The surroundings of everything: the renderer, sun, sky and ground. */
 export class Stage {
   readonly renderer: WebGLRenderer;
   readonly scene = new ThreeScene();
   readonly camera = new PerspectiveCamera(45, 1, 0.01, 2000);
+  /** Whether a program draws, not a graphics card. */
+  readonly isSoftware: boolean;
+  readonly quality: Quality;
+  /** Around everything that casts shadows. */
+  surroundings: Sphere | undefined;
+  /** Something that casts shadows is elsewhere. */
+  isShadowStale = true;
+  theme: Theme = "light";
+
   private readonly sun = new DirectionalLight(0xffffff, 2);
   private readonly fill = new HemisphereLight(0xffffff, 0x8a8f96, 1);
-  private readonly grounds: Mesh[] = [];
-  private readonly lineColor = { value: new Color() };
-  theme: Theme = "light";
+  private readonly sky = new Sky();
+  private readonly fog = new Fog(0, 25, 160);
+  private ground: Ground | undefined;
+  private chosenRatio: number;
+  private isFine = false;
+  private reflections: Texture | undefined;
 
   constructor(canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.isSoftware = drawsInSoftware(this.renderer);
+    this.quality = new Quality(this.isSoftware ? 1 : 0);
+    this.chosenRatio = this.ratio();
+    this.renderer.setPixelRatio(this.chosenRatio);
+    this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.autoUpdate = false;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.camera.up.set(0, 0, 1);
     this.fill.position.set(0, 0, 1);
     this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(2048, 2048);
-    this.sun.shadow.normalBias = 0.002;
-    this.scene.add(this.sun, this.sun.target, this.fill);
+    this.sun.shadow.mapSize.set(shadowTexels, shadowTexels);
+    this.sun.shadow.radius = 2.5; // [texels]
+    this.sun.shadow.intensity = 0.85;
+    this.scene.fog = this.fog;
+    this.scene.add(this.sun, this.sun.target, this.fill, this.sky.mesh);
   }
 
   resize(width: number, height: number): void {
@@ -69,38 +102,68 @@ export class Stage {
   wear(theme: Theme): void {
     this.theme = theme;
     const look = looks[theme];
-    this.scene.background = new Color(look.sky);
-    this.scene.fog = new Fog(look.sky, 25, 160);
-    this.lineColor.value.set(look.line);
-    for (const { material } of this.grounds) (material as MeshStandardMaterial).color.set(look.ground);
-    this.sun.intensity = look.sun;
-    this.fill.intensity = look.fill;
+    this.sky.wear(look.sky, look.glow);
+    this.fog.color.set(look.sky.horizon);
+    this.ground?.wear(look.ground.color, look.ground.line);
+    this.sun.intensity = look.sun.intensity;
+    this.sun.color.set(look.sun.color);
+    this.fill.color.set(look.fill.sky);
+    this.fill.groundColor.set(look.fill.ground);
+    this.reflections?.dispose();
+    this.reflections = undefined;
+    this.reflect();
   }
 
   cast(shadows: boolean): void {
+    if (shadows && !this.sun.castShadow) this.isShadowStale = true;
     this.sun.castShadow = shadows;
   }
 
-  /** The planes of a scene, which are without end. */
+  /** The plane of a scene, which is without end. */
   lay(scene: Scene): void {
-    for (const ground of this.grounds.splice(0)) this.scene.remove(ground);
-    for (const model of scene.models)
-      for (const link of model.links)
-        for (const shape of link.shapes)
-          if (shape.kind === ShapeKind.plane && this.grounds.length === 0) this.addGround(shape.pose, shape.size);
+    this.ground?.dispose();
+    if (this.ground) this.scene.remove(this.ground.mesh);
+    this.ground = undefined;
+    const shape = scene.models
+      .flatMap(({ links }) => links.flatMap(({ shapes }) => shapes))
+      .find(({ kind }) => kind === ShapeKind.plane);
+    if (shape) {
+      this.ground = new Ground(shape.pose, shape.size);
+      this.scene.add(this.ground.mesh);
+    }
     this.wear(this.theme);
   }
 
-  /** The shadows are sharp around what is looked at. */
+  /** Returns the height of the ground [m], if there is one and it is level. */
+  get groundHeight(): number | undefined {
+    return this.ground?.height;
+  }
+
+  /** Takes the time since the picture before [ms], and draws coarser or finer by it; returns whether it does. */
+  adapt(elapsed: number): boolean {
+    if (!this.quality.take(elapsed)) return false;
+    this.applyQuality();
+    return true;
+  }
+
+  /** Draws at full resolution until the next picture, such as for one that is kept. */
+  drawFinely(target: Vector3): void {
+    this.setRatio(Math.min(window.devicePixelRatio, mostPixelRatio));
+    this.draw(target);
+    this.isFine = true;
+  }
+
   draw(target: Vector3): void {
-    const reach = Math.max(shadowReach, 0.8 * this.camera.position.distanceTo(target));
-    const { camera } = this.sun.shadow;
-    if (Math.abs(camera.right - reach) > 0.2 * reach) {
-      Object.assign(camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1, far: 8 * reach });
-      camera.updateProjectionMatrix();
-    }
-    this.sun.target.position.copy(target);
-    this.sun.position.copy(target).add(new Vector3(-0.45, -0.35, 1).multiplyScalar(4 * camera.right));
+    if (this.isFine) this.setRatio(this.ratio());
+    this.isFine = false;
+    const distance = this.camera.position.distanceTo(target);
+    this.fog.near = Math.max(8, 1.5 * distance);
+    this.fog.far = Math.max(90, 9 * distance);
+    this.ground?.surround(this.camera.position, this.fog.far);
+    this.camera.near = Math.min(0.1, Math.max(0.005, 0.01 * distance));
+    this.camera.far = 3 * this.fog.far;
+    this.camera.updateProjectionMatrix();
+    if (this.sun.castShadow) this.aimSun(target, distance);
     this.renderer.render(this.scene, this.camera);
   }
 
@@ -111,37 +174,91 @@ export class Stage {
     this.scene.remove(...objects);
   }
 
-  private addGround(pose: Float32Array, normal: Float32Array): void {
-    const material = new MeshStandardMaterial({
-      roughness: 0.95,
-      polygonOffset: true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1,
-    });
-    material.onBeforeCompile = (shader) => {
-      shader.uniforms.lineColor = this.lineColor;
-      shader.vertexShader =
-        "varying vec2 at;\n" +
-        shader.vertexShader.replace(
-          "#include <begin_vertex>",
-          "#include <begin_vertex>\nat = (modelMatrix * vec4(position, 1.0)).xy;",
-        );
-      shader.fragmentShader =
-        `varying vec2 at;\nuniform vec3 lineColor;\n${gridLines}` +
-        shader.fragmentShader.replace(
-          "#include <color_fragment>",
-          `#include <color_fragment>
-        float line = max(max(0.16 * lineOf(at, 0.1, 1.0), 0.42 * lineOf(at, 1.0, 1.2)), 0.6 * lineOf(at, 10.0, 1.5));
-        diffuseColor.rgb = mix(diffuseColor.rgb, lineColor, line);`,
-        );
-    };
-    const ground = new Mesh(new PlaneGeometry(groundSize, groundSize), material);
-    ground.receiveShadow = true;
-    const turn = new Quaternion(pose[3], pose[4], pose[5], pose[6]);
-    const up = new Vector3(normal[0], normal[1], normal[2]).applyQuaternion(turn);
-    ground.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), up);
-    ground.position.set(pose[0], pose[1], pose[2]);
-    this.grounds.push(ground);
-    this.scene.add(ground);
+  // The shadow map covers everything, if that is not much more than is looked at; else what is looked at. It moves by
+  // whole texels, so that the edges of shadows stand still.
+  private aimSun(target: Vector3, distance: number): void {
+    const around = Math.max(shadowReach, 0.8 * distance);
+    const isAll = this.surroundings !== undefined && this.surroundings.radius <= 1.5 * around;
+    const wanted = isAll && this.surroundings ? 1.02 * this.surroundings.radius : around;
+    const { camera } = this.sun.shadow;
+    const isFar = wanted > camera.right || wanted < 0.7 * camera.right;
+    if (isFar) {
+      const reach = 1.1 * wanted;
+      Object.assign(camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1, far: 4 * reach });
+      camera.updateProjectionMatrix();
+      this.isShadowStale = true;
+    }
+    const texel = (2 * camera.right) / shadowTexels;
+    this.sun.shadow.normalBias = texel;
+    const centre = isAll && this.surroundings ? this.surroundings.center : target;
+    const across = new Vector3(0, 0, 1).cross(sunDirection).normalize();
+    const along = sunDirection.clone().cross(across);
+    const snapped = new Vector3();
+    for (const axis of [across, along, sunDirection])
+      snapped.addScaledVector(axis, Math.round(centre.dot(axis) / texel) * texel);
+    if (snapped.distanceTo(this.sun.target.position) > 0.5 * texel) this.isShadowStale = true;
+    this.sun.target.position.copy(snapped);
+    this.sun.position.copy(snapped).addScaledVector(sunDirection, 2 * camera.right);
+    this.renderer.shadowMap.needsUpdate = this.isShadowStale;
+    this.isShadowStale = false;
   }
+
+  private ratio(): number {
+    return Math.min(window.devicePixelRatio, mostPixelRatio) * levels[this.quality.level].resolution;
+  }
+
+  private applyQuality(): void {
+    this.setRatio(this.ratio());
+    this.reflect();
+  }
+
+  // A ratio that someone else has set stays.
+  private setRatio(ratio: number): void {
+    if (this.renderer.getPixelRatio() !== this.chosenRatio || ratio === this.chosenRatio) return;
+    this.chosenRatio = ratio;
+    this.renderer.setPixelRatio(ratio);
+  }
+
+  private reflect(): void {
+    const look = looks[this.theme];
+    const isOn = levels[this.quality.level].reflections;
+    if (isOn && !this.reflections) this.reflections = reflectionsOf(this.renderer, look);
+    this.scene.environment = isOn ? (this.reflections ?? null) : null;
+    this.scene.environmentIntensity = look.reflections;
+    this.fill.intensity = look.fill.intensity * (isOn ? 1 : fillWithoutReflections);
+  }
+}
+
+function drawsInSoftware(renderer: WebGLRenderer): boolean {
+  const gl = renderer.getContext();
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = String(names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : gl.getParameter(gl.RENDERER));
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
+// A picture of the sky and the ground all around, which surfaces reflect.
+function reflectionsOf(renderer: WebGLRenderer, { sky, ground }: (typeof looks)[Theme]): Texture {
+  const geometry = new SphereGeometry(10, 32, 32).rotateX(Math.PI / 2);
+  const [zenith, horizon, below] = [sky.zenith, sky.horizon, ground.color].map((each) => new Color(each));
+  const positions = geometry.getAttribute("position");
+  const colors = new Float32Array(3 * positions.count);
+  for (let i = 0; i < positions.count; ++i) {
+    const up = positions.getZ(i) / 10;
+    const color = up < -0.02 ? below.clone() : horizon.clone().lerp(zenith, Math.max(0, up) ** 0.6);
+    const towardsSun = new Vector3().fromBufferAttribute(positions, i).normalize().dot(sunDirection);
+    color
+      .lerp(new Color(0xffffff), 0.3)
+      .multiplyScalar(1 + 6 * Math.max(0, towardsSun) ** 24)
+      .toArray(colors, 3 * i);
+  }
+  geometry.setAttribute("color", new BufferAttribute(colors, 3));
+  const material = new MeshBasicMaterial({ vertexColors: true, side: BackSide, toneMapped: false });
+  const surroundings = new ThreeScene();
+  surroundings.add(new Mesh(geometry, material));
+  const generator = new PMREMGenerator(renderer);
+  const { texture } = generator.fromScene(surroundings, 0.03);
+  generator.dispose();
+  geometry.dispose();
+  material.dispose();
+  return texture;
 }

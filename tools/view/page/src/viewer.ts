@@ -1,10 +1,16 @@
-import { Plane, Quaternion, Raycaster, Vector2, Vector3 } from "three";
+import { Plane, Quaternion, Raycaster, Sphere, Vector2, Vector3 } from "three";
+import { Bounds } from "./bounds";
 import { Cameras } from "./cameras";
+import { ContactShadows } from "./contact_shadows";
 import { element } from "./element";
+import { unionOf } from "./framing";
+import { Gizmo } from "./gizmo";
 import { Glow } from "./glow";
 import { GroupPanel } from "./group";
 import { Inspector } from "./inspector";
 import { Instances } from "./instances";
+import { Labels } from "./labels";
+import { type LegendEntry, legendOf, showLegend } from "./legend";
 import {
   none,
   type Scene,
@@ -16,17 +22,18 @@ import {
   seconds,
 } from "./messages";
 import { fixed } from "./numbers";
-import { Contacts, Labels, Rays, Trails } from "./overlays";
+import { Contacts, Rays, Trails } from "./overlays";
 import { Poses } from "./poses";
+import { levels } from "./quality";
 import { Outline, pick } from "./selection";
 import { Sound } from "./sound";
 import { Stage } from "./stage";
 
 export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sound" | "collisions";
 
-const homeMargin = 0.4; // [m] around robots
 const mostTold = 5; // selected entities
 const manyEntities = 1500; // above, shadows are off unless asked for
+const boundsShare = 12; // the times that finding where everything is takes, between two of them
 
 /** The picture and sound of the world. */
 export class Viewer {
@@ -42,6 +49,8 @@ export class Viewer {
   hidden: ReadonlySet<number> = new Set();
   signals: SceneSignals | undefined;
   framesDrawn = 0;
+  /** Is called when the page itself switches a layer. */
+  onLayers: () => void = () => undefined;
 
   private instances: Instances | undefined;
   private glow: Glow | undefined;
@@ -52,7 +61,15 @@ export class Viewer {
   private readonly rays = new Rays();
   private readonly trails = new Trails();
   private readonly labels = new Labels(element("labels"));
+  private readonly gizmo: Gizmo;
+  private bounds: Bounds | undefined;
+  private contactShadows: ContactShadows | undefined;
+  private areShadowsByHand = false;
+  private areBoundsStale = false;
+  private nextBounds = 0; // [ms]
+  private lastAspect = 0;
   private lastDrawn = performance.now();
+  private lastPicture: number | undefined; // [ms] of the page's clock; nothing if the page was hidden since
   private world = "";
 
   constructor(
@@ -64,6 +81,11 @@ export class Viewer {
     this.inspector = new Inspector(() => this.select(undefined));
     this.stage.add(this.outline.group, this.contacts.group, this.rays.group, this.trails.group);
     this.contacts.group.visible = false;
+    this.gizmo = new Gizmo(canvas);
+    document.addEventListener("visibilitychange", () => {
+      this.lastPicture = undefined;
+      this.stage.quality.forget();
+    });
   }
 
   // Data from the server.
@@ -73,15 +95,13 @@ export class Viewer {
     const [selected, hidden] = [this.selection, this.hidden].map((set) => new Set([...set].map(nameOf)));
     const followedName = this.selectedEntity?.name;
     const followed = this.cameras.followedEntity !== undefined ? this.cameras.mode : undefined;
-    if (this.instances) this.stage.remove(this.instances.group);
     if (this.glow) this.stage.remove(this.glow.group);
-    this.instances?.dispose();
     this.poses = new Poses(scene);
     this.glow = new Glow(this.poses);
     this.glow.wear(this.stage.theme === "dark");
+    this.stage.lay(scene);
     this.build(this.poses);
     this.stage.add(this.glow.group);
-    this.stage.lay(scene);
     this.trails.clear();
     const known = (names: ReadonlySet<string | undefined>): number[] =>
       scene.entities.flatMap(({ name }, entity) => (names.has(name) ? [entity] : []));
@@ -89,7 +109,7 @@ export class Viewer {
     const again = scene.entities.findIndex(({ name }) => name === followedName);
     this.selectMany([...known(selected).filter((each) => each !== again), ...(again >= 0 ? [again] : [])]);
     if (followed) this.cameras.choose(again >= 0 ? followed : "orbit", again);
-    if (scene.entities.length > manyEntities && scene.world !== this.world) this.layers.delete("shadows");
+    if (scene.world !== this.world) this.switchShadows();
     this.apply();
   }
 
@@ -99,6 +119,7 @@ export class Viewer {
     if (!this.poses?.take(frame, performance.now())) return;
     if (before && (frame.run !== before.run || frame.tick < before.tick)) this.trails.clear();
     this.instances?.update();
+    this.areBoundsStale = true;
     if (isFirst && this.signals) this.glow?.take(this.signals);
     if (isFirst && this.poses.scene.world !== this.world) {
       this.world = this.poses.scene.world;
@@ -139,6 +160,7 @@ export class Viewer {
     const chosen = isOne ? this.selectedEntity : undefined;
     this.inspector.select(chosen, chosen && this.poses?.scene.models[chosen.model]);
     this.group.select(isOne ? [] : entities, this.poses);
+    this.showLegend();
     this.onSelect([...this.selectedRobots()]);
   }
 
@@ -215,24 +237,21 @@ export class Viewer {
     return found >= 0 ? found : undefined;
   }
 
-  /** All robots, or everything where there are none. */
+  /** Shows all bodies, and keeps them in the picture until the user moves the camera. */
   home(): void {
-    const { poses } = this;
-    if (!poses?.frame) return;
-    const position = new Vector3();
-    const low = new Vector3(Infinity, Infinity, Infinity);
-    const high = low.clone().negate();
-    const robots = this.robotEntities();
-    const wanted = robots.length > 0 ? robots : poses.scene.entities.map((_, entity) => entity);
-    for (const entity of wanted.filter((each) => !poses.absent.has(each))) {
-      poses.read(poses.placeOf(entity), position, new Quaternion());
-      low.min(position);
-      high.max(position);
-    }
-    if (low.x > high.x) return;
-    const centre = low.clone().add(high).multiplyScalar(0.5);
-    this.cameras.choose("orbit");
-    this.cameras.frame(centre, homeMargin + 0.5 * low.distanceTo(high));
+    if (this.poses?.frame && this.bounds) this.cameras.home(this.bounds.boxes());
+  }
+
+  /** Returns the colours of the picture and their meanings. */
+  legend(): LegendEntry[] {
+    if (!this.poses) return [];
+    const rays = this.layers.has("rays") && this.selectedEntity !== undefined && this.selectedEntity.robot !== none;
+    return legendOf(this.poses.scene, { rays, contacts: this.layers.has("contacts") });
+  }
+
+  private showLegend(): void {
+    const panel = document.getElementById("legend");
+    if (panel) showLegend(panel, this.legend());
   }
 
   /** Says in a few sentences what is seen. */
@@ -260,6 +279,7 @@ export class Viewer {
     const isOn = !this.layers.has(layer);
     if (isOn) this.layers.add(layer);
     else this.layers.delete(layer);
+    if (layer === "shadows") this.areShadowsByHand = true;
     this.apply(layer);
     return isOn;
   }
@@ -268,6 +288,7 @@ export class Viewer {
     document.documentElement.dataset.theme = theme;
     this.stage.wear(theme);
     this.glow?.wear(theme === "dark");
+    this.contactShadows?.wear(theme === "dark");
   }
 
   robotEntities(): number[] {
@@ -287,7 +308,11 @@ export class Viewer {
     const elapsed = Math.min(0.1, Math.max(0, now - this.lastDrawn) / 1000);
     this.lastDrawn = now;
     const { poses, stage } = this;
+    const clock = performance.now();
+    this.adapt(this.lastPicture === undefined ? 0 : clock - this.lastPicture);
+    this.lastPicture = clock;
     if (poses?.frame) {
+      if (poses.blend < 1 || this.areBoundsStale) stage.isShadowStale = true;
       poses.advance(now);
       this.instances?.draw();
       this.glow?.draw(this.canvas.height);
@@ -296,8 +321,10 @@ export class Viewer {
       this.sound.draw(poses, stage.camera);
       this.showPose();
     }
+    this.findBounds();
     this.cameras.advance(poses, elapsed);
     stage.draw(this.cameras.target);
+    this.gizmo.draw(stage.camera, this.cameras.target);
     const named = this.layers.has("labels") ? this.robotEntities() : [...this.selection];
     this.labels.draw(
       poses?.frame ? poses : undefined,
@@ -305,8 +332,15 @@ export class Viewer {
       stage.camera,
       this.canvas.clientWidth,
       this.canvas.clientHeight,
+      this.selected,
     );
     ++this.framesDrawn;
+  }
+
+  /** Draws at full resolution, for a picture that is kept. */
+  drawFinely(): void {
+    this.draw(performance.now());
+    this.stage.drawFinely(this.cameras.target);
   }
 
   private showPose(): void {
@@ -318,19 +352,61 @@ export class Viewer {
   }
 
   private build(poses: Poses): void {
+    for (const each of [this.instances, this.contactShadows]) {
+      if (each) this.stage.remove(each.group);
+      each?.dispose();
+    }
     this.instances = new Instances(poses, this.layers.has("collisions") ? "collision" : "visual");
+    this.bounds = new Bounds(poses, this.instances);
     this.stage.add(this.instances.group);
+    this.contactShadows = undefined;
+    const height = this.stage.groundHeight;
+    if (height !== undefined) {
+      this.contactShadows = new ContactShadows(poses, this.instances, height);
+      this.contactShadows.wear(this.stage.theme === "dark");
+      this.stage.add(this.contactShadows.group);
+    }
     if (poses.frame) this.instances.update();
+    this.areBoundsStale = true;
+  }
+
+  // Looks where everything is: for the camera that keeps it in the picture, and for shadows.
+  private findBounds(): void {
+    const begin = performance.now();
+    const { aspect } = this.stage.camera;
+    const isDue = this.areBoundsStale || aspect !== this.lastAspect;
+    if (!isDue || begin < this.nextBounds || !this.bounds || !this.poses?.frame) return;
+    this.areBoundsStale = false;
+    this.lastAspect = aspect;
+    const boxes = this.bounds.boxes();
+    this.stage.surroundings = unionOf(this.bounds.all).getBoundingSphere(new Sphere());
+    if (boxes.length > 0) this.cameras.watch(boxes);
+    this.nextBounds = performance.now() + boundsShare * (performance.now() - begin);
+  }
+
+  /** Draws coarser if the pictures come slowly, and finer again, by the time since the picture before [ms]. */
+  adapt(elapsed: number): void {
+    if (!this.stage.adapt(elapsed)) return;
+    this.switchShadows();
+    this.stage.cast(this.layers.has("shadows"));
+    this.onLayers();
+  }
+
+  // As the page chooses, unless the user has chosen.
+  private switchShadows(): void {
+    if (this.areShadowsByHand || !this.poses) return;
+    const isOn = this.poses.scene.entities.length <= manyEntities && levels[this.stage.quality.level].shadows;
+    if (isOn) this.layers.add("shadows");
+    else this.layers.delete("shadows");
   }
 
   private apply(changed?: Layer): void {
     this.stage.cast(this.layers.has("shadows"));
     this.contacts.group.visible = this.layers.has("contacts");
+    this.showLegend();
     this.sound.switch(this.layers.has("sound"));
     if (!this.layers.has("trails")) this.trails.clear();
     if (changed === "collisions" && this.poses && this.instances) {
-      this.stage.remove(this.instances.group);
-      this.instances.dispose();
       this.build(this.poses);
       this.outline.select([...this.selection], this.poses, this.instances);
     }

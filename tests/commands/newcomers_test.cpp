@@ -170,6 +170,30 @@ TEST(ControlByHand, TakesAShortNameThatOneObjectHas) {
   expect_in(run.done({"remove", "other/sbot_0"}), "other/sbot_0");
 }
 
+TEST(ControlByHand, SwitchesALightByTheShortNameOfItsObject) {
+  const FieldOfRobots field(2, 1e4);
+  const std::string model = field / "lamp.sdf";
+  write_file(model, R"(<sdf version="1.9"><model name="lamp"><static>true</static><link name="post">
+    <collision name="hull"><geometry><box><size>0.1 0.1 1</size></box></geometry></collision>
+    <light name="bulb" type="point"><diffuse>1 1 1 1</diffuse><attenuation><range>5</range></attenuation></light>
+    </link></model></sdf>)");
+  ControlledRun run(field, {"--paused"});
+  run.done({"step", "2"});
+  run.done({"spawn", model, "--name", "hall/east/lamp", "--pose", "1 1 0.5"});
+  for (const char* name : {"lamp", "east/lamp", "lamp/bulb", "east/lamp/bulb", "hall/east/lamp/bulb"})
+    expect_in(run.done({"set-light", name, "off"}), "set_light 'hall/east/lamp'");
+  const auto expect_refusal = [&](const std::string& name, const std::string& message) {
+    const Ended refused = run_to_end(run.ctl({"set-light", name, "on"}));
+    EXPECT_EQ(refused.exit_code, 1) << name;
+    expect_in(refused.err, message);
+  };
+  expect_refusal("lamp/bulbb", "did you mean 'bulb'?");
+  expect_refusal("camp", "there is no light or object 'camp'");
+  run.done({"spawn", model, "--name", "yard/lamp", "--pose", "2 1 0.5"});
+  expect_refusal("lamp/bulb", "several lights are called 'lamp/bulb', such as 'hall/east/lamp/bulb'");
+  expect_in(run.done({"set-light", "yard/lamp", "off"}), "set_light 'yard/lamp'");
+}
+
 TEST(ControlByHand, SuggestsTheCommandAndNotAnOption) {
   expect_refused({"ctl", "set_pose", "sbot_0", "--pose", "0 0 0"},
                  "there is no command 'set_pose'; did you mean 'set-pose'?");

@@ -195,6 +195,28 @@ std::vector<std::string> names_ending_in(Control& control, const std::string& na
   return names;
 }
 
+// Returns the scoped names of lights whose object's name ends in that of `light`: hall/lamp/bulb for lamp/bulb. Returns
+// none if an object has the name as it is.
+std::vector<std::string> lights_ending_in(Control& control, const std::string& light) {
+  std::vector<std::string> lights;
+  for (const std::string& object : control.entities())
+    for (std::size_t end = light.size(); end != std::string::npos && end > 0; end = light.rfind('/', end - 1)) {
+      const std::string_view wanted = std::string_view(light).substr(0, end);
+      if (object == wanted) return {};
+      if (object.ends_with("/" + std::string(wanted))) lights.push_back(object + light.substr(end));
+    }
+  return lights;
+}
+
+// Returns the only one of several full names that a short name can mean; throws std::invalid_argument.
+const std::string& only_one_of(const std::vector<std::string>& names, const std::string& name,
+                               const std::string& what) {
+  if (names.size() > 1)
+    throw std::invalid_argument("several " + what + " are called '" + name + "', such as '" + names[0] + "' and '" +
+                                names[1] + "': give the name with its scope");
+  return names.front();
+}
+
 // Sends a request about the object of this name, or about the only object whose scoped name ends in it.
 template <class Ask>
 ControlReply ask_of_object(Control& control, const std::string& name, Ask ask) {
@@ -204,10 +226,19 @@ ControlReply ask_of_object(Control& control, const std::string& name, Ask ask) {
     if (error.result != ControlResult::not_found) throw;
     const std::vector<std::string> names = names_ending_in(control, name);
     if (names.empty()) throw;
-    if (names.size() > 1)
-      throw std::invalid_argument("several objects are called '" + name + "', such as '" + names[0] + "' and '" +
-                                  names[1] + "': give the name with its scope");
-    return ask(names.front());
+    return ask(only_one_of(names, name, "objects"));
+  }
+}
+
+// Sets a light of this name, or one of the only object whose scoped name ends in the object's part of it.
+ControlReply set_light(Control& control, const std::string& light, const LightSetting& setting) {
+  try {
+    return control.set_light(light, setting);
+  } catch (const ControlError& error) {
+    if (error.result != ControlResult::operation_failed) throw;
+    const std::vector<std::string> lights = lights_ending_in(control, light);
+    if (lights.empty()) throw;
+    return control.set_light(only_one_of(lights, light, "lights"), setting);
   }
 }
 
@@ -274,9 +305,13 @@ void add_light_command(Requests& requests) {
   };
   auto [light, switched] = requests.add<Switched>(
       "set-light", "Switch a light on or off, or set its intensity and color",
-      [](Control& control, const Switched& to) { return control.set_light(to.light, to.setting); });
+      [](Control& control, const Switched& to) { return set_light(control, to.light, to.setting); });
   LightSetting& set = switched.setting;
-  add_name(light, switched.light);
+  light
+      .add_option("NAME", switched.light,
+                  "Object, for all of its lights, or OBJECT/LIGHT; its scope is needed only if several have this name")
+      .required()
+      .type_name("");
   light
       .add_option_function<std::string>(
           "STATE", [&set](const std::string& state) { set.on = state == "on"; }, "on or off")

@@ -17,6 +17,7 @@ struct Series {
   double tolerance = 0.0;                       ///< allowed deviation of measured values, in units of y
   bool is_joined = false;                       ///< draw lines between consecutive points
   bool has_dots = true;                         ///< draw dots at measured points
+  std::size_t group = 0;                        ///< index in `Page::groups`, if the page has groups
 };
 
 struct Image {
@@ -40,6 +41,9 @@ struct Page {
   std::string name;  ///< file name without the extension
   std::string title;
   std::vector<Panel> panels;
+  /// Names of groups of series, the same in each panel. If the series are of several, each group has a colour, its
+  /// series differ in shade and dashes, and one legend below the panels has a row for each group.
+  std::vector<std::string> groups{};
 };
 
 /// Returns the page as a self-contained SVG document.

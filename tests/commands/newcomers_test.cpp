@@ -156,6 +156,24 @@ TEST(ControlByHand, SpawnsWhatComesWithCohortAndWhatTheWorldHasByNameOrUri) {
   expect_in(missing.err, "there is no file 'crate.sdf'");
 }
 
+// The s-bot includes a file that a world without s-bots does not have.
+TEST(ControlByHand, SaysWhyAModelOfSeveralFilesCannotBeSpawnedAndWhichModelsCan) {
+  const ScratchFolder folder;
+  write_file(folder / "empty.sdf",
+             "<sdf version='1.9'><world name='empty'><include><uri>model://ground_plane</uri>"
+             "</include></world></sdf>");
+  write_file(folder / "empty.yaml", "world: empty.sdf\nduration: 1e6\n");
+  const ReservedDomain domain;
+  Process server({cohort_program(), "serve", folder / "empty.yaml", "--paused", "--domain", domain.text()});
+  control(domain, {"spawn", "post", "--name", "y", "--pose", "1 0 0"});
+  const Ended refused = run_to_end(ctl_command(domain, {"spawn", "sbot", "--name", "x", "--pose", "1 0 0"}));
+  EXPECT_EQ(refused.exit_code, 1);
+  expect_in(refused.err, "'sbot' cannot be spawned here: it refers to 'model://sbot/base.sdf'");
+  expect_in(refused.err, "the world has no model 'sbot'; known: ground_plane");
+  expect_in(refused.err, "can be spawned: arm, ");
+  EXPECT_EQ(refused.err.find("sbot_detailed"), std::string::npos) << "it has several files too";
+}
+
 TEST(ControlByHand, TakesAShortNameThatOneObjectHas) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});

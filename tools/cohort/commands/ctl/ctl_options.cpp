@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "server/core/text.hpp"
-#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/commands/ctl/ctl_spawn.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -156,36 +156,6 @@ void add_time_commands(Requests& requests) {
       .type_name("");
   requests.add<Nothing>("shutdown", "End the run and the server",
                         [](Control& control, const Nothing&) { return control.quit(); });
-}
-
-// Sends the text of the model file.
-void take_file(Spawn& spawn, const std::filesystem::path& file) {
-  const std::vector<char> text = read_file(file);
-  spawn.text.assign(text.begin(), text.end());
-  spawn.model.clear();
-}
-
-// Spawns a model file, a model of the world, or a model that is installed with Cohort, also as model://NAME.
-ControlReply spawn_model(Control& control, Spawn what) {
-  constexpr std::string_view scheme = "model://";
-  if (std::filesystem::is_regular_file(what.model)) {
-    take_file(what, what.model);
-  } else if (what.model.starts_with(scheme)) {
-    what.model.erase(0, scheme.size());
-  } else if (std::filesystem::path(what.model).has_extension()) {
-    throw std::invalid_argument("there is no file '" + what.model + "'");
-  }
-  try {
-    control.spawn(what);
-  } catch (const ControlError& error) {
-    const bool is_unknown = !what.model.empty() && error.result == ControlResult::operation_failed &&
-                            std::string_view(error.what()).find("has no model") != std::string_view::npos;
-    const std::optional<std::filesystem::path> file = is_unknown ? installed_model(what.model) : std::nullopt;
-    if (!file) throw;
-    take_file(what, *file);
-    control.spawn(what);
-  }
-  return control.last_reply();
 }
 
 // Returns the scoped names that end in `name`: explorers/sbot_0 for sbot_0.

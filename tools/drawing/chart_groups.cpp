@@ -18,7 +18,7 @@ using tool::svg::number;
 constexpr std::array<std::string_view, 5> colours = {"#0b62c4", "#c4480b", "#0a7d55", "#8a3ab9", "#8a6d00"};
 constexpr std::array<std::string_view, 4> dashes = {"", "6 3", "2 2.5", "9 3 2 3"};
 constexpr std::array<double, 3> shades = {0.0, -0.14, 0.12};  // added to the lightness
-constexpr double row_height = 18.0;
+constexpr double legend_row_height = 18.0;
 constexpr double letter_width = 6.8;
 constexpr double sample_width = 26.0;  // width of a piece of a line in the legend
 constexpr double gap = 16.0;           // space between entries
@@ -74,7 +74,7 @@ GroupLegend draw_group_legend(const Page& page, const Eigen::Vector2d& corner, d
       const double entry = sample_width + 6.0 + width_of(panel.series[i].name);
       if (x + entry > width && x > indent) {
         x = indent;
-        y += row_height;
+        y += legend_row_height;
       }
       legend.text += fmt::format("<path d=\"M{} {}h{}\" fill=\"none\" {}/><text x=\"{}\" y=\"{}\">{}</text>\n",
                                  number(corner.x() + x), number(corner.y() + y - 4.0), number(sample_width),
@@ -82,7 +82,7 @@ GroupLegend draw_group_legend(const Page& page, const Eigen::Vector2d& corner, d
                                  number(corner.y() + y), escaped(panel.series[i].name));
       x += entry + gap;
     }
-    legend.height = y + row_height - 12.0;
+    legend.height = y + legend_row_height - 12.0;
   }
   legend.text += "</g>\n";
   return legend;

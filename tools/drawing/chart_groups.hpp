@@ -1,9 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
-#include "tools/drawing/chart.hpp"
+#include "tools/drawing/chart_page.hpp"
 
 /// The styles of a chart's lines, and the legend of a page with groups of series.
 namespace cohort::figures {

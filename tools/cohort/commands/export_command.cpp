@@ -1,3 +1,4 @@
+#include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/sdf/schema/yaml_sdf.hpp"
 #include "server/parsing/writing/write_world.hpp"
 #include "tools/cohort/cli/output_file.hpp"

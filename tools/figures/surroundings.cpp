@@ -102,7 +102,7 @@ Panel panorama() {
   description::Model other = tracked_robot();
   other.links[turret].color = {0.95, 0.5, 0.1};
   stand.add(other, at(0, -0.3, 0));
-  Panel panel{"Panorama", "a pillar on the left, a robot on the right, a box behind", "bearing [degrees]", "", {}};
+  Panel panel{"Panorama", "pillar left, box behind, robot right", "bearing [degrees]", "", {}};
   panel.image.width = camera.width;
   panel.image.height = camera.height;
   for (std::size_t i = 0; i < 3 * camera.width * camera.height; ++i)

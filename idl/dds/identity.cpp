@@ -23,13 +23,13 @@ constexpr std::string_view identity_file = "identity";
 constexpr std::array<std::pair<Role, std::string_view>, 3> role_names = {
     {{Role::server, "server"}, {Role::controller, "controller"}, {Role::observer, "observer"}}};
 
-std::uint32_t parse_door(const fs::path& file, const std::string& text) {
-  std::uint32_t door = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), door);
-  if (error != std::errc() || end != text.data() + text.size() || door > last_door)
-    throw WireError(file.string() + ": expected a door from 0 to " + std::to_string(last_door) + ", not '" + text +
-                    "'");
-  return door;
+std::uint32_t parse_participant(const fs::path& file, const std::string& text) {
+  std::uint32_t index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error != std::errc() || end != text.data() + text.size() || index > last_participant)
+    throw WireError(file.string() + ": expected a participant from 0 to " + std::to_string(last_participant) +
+                    ", not '" + text + "'");
+  return index;
 }
 
 Role parse_role(const fs::path& file, const std::string& text) {
@@ -51,8 +51,8 @@ void set_value(Identity& identity, const fs::path& file, const std::string& key,
     identity.name = value;
   } else if (key == "role") {
     identity.role = parse_role(file, value);
-  } else if (key == "door") {
-    identity.door = parse_door(file, value);
+  } else if (key == "participant" || key == "door") {
+    identity.participant = parse_participant(file, value);
   } else if (key == "protection") {
     identity.protection = value;
   } else if (key == "robots") {
@@ -79,7 +79,7 @@ std::string identity_text(const Identity& identity) {
   std::string text = "name: " + identity.name + "\n";
   for (const auto& [role, name] : role_names)
     if (role == identity.role) text += "role: " + std::string(name) + "\n";
-  text += "door: " + std::to_string(identity.door) + "\nprotection: " + identity.protection + "\n";
+  text += "participant: " + std::to_string(identity.participant) + "\nprotection: " + identity.protection + "\n";
   for (const std::string& robots : identity.robots) text += "robots: " + robots + "\n";
   if (identity.may_control) text += "control: yes\n";
   return text;
@@ -107,26 +107,27 @@ Identity read_identity(const fs::path& folder) {
   return identity;
 }
 
-std::vector<Identity> read_doors(const fs::path& folder) {
+std::vector<Identity> read_server_identities(const fs::path& folder) {
   const fs::path server = fs::is_directory(folder / "server") ? folder / "server" : folder;
   std::error_code error;
-  std::vector<Identity> doors;
+  std::vector<Identity> identities;
   for (const auto& entry : fs::directory_iterator(server, error)) {
     if (!fs::exists(entry.path() / identity_file)) continue;
-    doors.push_back(read_identity(entry.path()));
-    if (doors.back().role != Role::server)
+    identities.push_back(read_identity(entry.path()));
+    if (identities.back().role != Role::server)
       throw WireError(entry.path().string() +
                       " is not a server's identity; give the folder created by 'cohort security init'");
   }
   if (error) throw WireError("cannot read " + server.string() + ": " + error.message());
-  std::ranges::sort(doors, {}, &Identity::door);
-  if (doors.empty() || doors.front().door != observers_door)
+  std::ranges::sort(identities, {}, &Identity::participant);
+  if (identities.empty() || identities.front().participant != observers_participant)
     throw WireError(server.string() +
-                    " is not a server's folder created by 'cohort security init': it has no door for observers");
-  const auto same = std::ranges::adjacent_find(doors, {}, &Identity::door);
-  if (same != doors.end())
-    throw WireError(server.string() + ": " + same->name + " and " + std::next(same)->name + " have the same door");
-  return doors;
+                    " is not a server's folder created by 'cohort security init': it has no identity of observers");
+  const auto same = std::ranges::adjacent_find(identities, {}, &Identity::participant);
+  if (same != identities.end())
+    throw WireError(server.string() + ": " + same->name + " and " + std::next(same)->name +
+                    " have the same participant");
+  return identities;
 }
 
 }  // namespace cohort::wire

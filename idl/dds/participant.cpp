@@ -254,24 +254,24 @@ std::string partition_of(std::uint64_t client) {
   return text;
 }
 
-std::uint16_t discovery_port(std::uint32_t domain, std::uint32_t door) {
+std::uint16_t discovery_port(std::uint32_t domain, std::uint32_t participant) {
   if (domain > last_domain) {
     throw WireError("domain " + std::to_string(domain) + " is out of range; expected 0 to " +
                     std::to_string(last_domain) + ", preferably below 100");
   }
-  return static_cast<std::uint16_t>(7410 + 250 * domain + 2 * door);
+  return static_cast<std::uint16_t>(7410 + 250 * domain + 2 * participant);
 }
 
 Participant Participant::server(std::uint32_t domain, const std::string& address,
                                 const std::optional<Identity>& identity) {
-  const std::uint32_t door = identity ? identity->door : 0;
-  const std::uint16_t port = discovery_port(domain, door);
+  const std::uint32_t index = identity ? identity->participant : 0;
+  const std::uint16_t port = discovery_port(domain, index);
   const in_addr own_address = resolve(address);
   expect_own(own_address);
   std::string discovery =
-      "<ParticipantIndex>" + std::to_string(door) + "</ParticipantIndex><SPDPInterval>5s</SPDPInterval>";
-  // Without a peer, Cyclone announces itself to the first ports of this machine, where other doors would refuse it
-  // repeatedly. So its peer is itself.
+      "<ParticipantIndex>" + std::to_string(index) + "</ParticipantIndex><SPDPInterval>5s</SPDPInterval>";
+  // Without a peer, Cyclone announces itself to the first ports of this machine, where other participants of the server
+  // would refuse it repeatedly. So its peer is itself.
   if (identity) discovery += "<Peers>" + peer(own_address, port) + "</Peers>";
   LogCapture log;
   auto state = join(domain, configuration(domain, own_address, discovery), identity);
@@ -293,7 +293,7 @@ Participant Participant::client(std::uint32_t domain, const std::string& address
                                 const std::optional<Identity>& identity) {
   if (identity && identity->role == Role::server)
     throw WireError(identity->folder.string() + " is the server's identity; use a client's folder in clients/");
-  const std::uint16_t port = discovery_port(domain, identity ? identity->door : 0);
+  const std::uint16_t port = discovery_port(domain, identity ? identity->participant : 0);
   const in_addr server = resolve(address);
   // A client announces itself every second, only to the server. So it finds a server that starts later within a second,
   // at the cost of one small packet per second. The server need not repeat its announcement, because it answers each

@@ -31,8 +31,8 @@ void set_dds_log(DdsLogReceiver receiver);
 /// Returns the partition for the server's messages to one client: `c` and the client's id as 16 hexadecimal digits.
 std::string partition_of(std::uint64_t client);
 
-/// Returns the UDP port at which the server of a domain is found: 7410 + 250 * domain + 2 * door.
-std::uint16_t discovery_port(std::uint32_t domain, std::uint32_t door = 0);
+/// Returns the UDP port at which the server of a domain is found: 7410 + 250 * domain + 2 * participant.
+std::uint16_t discovery_port(std::uint32_t domain, std::uint32_t participant = 0);
 
 struct ParticipantState;
 
@@ -42,13 +42,14 @@ struct ParticipantState;
 class Participant {
  public:
   /// Creates the server of `domain`, reachable on the interface with `address` (an IPv4 address; loopback by default).
-  /// Throws DomainTaken if another server uses the domain, WireError for other errors. With `identity` (read_doors) it
-  /// is one of the server's doors, under DDS Security: it admits only the client with that identity.
+  /// Throws DomainTaken if another server uses the domain, WireError for other errors. With `identity`
+  /// (read_server_identities) it is one of the server's participants under DDS Security, which admits only the client
+  /// with that identity.
   static Participant server(std::uint32_t domain, const std::string& address = "127.0.0.1",
                             const std::optional<Identity>& identity = {});
   /// Creates a client of the server of `domain` at `address` (an IPv4 address or a host name). Uses the interface that
-  /// routes there. Does not wait for the server. With `identity` (read_identity) it connects to the identity's door,
-  /// under DDS Security. Throws WireError.
+  /// routes there. Does not wait for the server. With `identity` (read_identity) it connects to
+  /// the server's participant for that identity, under DDS Security. Throws WireError.
   static Participant client(std::uint32_t domain, const std::string& address = "127.0.0.1",
                             const std::optional<Identity>& identity = {});
 

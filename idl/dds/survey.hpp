@@ -39,8 +39,8 @@ struct Survey {
   std::uint64_t tick = 0;              ///< tick of the newest WorldState
 };
 
-/// Looks for the server of `domain` at `address` as an observer, at most for `patience`. With `identity`, uses that
-/// identity's door, where controllers do not receive the state of the world. Throws WireError.
+/// Looks for the server of `domain` at `address` as an observer, at most for `patience`. With `identity`, uses the
+/// server's participant for it, where controllers do not receive the state of the world. Throws WireError.
 Survey survey(std::uint32_t domain, const std::string& address, const std::optional<Identity>& identity,
               std::chrono::milliseconds patience);
 

@@ -98,7 +98,7 @@ struct Reader<Message>::State {
 
   State(Callbacks its_callbacks, const Participant& participant)
       : callbacks(std::move(its_callbacks)),
-        door(static_cast<std::uint64_t>(participant.state().participant.handle()) * 0xbf58476d1ce4e5b9u) {
+        own_participant(static_cast<std::uint64_t>(participant.state().participant.handle()) * 0xbf58476d1ce4e5b9u) {
     // Zeroed, as dds_take requires; it then allocates their sequences and strings, and reuses them.
     for (void*& sample : samples) sample = dds_alloc(sizeof(Sample));
   }
@@ -150,8 +150,9 @@ struct Reader<Message>::State {
     // Uses its GUID, which stays the same when the participant is lost and found again.
     std::array<std::uint64_t, 2> guid{};
     std::memcpy(guid.data(), endpoint->participant_key.v, sizeof guid);
-    // Also uses the door: with security, a client authenticated at one door may choose any identity at another.
-    const Sender sender{writer, (guid[0] * 0x9e3779b97f4a7c15u ^ guid[1]) + door};
+    // Also uses the own participant: with security, a client that one participant has authenticated may choose any GUID
+    // at another.
+    const Sender sender{writer, (guid[0] * 0x9e3779b97f4a7c15u ^ guid[1]) + own_participant};
     dds_builtintopic_free_endpoint(endpoint);
     if (participants.size() >= most_participants) participants.clear();
     participants.emplace(writer, sender.participant);
@@ -161,7 +162,7 @@ struct Reader<Message>::State {
   static constexpr std::size_t most_participants = 10'000;  // the cache is cleared if there are more
 
   Callbacks callbacks;
-  const std::uint64_t door;                                     // door of this reader's participant
+  const std::uint64_t own_participant;                          // this reader's
   std::map<dds_instance_handle_t, std::uint64_t> participants;  // by writer
   std::array<void*, 8> samples{};
   std::array<dds_sample_info_t, 8> infos{};

@@ -137,9 +137,9 @@ SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes) {
   SessionSnapshot snapshot;
   snapshot.build = {read_bytes<std::string>(reader), "", ""};
   const std::string& version = snapshot.build.version;
-  if (version != COHORT_VERSION)
-    throw SnapshotError("the snapshot is of version '" + printable(version, 20) + "' of Cohort, but this is version " +
-                        COHORT_VERSION);
+  if (std::ranges::find(versions_of_snapshots(), version) == versions_of_snapshots().end())
+    throw SnapshotError("the snapshot is from version '" + printable(version, 20) +
+                        "' of Cohort, which version " COHORT_VERSION " cannot read");
   const std::span<const std::byte> hashed = bytes.first(bytes.size() - hash_size);
   std::uint64_t hash = 0;
   std::memcpy(&hash, bytes.data() + hashed.size(), sizeof hash);

@@ -42,7 +42,8 @@ SessionSnapshot take_snapshot(const description::Experiment& experiment, const S
 /// Returns the bytes for a file: a mark, the versions of the format and of Cohort, its commit and arithmetic, the
 /// members above, and a hash of it all.
 std::vector<std::byte> to_bytes(const SessionSnapshot& snapshot);
-/// Throws SnapshotError if the bytes are not a snapshot, from another version of Cohort, damaged or incomplete.
+/// Throws SnapshotError if the bytes are not a snapshot, from a version of Cohort that
+/// `versions_of_snapshots` does not list, damaged or incomplete.
 SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes);
 
 /// Returns the states in the snapshot of those of `robots` that have one.

@@ -101,6 +101,11 @@ const BuildIdentity& this_build() {
   return build;
 }
 
+std::span<const std::string_view> versions_of_snapshots() {
+  static constexpr std::string_view versions[] = {"0.1.0", COHORT_VERSION};
+  return versions;
+}
+
 std::string why_results_differ(const BuildIdentity& other) {
   const BuildIdentity& own = this_build();
   const bool is_other_arithmetic = !other.arithmetic.empty() && other.arithmetic != own.arithmetic;

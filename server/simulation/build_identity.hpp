@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace cohort {
 
@@ -13,6 +15,10 @@ struct BuildIdentity {
 
 /// Returns the identity of this program. For any thread.
 const BuildIdentity& this_build();
+
+/// Returns the versions whose snapshots this version reads, oldest first; the last is this version. A version with
+/// another layout of snapshots either reads the older layouts (`SnapshotLayout`) or leaves their versions out here.
+std::span<const std::string_view> versions_of_snapshots();
 
 /// Returns a hash, as 16 hexadecimal digits, of this build's results for fixed inputs: the portable functions, random
 /// numbers, and falling, rolling, turning and driven bodies with every solver. It is the same on every CPU, like runs.

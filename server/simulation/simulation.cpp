@@ -9,6 +9,7 @@
 #include "server/core/snapshot.hpp"
 #include "server/physics/make_world.hpp"
 #include "server/simulation/action_events.hpp"
+#include "server/simulation/build_identity.hpp"
 
 namespace cohort {
 namespace {
@@ -253,7 +254,8 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   if (mark == first_snapshot_mark) reader.set_layout(SnapshotLayout::first);
   std::uint64_t version = 0;
   reader.read(version);
-  if (version != hash_name(COHORT_VERSION)) throw SnapshotError("the snapshot is not from version " COHORT_VERSION);
+  if (std::ranges::find(versions_of_snapshots(), version, hash_name) == versions_of_snapshots().end())
+    throw SnapshotError("version " COHORT_VERSION " cannot read snapshots of the version that made this one");
   reader.expect_count(seed_, "as seed");
   reader.expect_count(static_cast<std::size_t>(experiment_->world.step.count()), "ns as time step");
   reader.read(tick_);

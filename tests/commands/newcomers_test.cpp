@@ -156,6 +156,24 @@ TEST(ControlByHand, SpawnsWhatComesWithCohortAndWhatTheWorldHasByNameOrUri) {
   expect_in(missing.err, "there is no file 'crate.sdf'");
 }
 
+// The s-bot includes a file that a world without s-bots does not have.
+TEST(ControlByHand, SaysWhyAModelOfSeveralFilesCannotBeSpawnedAndWhichModelsCan) {
+  const ScratchFolder folder;
+  write_file(folder / "empty.sdf",
+             "<sdf version='1.9'><world name='empty'><include><uri>model://ground_plane</uri>"
+             "</include></world></sdf>");
+  write_file(folder / "empty.yaml", "world: empty.sdf\nduration: 1e6\n");
+  const ReservedDomain domain;
+  Process server({cohort_program(), "serve", folder / "empty.yaml", "--paused", "--domain", domain.text()});
+  control(domain, {"spawn", "post", "--name", "y", "--pose", "1 0 0"});
+  const Ended refused = run_to_end(ctl_command(domain, {"spawn", "sbot", "--name", "x", "--pose", "1 0 0"}));
+  EXPECT_EQ(refused.exit_code, 1);
+  expect_in(refused.err, "'sbot' cannot be spawned here: it refers to 'model://sbot/base.sdf'");
+  expect_in(refused.err, "the world has no model 'sbot'; known: ground_plane");
+  expect_in(refused.err, "can be spawned: arm, ");
+  EXPECT_EQ(refused.err.find("sbot_detailed"), std::string::npos) << "it has several files too";
+}
+
 TEST(ControlByHand, TakesAShortNameThatOneObjectHas) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
@@ -168,6 +186,30 @@ TEST(ControlByHand, TakesAShortNameThatOneObjectHas) {
   EXPECT_EQ(ambiguous.exit_code, 1);
   expect_in(ambiguous.err, "several objects are called 'sbot_0'");
   expect_in(run.done({"remove", "other/sbot_0"}), "other/sbot_0");
+}
+
+TEST(ControlByHand, SwitchesALightByTheShortNameOfItsObject) {
+  const FieldOfRobots field(2, 1e4);
+  const std::string model = field / "lamp.sdf";
+  write_file(model, R"(<sdf version="1.9"><model name="lamp"><static>true</static><link name="post">
+    <collision name="hull"><geometry><box><size>0.1 0.1 1</size></box></geometry></collision>
+    <light name="bulb" type="point"><diffuse>1 1 1 1</diffuse><attenuation><range>5</range></attenuation></light>
+    </link></model></sdf>)");
+  ControlledRun run(field, {"--paused"});
+  run.done({"step", "2"});
+  run.done({"spawn", model, "--name", "hall/east/lamp", "--pose", "1 1 0.5"});
+  for (const char* name : {"lamp", "east/lamp", "lamp/bulb", "east/lamp/bulb", "hall/east/lamp/bulb"})
+    expect_in(run.done({"set-light", name, "off"}), "set_light 'hall/east/lamp'");
+  const auto expect_refusal = [&](const std::string& name, const std::string& message) {
+    const Ended refused = run_to_end(run.ctl({"set-light", name, "on"}));
+    EXPECT_EQ(refused.exit_code, 1) << name;
+    expect_in(refused.err, message);
+  };
+  expect_refusal("lamp/bulbb", "did you mean 'bulb'?");
+  expect_refusal("camp", "there is no light or object 'camp'");
+  run.done({"spawn", model, "--name", "yard/lamp", "--pose", "2 1 0.5"});
+  expect_refusal("lamp/bulb", "several lights are called 'lamp/bulb', such as 'hall/east/lamp/bulb'");
+  expect_in(run.done({"set-light", "yard/lamp", "off"}), "set_light 'yard/lamp'");
 }
 
 TEST(ControlByHand, SuggestsTheCommandAndNotAnOption) {

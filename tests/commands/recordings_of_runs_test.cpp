@@ -299,6 +299,22 @@ TEST_F(Recordings, AreDrawnAsPlots) {
   EXPECT_EQ(one.find("swarm/sbot_0"), std::string::npos) << "it was not asked for";
 }
 
+TEST_F(Recordings, AreDrawnOverTimeInTheColoursOfTeams) {
+  const std::string file = *this / "run.mcap";
+  run_experiment(COHORT_SOURCE_DIR "/worlds/experiments/lifting.yaml",
+                 {"--controllers", "inprocess", "--duration", "0.5", "--record", file});
+  const auto has_legend = [&](const std::vector<std::string>& selection, const std::vector<std::string>& teams) {
+    std::vector<std::string> plot = {"plot", file, "-o", *this / "speed.svg", "--what", "speed"};
+    plot.insert(plot.end(), selection.begin(), selection.end());
+    ASSERT_EQ(cohort(plot).exit_code, 0);
+    const std::string svg = read_file(*this / "speed.svg");
+    EXPECT_EQ(svg.find("id=\"legend\"") != std::string::npos, !teams.empty());
+    for (const std::string& team : teams) EXPECT_NE(svg.find(">team " + team + "<"), std::string::npos) << team;
+  };
+  has_legend({}, {"load", "lifter", "anchor"});
+  has_legend({"--robots", "0"}, {});
+}
+
 TEST_F(Recordings, AreDrawnInTheFormatOfTheFilesNameOrRefused) {
   const std::string file = record("run.mcap", {"--plot", *this / "live.pdf"});
   EXPECT_TRUE(read_file(*this / "live.pdf").starts_with("%PDF"));

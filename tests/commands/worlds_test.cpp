@@ -104,6 +104,26 @@ TEST(Samples, AreReadByTheSamplingTechnique) {
   EXPECT_EQ(checked.exit_code, 0) << checked.err;
 }
 
+TEST(Samples, AreTakenOfAModelOrAnExperimentByName) {
+  const ScratchFolder folder;
+  const auto samples_of = [&](const std::string& name) {
+    const std::string file = folder / "s.csv";
+    std::filesystem::remove(file);
+    const Ended taken =
+        run_to_end({cohort_program(), "samples", name, "proximity", "-o", file, "--distances", "2", "--angles", "4"});
+    EXPECT_EQ(taken.exit_code, 0) << taken.err;
+    return read_file(file);
+  };
+  const std::string samples = samples_of("sbot");
+  EXPECT_EQ(samples, samples_of(COHORT_SOURCE_DIR "/worlds/robots/sbot/model.sdf"));
+  EXPECT_EQ(samples, samples_of("obstacle_avoidance")) << "its first robot is an s-bot";
+  EXPECT_EQ(samples, samples_of(COHORT_SOURCE_DIR "/worlds/experiments/obstacle_avoidance.yaml"));
+  const Ended unknown = run_to_end({cohort_program(), "samples", "sbott", "proximity", "-o", folder / "s.csv"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("no file, example or model named 'sbott'; did you mean 'sbot'?"), std::string::npos)
+      << unknown.err;
+}
+
 TEST(Samples, RejectDevicesOtherThanRings) {
   const ScratchFolder folder;
   const Ended ended =
@@ -201,6 +221,9 @@ TEST(Models, AreFoundByNameAndSuggestTheNearest) {
   const Ended known = run_to_end({cohort_program(), "models", "show", "sbot"});
   EXPECT_EQ(known.exit_code, 0) << known.err;
   EXPECT_TRUE(known.out.starts_with("sbot: ")) << known.out;
+  const Ended experiment = run_to_end({cohort_program(), "models", "show", "obstacle_avoidance"});
+  EXPECT_EQ(experiment.exit_code, 0) << experiment.err;
+  EXPECT_NE(experiment.out.find("explorers/sbot_15: "), std::string::npos) << experiment.out;
   const Ended misspelt = run_to_end({cohort_program(), "models", "show", "sbott"});
   EXPECT_EQ(misspelt.exit_code, 2);
   EXPECT_NE(misspelt.err.find("did you mean 'sbot'?"), std::string::npos) << misspelt.err;

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <regex>
-
 #include "tests/support/node_folder.hpp"
 
 namespace cohort::test {
@@ -46,19 +44,6 @@ TEST_F(Manifests, WithAKeyOrAValueThatIsWrongAreFound) {
     EXPECT_EQ(checked.exit_code, 1) << to;
     EXPECT_NE(checked.out.find(to.substr(0, to.find(':'))), std::string::npos) << checked.out << checked.err;
   }
-}
-
-TEST(FilesOfDocker, NameTheImageOfThisVersion) {
-  const std::regex image(R"(\bcohort(?:-sdk)?:(\d+\.\d+\.\d+)\b)");
-  int images = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(docker)) {
-    if (!entry.is_regular_file()) continue;
-    const std::string text = read_file(entry.path());
-    for (std::sregex_iterator match(text.begin(), text.end(), image), end; match != end; ++match, ++images)
-      EXPECT_EQ((*match)[1], COHORT_VERSION) << entry.path();
-  }
-  EXPECT_GE(images, 5);
-  EXPECT_NE(read_file(docker / "Dockerfile").find("image.version=\"" COHORT_VERSION "\""), std::string::npos);
 }
 
 }  // namespace

@@ -17,22 +17,24 @@ class Keys {
   /// keep to what it may.
   explicit Keys(const std::string& protection = "sign", unsigned days = 30,
                 wire::Role observers_side = wire::Role::observer) {
-    make({.name = "observer", .role = observers_side, .door = wire::observers_door}, protection, days);
-    make({.name = "red", .door = 1, .robots = {"0..7"}}, protection, days);
-    make({.name = "blue", .door = 2, .robots = {"8..15"}}, protection, days);
+    make({.name = "observer", .role = observers_side, .participant = wire::observers_participant}, protection, days);
+    make({.name = "red", .participant = 1, .robots = {"0..7"}}, protection, days);
+    make({.name = "blue", .participant = 2, .robots = {"8..15"}}, protection, days);
   }
 
   std::string folder() const { return folder_.path().string(); }
   std::string client_folder(const std::string& name) const { return (folder_.path() / "clients" / name).string(); }
   wire::Identity client(const std::string& name) const { return wire::read_identity(client_folder(name)); }
-  wire::Identity door(const std::string& name) const { return wire::read_identity(folder_.path() / "server" / name); }
+  wire::Identity server_identity(const std::string& name) const {
+    return wire::read_identity(folder_.path() / "server" / name);
+  }
 
-  /// Makes a folder with the files of `name` for the door of `other`.
+  /// Makes a folder with the files of `name` for the participant of `other`.
   std::string disguise(const std::string& name, const std::string& other) const {
     const std::filesystem::path to = folder_.path() / (name + "_at_" + other);
     std::filesystem::copy(client_folder(name), to);
     wire::Identity identity = client(name);
-    identity.door = client(other).door;
+    identity.participant = client(other).participant;
     write_file(to / "identity", wire::identity_text(identity));
     return to.string();
   }
@@ -40,8 +42,8 @@ class Keys {
  private:
   void make(tool::NewIdentity identity, const std::string& protection, unsigned days) const {
     identity.protection = protection;
-    tool::make_door(identity, folder_.path() / "server" / identity.name, folder_.path() / "clients" / identity.name,
-                    days);
+    tool::make_identity(identity, folder_.path() / "server" / identity.name, folder_.path() / "clients" / identity.name,
+                        days);
   }
 
   ScratchFolder folder_;

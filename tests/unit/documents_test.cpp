@@ -120,5 +120,51 @@ TEST(Documents, LinkToFilesAndHeadingsThatExist) {
   EXPECT_GT(followed, 500);
 }
 
+struct VersionPlace {
+  std::string file;
+  std::string pattern;  ///< its group is the version
+};
+
+/// Returns everything in these files that the group of the pattern matches.
+std::vector<std::string> versions_in(const VersionPlace& place) {
+  const std::string text = test::read_file(std::filesystem::path(COHORT_SOURCE_DIR) / place.file);
+  const std::regex pattern(place.pattern);
+  std::vector<std::string> versions;
+  for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match)
+    versions.push_back((*match)[1]);
+  return versions;
+}
+
+// CMakeLists.txt has the version, and pyproject.toml reads it there.
+TEST(Documents, NameTheVersionOfTheProject) {
+  const std::string image = R"(\bcohort(?:-sdk)?:(\d+\.\d+\.\d+))",
+                    package = R"(\bcohort(?:-dev)?_(\d[\w.]*)_amd64\.deb)";
+  std::vector<VersionPlace> places = {
+      {"CMakeLists.txt", versions_in({"pyproject.toml", "regex = '(.*)\\(\\?P<value>"}).at(0) + "([0-9.]+)"},
+      {"idl/cohort_msgs/package.xml", "<version>(.*)</version>"},
+      {"CITATION.cff", "\nversion: (.*)"},
+      {"CHANGELOG.md", R"(\n## (\d\S*) — )"},
+      {"docker/Dockerfile", "image\\.version=\"(.*?)\""},
+      {"docs/install.md", package},
+  };
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(COHORT_SOURCE_DIR "/docker"))
+    if (entry.is_regular_file() && test::read_file(entry.path()).find("image: cohort:") != std::string::npos)
+      places.push_back({std::filesystem::relative(entry.path(), COHORT_SOURCE_DIR), image});
+  EXPECT_GT(places.size(), 10U) << "compose files and manifests name images";
+  for (const char* const file : {"docker/Dockerfile", "docker/README.md"}) places.push_back({file, image});
+  for (const VersionPlace& place : places) {
+    std::vector<std::string> versions = versions_in(place);
+    if (place.file == "CHANGELOG.md") versions.resize(std::min<std::size_t>(versions.size(), 1));  // the newest
+    EXPECT_FALSE(versions.empty()) << place.file << " names no version: " << place.pattern;
+    for (const std::string& version : versions) EXPECT_EQ(version, COHORT_VERSION) << place.file;
+  }
+  const std::string version = COHORT_VERSION;
+  for (const char* const page : {"docs/install.md", "docs/clients.md"})
+    for (const std::string& wanted : versions_in({page, R"(find_package\(Cohort (\d+\.\d+))"}))
+      EXPECT_EQ(wanted, version.substr(0, version.rfind('.'))) << page;
+  EXPECT_EQ(versions_in({"CHANGELOG.md", R"(\n## \d\S* — (.*))"}).at(0),
+            versions_in({"CITATION.cff", "\ndate-released: (.*)"}).at(0));
+}
+
 }  // namespace
 }  // namespace cohort

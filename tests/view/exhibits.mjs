@@ -140,7 +140,7 @@ async function movesCamera(page) {
     Math.hypot(...minus((await camera(page)).position, before.position)),
     0,
     1e-3,
-    "its way after the keys were let go",
+    "its way after the keys were released",
   );
 
   await run(page, "eye lookout");

@@ -68,6 +68,7 @@ async function drivesByKeys(page) {
     await page.locator("#driven").textContent(),
     /drives people\/keys · arrows or w a s d · Escape releases/,
   );
+  assert.equal(await page.locator("#drive").textContent(), "release");
   await goesAhead(page, robot, ...key(page, "ArrowUp"));
 
   // The server reports the command: half of full speed, and the other way round.
@@ -236,7 +237,10 @@ async function drivesAlone(page) {
   const beating = setInterval(() => void guest.ask({ operation: "drive", name: robot, numbers: slowly }), 100);
   await isTold(0.05);
   clearInterval(beating);
-  assert.deepEqual(await guest.ask({ operation: "release", name: robot }), { done: true, text: "lets people/keys go" });
+  assert.deepEqual(await guest.ask({ operation: "release", name: robot }), {
+    done: true,
+    text: "releases people/keys",
+  });
   guest.close();
 }
 

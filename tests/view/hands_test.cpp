@@ -56,7 +56,7 @@ teams:
     });
   }
   // The view has left its robot, and the run went on since it was as `before`.
-  void expect_let_go(const nlohmann::json& before) const {
+  void expect_released(const nlohmann::json& before) const {
     nlohmann::json now;
     EXPECT_TRUE(eventually([&] { return !has_view(now = status()); })) << now;
     EXPECT_GT(now["tick"].get<std::uint64_t>(), before["tick"].get<std::uint64_t>());
@@ -91,7 +91,7 @@ TEST_F(Hands, ReleaseTheRobotOfAKilledViewAndTheRunContinues) {
   const auto before = status();
   ASSERT_TRUE(has_view(before)) << before;
   view.process().signal(SIGKILL);
-  expect_let_go(before);
+  expect_released(before);
   const View another({"--domain", domain.text(), "--control"});
   run_script("hands.mjs", {"drives_by_pad", another.address()});
 }
@@ -104,7 +104,7 @@ TEST_F(Hands, ReleaseTheRobotOfAKilledBrowser) {
   const auto before = status();
   ASSERT_TRUE(has_view(before)) << before;
   script.signal(SIGKILL);
-  expect_let_go(before);
+  expect_released(before);
 }
 
 TEST_F(Hands, AreToldWhenTheServerQuitsAndTheViewStays) {

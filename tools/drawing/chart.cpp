@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 
+#include "tools/drawing/chart_groups.hpp"
 #include "tools/drawing/plot_view.hpp"
 #include "tools/drawing/svg.hpp"
 
@@ -34,7 +34,6 @@ constexpr std::string_view ink = "#1f2328";
 constexpr std::string_view soft_ink = "#59636e";
 constexpr std::string_view frame_colour = "#c8ced6";
 constexpr std::string_view grid_colour = "#e6e9ed";
-constexpr std::array<std::string_view, 5> colours = {"#0b62c4", "#c4480b", "#0a7d55", "#8a3ab9", "#8a6d00"};
 
 bool is_log(const Panel& panel, int axis) { return axis == 0 ? panel.is_log_x : panel.is_log_y; }
 
@@ -73,8 +72,10 @@ tool::Range range_of(const Panel& panel) {
 
 class PanelDrawing {
  public:
-  PanelDrawing(const Panel& panel, const Vector2d& corner, std::string& text)
-      : panel_(panel), corner_(corner), text_(text), out_(text_) {}
+  PanelDrawing(const Page& page, const Panel& panel, const Vector2d& corner, std::string& text)
+      : panel_(panel), styles_(styles_of(page, panel)), corner_(corner), text_(text), out_(text_) {
+    has_legend_ = !has_groups(page);
+  }
 
   void draw() {
     fmt::format_to(out_, "<text x=\"{}\" y=\"{}\" font-size=\"14\" font-weight=\"bold\">{}</text>\n",
@@ -92,9 +93,9 @@ class PanelDrawing {
     range_ = range_of(panel_);
     draw_x_axis(step_of(0));
     draw_y_axis(step_of(1));
-    for (std::size_t i = 0; i < panel_.series.size(); ++i) draw_line(panel_.series[i], colours[i % colours.size()]);
-    for (std::size_t i = 0; i < panel_.series.size(); ++i) draw_dots(panel_.series[i], colours[i % colours.size()]);
-    draw_legend();
+    for (std::size_t i = 0; i < panel_.series.size(); ++i) draw_line(panel_.series[i], styles_[i]);
+    for (std::size_t i = 0; i < panel_.series.size(); ++i) draw_dots(panel_.series[i], styles_[i]);
+    if (has_legend_) draw_legend();
   }
 
  private:
@@ -146,24 +147,24 @@ class PanelDrawing {
                    number(at.x()), number(at.y()), number(plot_size.x()), number(height_), frame_colour);
   }
 
-  void draw_line(const Series& series, std::string_view colour) {
+  void draw_line(const Series& series, const LineStyle& style) {
     if (!series.closed_form || series.measured.empty()) return;
     tool::svg::Points points;
     for (const double x : evenly(series.measured.front().x(), series.measured.back().x(), line_parts + 1)) {
       const double y = std::clamp(series.closed_form(x), range_.lower.y(), range_.upper.y());
       points.push_back(on_page({x, y}));
     }
-    fmt::format_to(out_, "<path fill=\"none\" stroke=\"{}\" d=\"{}\"/>\n", colour,
+    fmt::format_to(out_, "<path fill=\"none\" {} d=\"{}\"/>\n", style.attributes(),
                    tool::svg::path_data(tool::svg::simplified(points, line_tolerance)));
   }
 
   // Draws dots as lines of zero length with round ends.
-  void draw_dots(const Series& series, std::string_view colour) {
+  void draw_dots(const Series& series, const LineStyle& style) {
     std::string data;
     if (series.is_joined) {
       tool::svg::Points points;
       for (const Vector2d& point : series.measured) points.push_back(on_page(point));
-      fmt::format_to(out_, "<path fill=\"none\" stroke=\"{}\" d=\"{}\"/>\n", colour, tool::svg::path_data(points));
+      fmt::format_to(out_, "<path fill=\"none\" {} d=\"{}\"/>\n", style.attributes(), tool::svg::path_data(points));
     }
     if (!series.has_dots) return;
     for (const Vector2d& point : series.measured) {
@@ -173,7 +174,7 @@ class PanelDrawing {
     fmt::format_to(out_,
                    "<path fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" "
                    "stroke-opacity=\".75\" d=\"{}\"/>\n",
-                   colour, number(dot_diameter), data);
+                   style.colour, number(dot_diameter), data);
   }
 
   // Draws the legend in the corner where it covers the fewest marks.
@@ -203,8 +204,8 @@ class PanelDrawing {
     for (std::size_t i = 0; i < panel_.series.size(); ++i) {
       if (panel_.series[i].name.empty()) continue;
       fmt::format_to(out_, "<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>\n",
-                     number(best.x() + 8.0), number(y - 4.0), colours[i % colours.size()], number(best.x() + 16.0),
-                     number(y), escaped(panel_.series[i].name));
+                     number(best.x() + 8.0), number(y - 4.0), styles_[i].colour, number(best.x() + 16.0), number(y),
+                     escaped(panel_.series[i].name));
       y += row_height;
     }
   }
@@ -257,6 +258,8 @@ class PanelDrawing {
   }
 
   const Panel& panel_;
+  std::vector<LineStyle> styles_;  // one for each series
+  bool has_legend_ = true;
   Vector2d corner_;
   std::string& text_;
   std::back_insert_iterator<std::string> out_;
@@ -269,7 +272,9 @@ class PanelDrawing {
 std::string draw(const Page& page) {
   const std::size_t rows = (page.panels.size() + columns - 1) / columns;
   const double width = 2.0 * margin + static_cast<double>(std::min(columns, page.panels.size())) * cell.x();
-  const double height = header + static_cast<double>(rows) * cell.y() + 4.0;
+  const double panels_end = header + static_cast<double>(rows) * cell.y();
+  const GroupLegend legend = draw_group_legend(page, {margin + 10.0, panels_end + 8.0}, width - 2.0 * (margin + 10.0));
+  const double height = panels_end + (legend.height > 0.0 ? legend.height + 16.0 : 4.0);
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"sans-serif\" font-size=\"12\" fill=\"{2}\">\n"
@@ -279,9 +284,9 @@ std::string draw(const Page& page) {
   for (std::size_t i = 0; i < page.panels.size(); ++i) {
     const std::size_t row = i / columns;
     const Vector2d place(static_cast<double>(i % columns), static_cast<double>(row));
-    PanelDrawing(page.panels[i], Vector2d(margin, header) + place.cwiseProduct(cell), text).draw();
+    PanelDrawing(page, page.panels[i], Vector2d(margin, header) + place.cwiseProduct(cell), text).draw();
   }
-  return text + "</svg>\n";
+  return text + legend.text + "</svg>\n";
 }
 
 std::vector<double> evenly(double first, double last, std::size_t count) {

@@ -185,17 +185,13 @@ class Drawing {
   bool has_teams() const { return trace_.teams.size() > 1; }
 
   // Returns a hue that advances from team to team.
-  std::string colour_of_team(std::size_t team) const {
-    return svg::oklch(team % 2 == 0 ? 0.67 : 0.55, 0.15,
-                      static_cast<double>(team) / static_cast<double>(trace_.teams.size()));
-  }
+  std::string colour_of_team(std::size_t team) const { return svg::colour_of(team, trace_.teams.size()); }
 
   // Returns the colour of the robot's team if there are several teams. Otherwise returns a hue that advances with the
   // id; every other robot is darker, so that similar hues can be told apart.
   std::string colour(std::size_t robot) const {
     if (has_teams()) return colour_of_team(trace_.robots[robot].team);
-    const double hue = static_cast<double>(robot) / static_cast<double>(trace_.robots.size());
-    return svg::oklch(robot % 2 == 0 ? 0.67 : 0.55, 0.15, hue);
+    return svg::colour_of(robot, trace_.robots.size());
   }
 
   // Returns the factor of line widths: 1 up to about 16 robots, then decreasing.

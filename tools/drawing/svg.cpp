@@ -145,4 +145,8 @@ std::string oklch(double lightness, double chroma, double hue) {
   return text;
 }
 
+std::string colour_of(std::size_t index, std::size_t count, double shade) {
+  return oklch((index % 2 == 0 ? 0.67 : 0.55) + shade, 0.15, static_cast<double>(index) / static_cast<double>(count));
+}
+
 }  // namespace cohort::tool::svg

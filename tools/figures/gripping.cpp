@@ -92,15 +92,12 @@ Panel opening() {
   }
   series.closed_form = [](double t) { return std::max(0.0, 1.0 - t / closing_time); };
   series.tolerance = 1e-9;
-  return {"Gripper: told to close", "line: 1 - t / 0.5 s", "time t [s]", "opening", {series}};
+  return {"Gripper: commanded to close", "line: 1 - t / 0.5 s", "time t [s]", "opening", {series}};
 }
 
 Panel light_barrier() {
-  Panel panel{"Light barrier",
-              "lines: depth of the jaw, half of it",
-              "distance of a block of 2 cm [m]",
-              "something is there",
-              {}};
+  Panel panel{
+      "Light barrier", "lines: depth of the jaw, half of it", "distance of a block of 2 cm [m]", "object detected", {}};
   using Kind = description::Gripper::LightBarrier;
   for (const Kind kind : {Kind::simple, Kind::beam}) {
     const auto measure = [&](double d) {
@@ -143,8 +140,8 @@ Panel breaking() {
   static constexpr double limit = 5.25;
   description::Gripper gripper = gripper_at(0.0);
   gripper.breaking_force = limit;
-  return {"Gripper: lets go above 5.25 N",
-          "line: F, then nothing",
+  return {"Gripper: releases above 5.25 N",
+          "line: F, then 0",
           "pull F [N]",
           "force in the gripper [N]",
           {pulled(gripper, "gripper/0/force", [](double force) { return force < limit ? force : 0.0; })}};
@@ -152,7 +149,7 @@ Panel breaking() {
 
 Panel traction() {
   return {"Traction sensor: intensity",
-          "line: the same",
+          "line: equal",
           "pull at the gripper [N]",
           "intensity [N]",
           {pulled(gripper_at(0.0), "traction/0/intensity", std::identity())}};
@@ -165,7 +162,7 @@ Panel direction() {
     return pull.read("traction/0/direction") / degree;
   };
   return {"Traction sensor: direction",
-          "line: the same",
+          "line: equal",
           "direction of a pull of 5 N [degrees]",
           "direction [degrees]",
           {measured_at(evenly(-165.0, 165.0, 23), measure, std::identity(), 1e-6)}};

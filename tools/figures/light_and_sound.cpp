@@ -87,7 +87,7 @@ Panel sound_by_distance() {
 
 Panel light_by_bearing() {
   Panel panel{"Light: bearing",
-              "lines: cosines, summed; a second lamp is ahead",
+              "lines: sum of cosines; a second lamp is ahead",
               "bearing of a lamp, 1 m away [degrees]",
               "reading of the sensor ahead",
               {}};
@@ -103,7 +103,7 @@ Panel light_by_bearing() {
     panel.series.push_back(measured_at(
         evenly(-180.0, 180.0, 49), measure,
         [ahead](double bearing) { return saturated(ahead + std::max(0.0, std::cos(degree * bearing))); }, exact,
-        is_alone ? "one" : "two"));
+        is_alone ? "one lamp" : "two lamps"));
   }
   return panel;
 }
@@ -119,8 +119,8 @@ Panel light_behind_a_screen() {
   };
   const auto expected = [](double y) { return std::abs(y) < half_width ? 0.0 : saturated(1.0); };
   return {"Light: a screen of 0.2 m",
-          "line: a hidden lamp gives nothing",
-          "middle of the screen, aside [m]",
+          "line: 0 while the lamp is hidden",
+          "lateral offset of the screen [m]",
           "reading",
           {measured_at(evenly(-0.205, 0.205, 42), measure, expected)}};
 }

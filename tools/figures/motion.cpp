@@ -22,7 +22,7 @@ Panel treels() {
   const std::uint32_t robot = stand.add(model);
   stand.command("treel/left/velocity", {speed});
   stand.command("treel/right/velocity", {speed});
-  Series ground{"over ground", {}};
+  Series ground{"hull", {}};
   Series encoder{"treel encoder", {}};
   for (int tick = 0; tick <= 16; ++tick) {
     ground.measured.emplace_back(stand.time(),
@@ -54,7 +54,7 @@ Panel way() {
   }
   series.closed_form = [](double x) { return x; };
   series.tolerance = 1e-6;
-  return {"Treel encoder", "line: the same", "way over ground [m]", "way of a track [m]", {series}};
+  return {"Treel encoder", "line: equal", "distance travelled by the hull [m]", "track travel [m]", {series}};
 }
 
 Panel turret_rate() {
@@ -182,10 +182,10 @@ Panel getting_going() {
     return (reached(t) - reached(t - tick)) / tick;
   };
   series.tolerance = 1e-2;
-  return {"Accelerometer: getting going",
-          "line: as the robot's speed rises",
+  return {"Accelerometer: starting to drive",
+          "line: change of speed in a tick",
           "time [s]",
-          "acceleration in x [m/s²]",
+          "acceleration along x [m/s²]",
           {series}};
 }
 
@@ -204,14 +204,14 @@ Panel inclinometer() {
   }
   pitch.closed_form = roll.closed_form = [](double angle) { return angle; };
   pitch.tolerance = roll.tolerance = 1e-9;
-  return {"Inclinometer", "line: the same", "leaning [degrees]", "reading [degrees]", {pitch, roll}};
+  return {"Inclinometer", "line: equal", "tilt [degrees]", "reading [degrees]", {pitch, roll}};
 }
 
 }  // namespace
 
 Page motion() {
   return {"motion",
-          "Treels, joints and what feels motion",
+          "Treels, joints and motion sensors",
           {treels(), way(), turret_rate(), elevation(), torque(), accelerometer(), getting_going(), inclinometer()}};
 }
 

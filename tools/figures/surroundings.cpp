@@ -48,7 +48,7 @@ Panel camera_bearing() {
     return stand.read("camera/0/bearing") / degree;
   };
   return {"Camera: bearing",
-          "line: the same",
+          "line: equal",
           "bearing of a spot [degrees]",
           "bearing [degrees]",
           {measured_at(evenly(-175.0, 175.0, 36), measure, std::identity())}};
@@ -102,7 +102,7 @@ Panel panorama() {
   description::Model other = tracked_robot();
   other.links[turret].color = {0.95, 0.5, 0.1};
   stand.add(other, at(0, -0.3, 0));
-  Panel panel{"Panorama", "left a pillar, behind a box, right a robot", "bearing [degrees]", "", {}};
+  Panel panel{"Panorama", "pillar left, box behind, robot right", "bearing [degrees]", "", {}};
   panel.image.width = camera.width;
   panel.image.height = camera.height;
   for (std::size_t i = 0; i < 3 * camera.width * camera.height; ++i)

@@ -38,7 +38,8 @@ SimulationState on_wire(PlaybackState state) {
 }
 
 bool may_ask(const wire::Identity& identity, OperationCode operation) {
-  return identity.may_control || (identity.door == wire::observers_door && wire::is_looking_on(operation));
+  return identity.may_control ||
+         (identity.participant == wire::observers_participant && wire::is_looking_on(operation));
 }
 
 bool is_query(const Request& request) { return wire::is_query(request.code()); }

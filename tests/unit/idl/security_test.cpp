@@ -10,16 +10,16 @@
 #include "tests/support/free_domain.hpp"
 #include "tests/support/keys.hpp"
 
-// Tests which clients a door of the server admits, with real participants and real certificates.
+// Tests which clients a participant of the server admits, with real participants and real certificates.
 namespace cohort::wire {
 namespace {
 
 namespace fs = std::filesystem;
 using namespace test;
 
-class Door {
+class ServerParticipant {
  public:
-  Door(std::uint32_t domain, const Identity& identity)
+  ServerParticipant(std::uint32_t domain, const Identity& identity)
       : participant(Participant::server(domain, "127.0.0.1", identity)),
         joins(participant, {[this](const Join& join, const Sender&) { process = join.process; }, {}}),
         states(participant, "view") {}
@@ -75,10 +75,10 @@ class SecureDomain : public ::testing::Test {
 
 class ProtectedDomain : public SecureDomain, public ::testing::WithParamInterface<const char*> {};
 
-TEST_P(ProtectedDomain, AClientIsAdmittedOnlyAtItsOwnDoor) {
+TEST_P(ProtectedDomain, AClientIsAdmittedOnlyAtItsOwnParticipant) {
   const Keys keys(GetParam());
-  Door red(domain(), keys.door("red"));
-  Door blue(domain(), keys.door("blue"));
+  ServerParticipant red(domain(), keys.server_identity("red"));
+  ServerParticipant blue(domain(), keys.server_identity("blue"));
   const Joining client(domain(), keys.client("red"), 7);
   EXPECT_TRUE(eventually([&] { return red.process == 7; }));
   EXPECT_EQ(blue.joins.matched(), 0u);
@@ -92,8 +92,8 @@ INSTANTIATE_TEST_SUITE_P(All, ProtectedDomain, ::testing::Values("sign", "encryp
 TEST_F(SecureDomain, AClientWithOtherCertificatesIsRefusedAndBothSidesLogItOnce) {
   const Told told;
   const Keys keys, others;
-  Door red(domain(), keys.door("red"));
-  Door blue(domain(), keys.door("blue"));
+  ServerParticipant red(domain(), keys.server_identity("red"));
+  ServerParticipant blue(domain(), keys.server_identity("blue"));
   const Joining of_another_making(domain(), others.client("red"), 1);
   const Joining disguised(domain(), read_identity(keys.disguise("red", "blue")), 2);
   EXPECT_TRUE(eventually([] { return Told::count({"OU=red/CN=client", "unable to get local issuer"}) > 0; }));
@@ -109,7 +109,7 @@ TEST_F(SecureDomain, AClientWithOtherCertificatesIsRefusedAndBothSidesLogItOnce)
 
 TEST_F(SecureDomain, AClientWithoutCertificatesNeitherWritesNorReads) {
   const Keys keys;
-  Door door(domain(), keys.door("observer"));
+  ServerParticipant server(domain(), keys.server_identity("observer"));
   Participant plain = Participant::client(domain());
   Writer<Join> joins(plain);
   joins.write({.client = 1, .process = 1});
@@ -118,11 +118,11 @@ TEST_F(SecureDomain, AClientWithoutCertificatesNeitherWritesNorReads) {
   std::atomic<bool> sees = false;
   const Reader<WorldState> states(observer, {[&](const WorldState&, const Sender&) { sees = true; }, {}}, "view");
   EXPECT_TRUE(eventually([&] {
-    door.states.write({.run = 1});
+    server.states.write({.run = 1});
     return sees.load();
   }));
-  EXPECT_EQ(looking_on.matched() + joins.matched() + door.joins.matched(), 0u);
-  EXPECT_EQ(door.states.matched(), 1u);
+  EXPECT_EQ(looking_on.matched() + joins.matched() + server.joins.matched(), 0u);
+  EXPECT_EQ(server.states.matched(), 1u);
 }
 
 TEST_F(SecureDomain, AnErrorNamesTheRightThatAnIdentityLacks) {
@@ -143,7 +143,7 @@ TEST_F(SecureDomain, AnErrorNamesTheRightThatAnIdentityLacks) {
 TEST_F(SecureDomain, AnExpiredCertificateIsNamed) {
   const Keys keys("sign", 0);
   try {
-    Door(domain(), keys.door("red"));
+    ServerParticipant(domain(), keys.server_identity("red"));
     FAIL() << "it is accepted";
   } catch (const WireError& error) {
     EXPECT_NE(std::string(error.what()).find("expired"), std::string::npos) << error.what();
@@ -176,16 +176,19 @@ TEST(Identities, AMissingOrMismatchedFileIsNamed) {
   const Keys keys;
   expect_wire_error([&] { read_identity(keys.folder()); }, "give the folder of one");
   expect_wire_error([&] { read_identity("/nowhere"); }, "/nowhere/identity: No such file");
-  expect_wire_error([&] { read_doors(keys.client_folder("red")); }, "no door for observers");
-  expect_wire_error([&] { Participant::client(0, "127.0.0.1", keys.door("red")); }, "is the server's identity");
-  EXPECT_EQ(read_doors(keys.folder()).size(), 3u);
-  EXPECT_EQ(read_doors(keys.folder() + "/server").back().name, "blue");
+  expect_wire_error([&] { read_server_identities(keys.client_folder("red")); }, "no identity of observers");
+  expect_wire_error([&] { Participant::client(0, "127.0.0.1", keys.server_identity("red")); },
+                    "is the server's identity");
+  EXPECT_EQ(read_server_identities(keys.folder()).size(), 3u);
+  EXPECT_EQ(read_server_identities(keys.folder() + "/server").back().name, "blue");
   fs::remove(keys.client_folder("red") + "/key.pem");
   expect_wire_error([&] { keys.client("red"); }, "red/key.pem: No such file");
-  write_file(keys.client_folder("blue") + "/identity", "name: blue\ndoor: 999\n");
-  expect_wire_error([&] { keys.client("blue"); }, "expected a door from 0 to 119, not '999'");
+  write_file(keys.client_folder("blue") + "/identity", "name: blue\ndoor: 2\n");
+  EXPECT_EQ(keys.client("blue").participant, 2u) << "as version 0.1.0 wrote it";
+  write_file(keys.client_folder("blue") + "/identity", "name: blue\nparticipant: 999\n");
+  expect_wire_error([&] { keys.client("blue"); }, "expected a participant from 0 to 119, not '999'");
   fs::remove_all(keys.folder() + "/server/observer");
-  expect_wire_error([&] { read_doors(keys.folder()); }, "no door for observers");
+  expect_wire_error([&] { read_server_identities(keys.folder()); }, "no identity of observers");
 }
 
 }  // namespace

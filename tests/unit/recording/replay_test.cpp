@@ -18,5 +18,20 @@ TEST(Replay, ReadsRecordingsWithUnnormalizedPaths) {
   }
 }
 
+// Two robots drive for a second, with a snapshot every half second, in version 0.1.0.
+TEST(Replay, StartsAtASnapshotOfVersion010) {
+  using namespace std::chrono_literals;
+  const Recording recording(COHORT_SOURCE_DIR "/tests/data/recordings/version_0_1_0.mcap");
+  EXPECT_EQ(recording.facts().at("version"), "0.1.0");
+  ASSERT_EQ(recording.snapshots().size(), 1U);
+  Replay replay(recording, 1);
+  ASSERT_TRUE(replay.seek(600ms));
+  EXPECT_EQ(replay.recorded().log_time, 600ms);
+  int boundaries = 0;
+  do ++boundaries;
+  while (replay.advance());
+  EXPECT_EQ(boundaries, 41);
+}
+
 }  // namespace
 }  // namespace cohort::recording

@@ -307,7 +307,7 @@ TEST(SessionSnapshot, ReportsWhyItDoesNotMatch) {
   EXPECT_NE(complaint({}).find("only 0 bytes"), std::string::npos);
   damaged = bytes;
   damaged[20] = std::byte{'9'};  // in Cohort's version
-  EXPECT_NE(complaint(damaged).find("of Cohort, but this is version"), std::string::npos) << complaint(damaged);
+  EXPECT_NE(complaint(damaged).find("of Cohort, which version"), std::string::npos) << complaint(damaged);
   for (std::size_t size = 0; size < bytes.size(); size += 97)
     EXPECT_NE(complaint(std::vector(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size))), "") << size;
 
@@ -349,6 +349,7 @@ TEST(SessionSnapshot, IdentifiesTheBuildThatTookIt) {
   EXPECT_EQ(snapshot_from_bytes(to_bytes(snapshot)).build.arithmetic, this_build().arithmetic);
   snapshot.build.commit = "0123456789ab";
   snapshot.build.arithmetic = "0123456789abcdef";
+  snapshot.build.version = "0.1.0";
   const SessionSnapshot of_other_build = snapshot_from_bytes(to_bytes(snapshot));
   EXPECT_EQ(of_other_build.build.commit, "0123456789ab");
   EXPECT_NE(why_results_differ(of_other_build.build), "");

@@ -3,6 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cfenv>
+#include <cstring>
+
+#include "server/core/random.hpp"
+#include "server/core/snapshot.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/simulation/simulation.hpp"
 
 namespace cohort {
 namespace {
@@ -34,6 +40,29 @@ TEST(BuildIdentity, WarnsOfOtherResultsForAnotherArithmeticOrVersion) {
   other.arithmetic = this_build().arithmetic;
   other.version = "0.0.1";
   EXPECT_TRUE(why_results_differ(other).ends_with("results may differ"));
+}
+
+TEST(BuildIdentity, NamesVersionsWhoseSnapshotsAreRestored) {
+  const auto versions = versions_of_snapshots();
+  EXPECT_EQ(versions.back(), this_build().version);
+  EXPECT_NE(std::ranges::find(versions, "0.1.0"), versions.end());
+  const auto experiment = parsing::read_experiment(COHORT_SOURCE_DIR "/worlds/experiments/obstacle_avoidance.yaml");
+  Simulation simulation(experiment, 1);
+  const std::vector<std::byte> own = simulation.save();
+  const auto from = [&](std::string_view version) {
+    std::vector<std::byte> bytes = own;
+    const std::uint64_t name = hash_name(version);
+    std::memcpy(bytes.data() + sizeof(std::uint64_t), &name, sizeof name);
+    return bytes;
+  };
+  ASSERT_EQ(from(this_build().version), own);
+  const std::uint64_t hash = simulation.state_hash();
+  for (const std::string_view version : versions) {
+    simulation.step();
+    simulation.restore(from(version));
+    EXPECT_EQ(simulation.state_hash(), hash) << version;
+  }
+  EXPECT_THROW(simulation.restore(from("99.0.0")), SnapshotError);
 }
 
 }  // namespace

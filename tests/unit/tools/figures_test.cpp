@@ -57,7 +57,7 @@ TEST(Figures, APictureHasADotForEachMeasuredPoint) {
   }
 }
 
-TEST(Figures, OfTheDocumentsAreWhatTheProgramDraws) {
+TEST(Figures, InTheDocumentsAreUpToDate) {
   const test::ScratchFolder folder;
   const test::Ended ended = test::run_to_end({COHORT_BUILD_DIR "/bin/cohort_figures", (folder / "").string()});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;

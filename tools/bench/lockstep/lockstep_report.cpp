@@ -58,7 +58,7 @@ std::vector<figures::Series> series_of(const std::vector<LockstepRow>& rows, con
 }  // namespace
 
 std::string draw_rows(const std::vector<LockstepRow>& rows) {
-  const char* what = "controllers: all in one process, groups of eight, one process each";
+  const char* what = "by placement of the controllers";
   figures::Page page{"lockstep", "Lockstep barrier over DDS, compared with the same bytes over raw UDP", {}};
   page.panels.push_back(
       {"Barrier over DDS", what, "robots", "median, microseconds", series_of(rows, "", [](const LockstepRow& row) {
@@ -68,7 +68,7 @@ std::string draw_rows(const std::vector<LockstepRow>& rows) {
       {"Raw UDP", what, "robots", "median, microseconds", series_of(rows, "", [](const LockstepRow& row) {
          return micro * median_of(row.udp, &LockstepTurn::barrier_median);
        })});
-  page.panels.push_back({"Ratio of tick rates", "with the world's step", "robots", "Cohort to raw UDP",
+  page.panels.push_back({"Ratio of tick rates", "including the world's step", "robots", "Cohort / raw UDP",
                          series_of(rows, "", [](const LockstepRow& row) { return row.ratio().median; })});
   for (figures::Panel& panel : page.panels) panel.is_log_x = true;
   page.panels[0].is_log_y = page.panels[1].is_log_y = true;

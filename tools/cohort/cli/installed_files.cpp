@@ -31,7 +31,7 @@ Models models_in(const std::filesystem::path& folder) {
   return models;
 }
 
-Models installed_models() {
+Models installed_model_files() {
   Models models;
   for (const std::filesystem::path& folder : installed_model_folders()) models.merge(models_in(folder));
   return models;
@@ -69,8 +69,10 @@ std::vector<std::string> installed_experiments() {
 
 std::vector<std::string> installed_robots() { return names_of(models_in(installed_worlds_folder() / "robots")); }
 
+std::vector<std::string> installed_models() { return names_of(installed_model_files()); }
+
 std::optional<std::filesystem::path> installed_model(const std::string& name) {
-  const Models models = installed_models();
+  const Models models = installed_model_files();
   const auto model = models.find(name);
   return model == models.end() ? std::nullopt : std::optional(model->second);
 }
@@ -81,7 +83,7 @@ std::filesystem::path experiment_called(const std::filesystem::path& name) {
   if (std::ranges::count(known, name.string()) > 0)
     return installed_worlds_folder() / "experiments" / (name.string() + ".yaml");
   if (const auto model = installed_model(name)) return *model;
-  std::ranges::copy(names_of(installed_models()), std::back_inserter(known));
+  std::ranges::copy(names_of(installed_model_files()), std::back_inserter(known));
   throw std::invalid_argument("there is no file, example or model named '" + name.string() + "'" +
                               suggestion(name.string(), known) + " ('cohort examples' lists examples)");
 }
@@ -90,7 +92,7 @@ std::filesystem::path model_called(const std::filesystem::path& name) {
   if (is_path(name)) return name;
   if (const auto model = installed_model(name)) return *model;
   throw std::invalid_argument("there is no file or model named '" + name.string() + "'" +
-                              suggestion(name.string(), names_of(installed_models())));
+                              suggestion(name.string(), names_of(installed_model_files())));
 }
 
 std::filesystem::path installed_page_folder() { return installed("view"); }

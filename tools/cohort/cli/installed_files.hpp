@@ -17,6 +17,8 @@ std::filesystem::path installed_worlds_folder();
 
 /// Returns the names of the experiments that are installed with Cohort, in alphabetical order.
 std::vector<std::string> installed_experiments();
+/// Returns the names of the models that are installed with Cohort, in alphabetical order.
+std::vector<std::string> installed_models();
 /// Returns the file of the model of this name that is installed with Cohort, or nothing.
 std::optional<std::filesystem::path> installed_model(const std::string& name);
 /// Returns the names of the robots that are installed with Cohort, in alphabetical order.

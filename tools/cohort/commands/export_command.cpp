@@ -1,13 +1,9 @@
-#include "server/description/experiment.hpp"
-#include "server/description/input_error.hpp"
-#include "server/parsing/experiment/read_experiment.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/sdf/schema/yaml_sdf.hpp"
-#include "server/parsing/world/read_world.hpp"
 #include "server/parsing/writing/write_world.hpp"
-#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/named_world.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 
 namespace cohort::tool {
@@ -20,13 +16,6 @@ struct ExportCommand {
   bool runs_xacro = false;
 };
 
-description::World read(const ExportCommand& command) {
-  if (parsing::kind_of_file(command.file) == parsing::FileKind::sdf)
-    return parsing::read_world_or_model(command.file, command.seed.value_or(1), installed_model_folders(),
-                                        xacro_of(command.runs_xacro));
-  return parsing::read_experiment(command.file, command.seed, {}, installed_model_folders()).world;
-}
-
 int export_world(const ExportCommand& command, Log& log) {
   const bool as_yaml = parsing::is_yaml(command.output);
   if (!as_yaml && command.output.extension() != ".sdf") {
@@ -34,7 +23,7 @@ int export_world(const ExportCommand& command, Log& log) {
     return exit_usage;
   }
   check_writable("the world", command.output);
-  const description::World world = read(command);
+  const description::World world = read_named_world(command.file, command.seed, xacro_of(command.runs_xacro));
   log.warnings(world.warnings);
   const parsing::XmlNode sdf = parsing::sdf_of(world, std::filesystem::absolute(command.output).parent_path());
   write_file("the world", command.output, as_yaml ? parsing::yaml_of_sdf(sdf) : parsing::xml_text(sdf));
@@ -46,7 +35,9 @@ int export_world(const ExportCommand& command, Log& log) {
 Subcommand add_export(CommandLine app) {
   const auto command = std::make_shared<ExportCommand>();
   CommandLine line = app.add_subcommand("export", "Write a world, or the world of an experiment, as SDF or YAML");
-  line.add_option("FILE", command->file, "World, model or experiment file").required().type_name("");
+  line.add_option("FILE", command->file, "World, model or experiment: a file or an installed name")
+      .required()
+      .type_name("");
   line.add_option("-o,--output", command->output, "File to write (.sdf or .yaml)").required().type_name("FILE");
   line.add_option("--seed", command->seed, "Seed for the placement of populations (default: the experiment's seed)")
       .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))

@@ -21,7 +21,7 @@ struct ShowCommand {
 
 int show_model(const ShowCommand& command, Log& log, const std::atomic<bool>& stop) {
   const description::Experiment experiment = parsing::read_experiment(
-      model_called(command.file), {}, {}, installed_model_folders(), xacro_of(command.runs_xacro));
+      experiment_called(command.file), {}, {}, installed_model_folders(), xacro_of(command.runs_xacro));
   if (!command.as_json) log.warnings(experiment.world.warnings);
   Simulation simulation(experiment, 1);
   const std::chrono::nanoseconds end = nanoseconds(command.seconds);
@@ -41,8 +41,7 @@ Subcommand add_models(CommandLine app) {
   CommandLine line = app.add_subcommand("models", "Show how Cohort has read a model");
   line.require_subcommand();
   CommandLine of = line.add_subcommand("show", "Print the links, masses, joints and limits of a model or a world");
-  of.add_option("FILE", command->file,
-                "Model (SDF, URDF or YAML), world or experiment file, or the name of a robot model")
+  of.add_option("FILE", command->file, "Model (SDF, URDF or YAML), world or experiment: a file or an installed name")
       .required()
       .type_name("");
   of.add_flag("--json", command->as_json, "Print JSON, which also includes inertias, axes, poses and velocities");

@@ -113,7 +113,14 @@ Plotted plotted(const std::string& what, const Simulation& simulation, std::uint
   return channel_of(what, simulation.kinds()[simulation.kind_of(robot)]);
 }
 
-// Draws a panel for each quantity, with a line for each robot.
+// Returns the index of a robot's team, or 0 in a world without teams.
+std::size_t team_of(const description::Experiment& experiment, std::uint32_t robot) {
+  const auto has_robot = [&](const description::Team& team) { return std::ranges::binary_search(team.robots, robot); };
+  const auto found = std::ranges::find_if(experiment.teams, has_robot);
+  return found == experiment.teams.end() ? 0 : static_cast<std::size_t>(found - experiment.teams.begin());
+}
+
+// Draws a panel for each quantity, with a line for each robot, in the colour of its team if there are several.
 std::string draw_series(Replay& replay, const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
   std::vector<std::uint32_t> robots;
   std::vector<Plotted> quantities;
@@ -126,12 +133,17 @@ std::string draw_series(Replay& replay, const PlotCommand& command, Log& log, co
                               robots.size()));
       robots.resize(most_robots);
     }
+    const description::Experiment& experiment = replay.simulation().experiment();
+    for (const description::Team& team : experiment.teams) page.groups.push_back("team " + team.name);
     for (const std::string& what : command.what) {
       quantities.push_back(plotted(what, replay.simulation(), robots.front()));
       figures::Panel panel{quantities.back().title, "", "time [s]", fmt::format("[{}]", quantities.back().unit), {}};
       for (const std::uint32_t robot : robots)
-        panel.series.push_back(
-            {.name = replay.simulation().robot_name(robot), .measured = {}, .is_joined = true, .has_dots = false});
+        panel.series.push_back({.name = replay.simulation().robot_name(robot),
+                                .measured = {},
+                                .is_joined = true,
+                                .has_dots = false,
+                                .group = team_of(experiment, robot)});
       page.panels.push_back(std::move(panel));
     }
   };

@@ -1,19 +1,16 @@
 #include "server/core/text.hpp"
-#include "server/description/input_error.hpp"
 #include "server/parsing/files/sample_file.hpp"
-#include "server/parsing/sdf/file_kind.hpp"
-#include "server/parsing/world/read_world.hpp"
 #include "server/sensing/readings/take_samples.hpp"
-#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/named_world.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 
 namespace cohort::tool {
 namespace {
 
 struct SamplesCommand {
-  std::filesystem::path file;  ///< model, or world, of which the first robot is used
+  std::filesystem::path file;  ///< model, or a world or an experiment, whose first robot is used
   std::string device{};        ///< name of a proximity ring
   std::filesystem::path output;
   sensing::SampleGrid grid{};
@@ -40,8 +37,7 @@ std::size_t ring_of(const description::Model& model, const std::string& name) {
 
 int take_samples(const SamplesCommand& command) {
   check_writable("samples", command.output);
-  const description::World world =
-      parsing::read_world_or_model(command.file, 1, installed_model_folders(), xacro_of(command.runs_xacro));
+  const description::World world = read_named_world(command.file, {}, xacro_of(command.runs_xacro));
   const description::Model& model = robot_of(world, command);
   const description::Samples samples = sensing::take_samples(model, ring_of(model, command.device), command.grid);
   write_file("samples", command.output, parsing::samples_as_text(samples));
@@ -55,7 +51,8 @@ Subcommand add_samples(CommandLine app) {
   CommandLine line = app.add_subcommand(
       "samples", "Compute a sample file: the readings of a ring of proximity sensors near a cylinder");
   constexpr double longest = 1e3;  // [m]
-  line.add_option("MODEL", command->file, "Model file, or a world file, whose first robot is used")
+  line.add_option("MODEL", command->file,
+                  "Model, or a world or experiment, whose first robot is used: a file or an installed name")
       .required()
       .type_name("");
   line.add_option("DEVICE", command->device, "Name of a proximity_ring of the robot").required().type_name("");
@@ -77,7 +74,7 @@ Subcommand add_samples(CommandLine app) {
       .capture_default_str()
       .type_name("N");
   add_reading_options(line, command->runs_xacro);
-  line.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
+  line.footer("Example: cohort samples sbot proximity -o proximity.csv");
   return {line, [command](Log&, const std::atomic<bool>&) { return take_samples(*command); }};
 }
 

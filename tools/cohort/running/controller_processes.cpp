@@ -25,9 +25,10 @@ std::string selectors_of(const std::vector<std::uint32_t>& robots) {
 
 std::filesystem::path identity_for(const description::Experiment& experiment, const description::Team& team,
                                    const std::filesystem::path& secure) {
-  for (const wire::Identity& door : wire::read_doors(secure)) {
-    const auto allowed = description::select_robots_of_any(experiment.world, door.robots);
-    if (std::ranges::includes(allowed, team.robots)) return std::filesystem::absolute(secure) / "clients" / door.name;
+  for (const wire::Identity& identity : wire::read_server_identities(secure)) {
+    const auto allowed = description::select_robots_of_any(experiment.world, identity.robots);
+    if (std::ranges::includes(allowed, team.robots))
+      return std::filesystem::absolute(secure) / "clients" / identity.name;
   }
   throw std::runtime_error(fmt::format(
       "no client in {0} may drive all robots of team '{1}'; 'cohort security add {0} {1} --robots {2}' adds one",

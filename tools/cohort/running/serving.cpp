@@ -47,21 +47,23 @@ std::size_t later_process_count(const RunCommand& command, const description::Ex
   return count;
 }
 
-// Returns the doors of the command; without security, one open door.
-std::vector<std::optional<wire::Identity>> doors_of(const RunCommand& command) {
+// Returns the server's identities; without security, one that is none.
+std::vector<std::optional<wire::Identity>> identities_of(const RunCommand& command) {
   if (command.secure.empty()) return {std::nullopt};
-  std::vector<std::optional<wire::Identity>> doors;
-  for (wire::Identity& door : wire::read_doors(command.secure)) doors.emplace_back(std::move(door));
-  return doors;
+  std::vector<std::optional<wire::Identity>> identities;
+  for (wire::Identity& identity : wire::read_server_identities(command.secure))
+    identities.emplace_back(std::move(identity));
+  return identities;
 }
 
-// Opens all doors of a domain or none.
+// Creates the participants of all identities in a domain, or none.
 void open_domain(std::uint32_t domain, const RunCommand& command,
-                 const std::vector<std::optional<wire::Identity>>& doors,
+                 const std::vector<std::optional<wire::Identity>>& identities,
                  std::vector<wire::Participant>& participants) {
   std::vector<wire::Participant> opened;
-  opened.reserve(doors.size());
-  for (const auto& door : doors) opened.push_back(wire::Participant::server(domain, command.network, door));
+  opened.reserve(identities.size());
+  for (const auto& identity : identities)
+    opened.push_back(wire::Participant::server(domain, command.network, identity));
   std::ranges::move(opened, std::back_inserter(participants));
 }
 
@@ -69,10 +71,10 @@ void open_domain(std::uint32_t domain, const RunCommand& command,
 // domains: they are any free ones, so that several runs on one machine do not meet.
 void open_domains(const RunCommand& command, bool has_outsiders, std::size_t processes,
                   std::vector<std::uint32_t>& domains, std::vector<wire::Participant>& participants) {
-  const std::vector<std::optional<wire::Identity>> doors = doors_of(command);
+  const std::vector<std::optional<wire::Identity>> identities = identities_of(command);
   if (!command.domains.empty() || has_outsiders) {
     domains = command.domains.empty() ? std::vector<std::uint32_t>{0} : command.domains;
-    for (const std::uint32_t domain : domains) open_domain(domain, command, doors, participants);
+    for (const std::uint32_t domain : domains) open_domain(domain, command, identities, participants);
     return;
   }
   const std::size_t wanted = std::max<std::size_t>(1, (processes + processes_per_domain - 1) / processes_per_domain);
@@ -80,7 +82,7 @@ void open_domains(const RunCommand& command, bool has_outsiders, std::size_t pro
   for (std::uint32_t i = 0; domains.size() < wanted && i < own_domain_count; ++i) {
     const std::uint32_t domain = first_own_domain + (start + i) % own_domain_count;
     try {
-      open_domain(domain, command, doors, participants);
+      open_domain(domain, command, identities, participants);
       domains.push_back(domain);
     } catch (const wire::DomainTaken&) {
       if (i + 1 == own_domain_count && domains.empty()) throw;
@@ -148,9 +150,9 @@ void add_identities_of_view(const RunCommand& command, const description::Experi
   };
   add("--secure", command.secure / "clients" / "observer");
   if (!command.view_controls && !command.view_opens) return;
-  const std::vector<wire::Identity> doors = wire::read_doors(command.secure);
-  const auto controls = std::ranges::find_if(doors, &wire::Identity::may_control);
-  if (controls != doors.end()) add("--secure-control", command.secure / "clients" / controls->name);
+  const std::vector<wire::Identity> identities = wire::read_server_identities(command.secure);
+  const auto controls = std::ranges::find_if(identities, &wire::Identity::may_control);
+  if (controls != identities.end()) add("--secure-control", command.secure / "clients" / controls->name);
   if (!command.view_controls) return;
   const auto driven = std::ranges::find(experiment.teams, keyboard_controller, &description::Team::controller);
   if (driven != experiment.teams.end()) add("--secure-drive", identity_for(experiment, *driven, command.secure));

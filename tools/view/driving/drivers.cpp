@@ -84,21 +84,21 @@ Answer Drivers::release(const ViewRequest& request) {
   const auto found = driven_.find(request.name);
   if (found == driven_.end() || found->second.visitor != request.visitor)
     return {false, "this page does not drive '" + request.name + "'"};
-  let_go(found);
-  return {true, "lets " + request.name + " go"};
+  release_at(found);
+  return {true, "releases " + request.name};
 }
 
 void Drivers::leave(std::uint64_t visitor) {
   const std::lock_guard lock(mutex_);
   for (auto each = driven_.begin(); each != driven_.end();) {
     const auto next = std::next(each);
-    if (each->second.visitor == visitor) let_go(each);
+    if (each->second.visitor == visitor) release_at(each);
     each = next;
   }
   forget_the_gone();
 }
 
-void Drivers::let_go(std::map<std::string, Driven>::iterator place) {
+void Drivers::release_at(std::map<std::string, Driven>::iterator place) {
   place->second.driver->leave();
   leaving_.push_back({place->first, std::move(place->second.driver)});
   driven_.erase(place);

@@ -37,7 +37,7 @@ class Drivers {
   void drive(const ViewRequest& request, std::function<void(const Answer&)> answer);
   /// Releases it.
   Answer release(const ViewRequest& request);
-  /// Lets all go that this visitor drives.
+  /// Releases all robots that this visitor drives.
   void leave(std::uint64_t visitor);
 
  private:
@@ -48,7 +48,7 @@ class Drivers {
 
   Answer tell(const ViewRequest& request, Driven& driven);
   void claim(const ViewRequest& request, std::function<void(const Answer&)> answer);
-  void let_go(std::map<std::string, Driven>::iterator place);
+  void release_at(std::map<std::string, Driven>::iterator place);
   void forget_the_gone();
 
   const Options options_;
@@ -58,7 +58,7 @@ class Drivers {
     std::string robot;
     std::unique_ptr<Driver> driver;
   };
-  std::vector<Leaving> leaving_;  // in the order in which they were let go
+  std::vector<Leaving> leaving_;  // in the order of their release
 };
 
 }  // namespace cohort::view

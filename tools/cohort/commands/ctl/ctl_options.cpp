@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "server/core/text.hpp"
-#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/commands/ctl/ctl_spawn.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -157,41 +157,33 @@ void add_time_commands(Requests& requests) {
                         [](Control& control, const Nothing&) { return control.quit(); });
 }
 
-// Sends the text of the model file.
-void take_file(Spawn& spawn, const std::filesystem::path& file) {
-  const std::vector<char> text = read_file(file);
-  spawn.text.assign(text.begin(), text.end());
-  spawn.model.clear();
-}
-
-// Spawns a model file, a model of the world, or a model that is installed with Cohort, also as model://NAME.
-ControlReply spawn_model(Control& control, Spawn what) {
-  constexpr std::string_view scheme = "model://";
-  if (std::filesystem::is_regular_file(what.model)) {
-    take_file(what, what.model);
-  } else if (what.model.starts_with(scheme)) {
-    what.model.erase(0, scheme.size());
-  } else if (std::filesystem::path(what.model).has_extension()) {
-    throw std::invalid_argument("there is no file '" + what.model + "'");
-  }
-  try {
-    control.spawn(what);
-  } catch (const ControlError& error) {
-    const bool is_unknown = !what.model.empty() && error.result == ControlResult::operation_failed &&
-                            std::string_view(error.what()).find("has no model") != std::string_view::npos;
-    const std::optional<std::filesystem::path> file = is_unknown ? installed_model(what.model) : std::nullopt;
-    if (!file) throw;
-    take_file(what, *file);
-    control.spawn(what);
-  }
-  return control.last_reply();
-}
-
 // Returns the scoped names that end in `name`: explorers/sbot_0 for sbot_0.
 std::vector<std::string> names_ending_in(Control& control, const std::string& name) {
   std::vector<std::string> names = control.entities();
   std::erase_if(names, [&](const std::string& each) { return !each.ends_with("/" + name); });
   return names;
+}
+
+// Returns the scoped names of lights whose object's name ends in that of `light`: hall/lamp/bulb for lamp/bulb. Returns
+// none if an object has the name as it is.
+std::vector<std::string> lights_ending_in(Control& control, const std::string& light) {
+  std::vector<std::string> lights;
+  for (const std::string& object : control.entities())
+    for (std::size_t end = light.size(); end != std::string::npos && end > 0; end = light.rfind('/', end - 1)) {
+      const std::string_view wanted = std::string_view(light).substr(0, end);
+      if (object == wanted) return {};
+      if (object.ends_with("/" + std::string(wanted))) lights.push_back(object + light.substr(end));
+    }
+  return lights;
+}
+
+// Returns the only one of several full names that a short name can mean; throws std::invalid_argument.
+const std::string& only_one_of(const std::vector<std::string>& names, const std::string& name,
+                               const std::string& what) {
+  if (names.size() > 1)
+    throw std::invalid_argument("several " + what + " are called '" + name + "', such as '" + names[0] + "' and '" +
+                                names[1] + "': give the name with its scope");
+  return names.front();
 }
 
 // Sends a request about the object of this name, or about the only object whose scoped name ends in it.
@@ -203,10 +195,19 @@ ControlReply ask_of_object(Control& control, const std::string& name, Ask ask) {
     if (error.result != ControlResult::not_found) throw;
     const std::vector<std::string> names = names_ending_in(control, name);
     if (names.empty()) throw;
-    if (names.size() > 1)
-      throw std::invalid_argument("several objects are called '" + name + "', such as '" + names[0] + "' and '" +
-                                  names[1] + "': give the name with its scope");
-    return ask(names.front());
+    return ask(only_one_of(names, name, "objects"));
+  }
+}
+
+// Sets a light of this name, or one of the only object whose scoped name ends in the object's part of it.
+ControlReply set_light(Control& control, const std::string& light, const LightSetting& setting) {
+  try {
+    return control.set_light(light, setting);
+  } catch (const ControlError& error) {
+    if (error.result != ControlResult::operation_failed) throw;
+    const std::vector<std::string> lights = lights_ending_in(control, light);
+    if (lights.empty()) throw;
+    return control.set_light(only_one_of(lights, light, "lights"), setting);
   }
 }
 
@@ -275,11 +276,12 @@ void add_light_command(Requests& requests) {
   };
   auto [light, switched] = requests.add<Switched>(
       "set-light", "Switch a light on or off, or set its intensity and color",
-      [](Control& control, const Switched& to) { return control.set_light(to.light, to.setting); });
+      [](Control& control, const Switched& to) { return set_light(control, to.light, to.setting); });
   LightSetting& set = switched.setting;
   light
       .add_option("NAME", switched.light,
-                  "Scoped name of a light (OBJECT/LIGHT), of an object (all of its lights), or a light of the world")
+                  "Light (OBJECT/LIGHT), object (all of its lights) or light of the world; the scope is needed only if "
+                  "several have the same name")
       .required()
       .type_name("");
   light

@@ -40,8 +40,8 @@ Finding check_library();
 
 // Checks of the network. `address` is the address to serve on.
 std::vector<Finding> check_interfaces(const std::string& address);
-/// `doors`: the doors of the server's folder, or one.
-Finding check_ports(std::uint32_t domain, const std::string& address, const std::vector<std::uint32_t>& doors);
+/// `participants`: indices of the server's participants; one without security.
+Finding check_ports(std::uint32_t domain, const std::string& address, const std::vector<std::uint32_t>& participants);
 Finding check_firewall(std::uint32_t domain, const std::string& address);
 /// `is_expected`: whether a missing answer is a problem.
 Finding check_server(const DoctorCommand& command, const std::optional<wire::Identity>& identity, bool is_expected);

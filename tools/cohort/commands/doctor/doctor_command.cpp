@@ -45,18 +45,19 @@ std::optional<wire::Identity> identity_in(const std::filesystem::path& folder) {
 std::vector<Finding> examine(const DoctorCommand& command) {
   std::vector<Finding> findings = check_interfaces(command.network);
   const bool has_network = findings.front().health != Health::problem;
-  std::vector<std::uint32_t> doors;
+  std::vector<std::uint32_t> participants;
   if (!command.secure.empty()) {
     for (const Finding& finding : check_security(command.secure)) findings.push_back(finding);
     if (!std::filesystem::exists(command.secure / "identity") && findings.back().health != Health::problem)
-      for (const wire::Identity& door : wire::read_doors(command.secure)) doors.push_back(door.door);
+      for (const wire::Identity& identity : wire::read_server_identities(command.secure))
+        participants.push_back(identity.participant);
   } else if (!command.network.starts_with("127.")) {
     findings.push_back({"security", Health::warning,
                         "none: anyone who can reach " + command.network + " can drive the robots",
                         "'cohort security init DIR' creates identities for --secure DIR."});
   }
-  if (doors.empty()) doors.push_back(0);
-  findings.push_back(check_ports(command.domain, command.network, doors));
+  if (participants.empty()) participants.push_back(0);
+  findings.push_back(check_ports(command.domain, command.network, participants));
   if (has_network) findings.push_back(check_firewall(command.domain, command.network));
   // If a machine cannot receive its own packets, DDS cannot end its threads.
   if (findings.back().health == Health::problem && findings.back().check == "firewall") {

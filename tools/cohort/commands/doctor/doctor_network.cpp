@@ -173,13 +173,13 @@ std::vector<Finding> check_interfaces(const std::string& address) {
   return {finding, {"multicast", Health::ok, "not needed: clients connect to the address that they are given"}};
 }
 
-Finding check_ports(std::uint32_t domain, const std::string& address, const std::vector<std::uint32_t>& doors) {
+Finding check_ports(std::uint32_t domain, const std::string& address, const std::vector<std::uint32_t>& participants) {
   std::map<std::string, std::vector<std::uint16_t>> taken;
-  for (const std::uint32_t door : doors)
-    for (std::uint16_t port = wire::discovery_port(domain, door), last = port + 1; port <= last; ++port)
+  for (const std::uint32_t participant : participants)
+    for (std::uint16_t port = wire::discovery_port(domain, participant), last = port + 1; port <= last; ++port)
       if (std::string holder = holder_of_port(port); !holder.empty()) taken[holder].push_back(port);
-  const std::uint16_t first = wire::discovery_port(domain, doors.front());
-  const std::uint16_t last = wire::discovery_port(domain, doors.back()) + 1;
+  const std::uint16_t first = wire::discovery_port(domain, participants.front());
+  const std::uint16_t last = wire::discovery_port(domain, participants.back()) + 1;
   Finding finding{"ports", Health::ok, fmt::format("UDP {} to {} of domain {}", first, last, domain)};
   if (taken.empty()) {
     finding.found += " are free";
@@ -225,7 +225,7 @@ Finding check_firewall(std::uint32_t domain, const std::string& address) {
 }
 
 Finding check_server(const DoctorCommand& command, const std::optional<wire::Identity>& identity, bool is_expected) {
-  const std::uint16_t port = wire::discovery_port(command.domain, identity ? identity->door : 0);
+  const std::uint16_t port = wire::discovery_port(command.domain, identity ? identity->participant : 0);
   const std::string where = fmt::format("{}, domain {}", command.server, command.domain);
   const Health bad = is_expected ? Health::problem : Health::ok;
   if (says_that_it_is_closed(command.server, port))

@@ -20,7 +20,8 @@ Finding check_identity(const wire::Identity& identity) {
   constexpr std::int64_t soon = 1'209'600;  // two weeks [s]
   const Validity validity = validity_of(identity.folder / wire::certificate_file);
   const std::int64_t now = std::time(nullptr);
-  const std::string who = fmt::format("{} ({}), door {}", identity.name, identity.folder.string(), identity.door);
+  const std::string who =
+      fmt::format("{} ({}), participant {}", identity.name, identity.folder.string(), identity.participant);
   const std::string again = fmt::format(
       "Remove its folders in server/ and clients/, create them again with 'cohort security add DIR {} --robots …', and "
       "copy the client's folder to its machine.",
@@ -46,7 +47,7 @@ std::vector<Finding> check_security(const fs::path& folder) {
   try {
     const bool is_one = fs::exists(folder / "identity");
     const std::vector<wire::Identity> identities =
-        is_one ? std::vector{wire::read_identity(folder)} : wire::read_doors(folder);
+        is_one ? std::vector{wire::read_identity(folder)} : wire::read_server_identities(folder);
     for (const wire::Identity& identity : identities) findings.push_back(check_identity(identity));
   } catch (const std::exception& error) {
     findings.push_back({"security", Health::problem, error.what(), "'cohort security init' creates this folder."});

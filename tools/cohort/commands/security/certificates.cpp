@@ -28,11 +28,11 @@ std::string openssl(const fs::path& folder, std::vector<std::string> arguments) 
 }
 
 // Returns the subject of a certificate. Permissions name it in the order of RFC 2253, the last part first.
-std::string subject_of(const std::string& door, std::string_view side) {
-  return fmt::format("/O=Cohort/OU={}/CN={}", door, side);
+std::string subject_of(const std::string& identity, std::string_view side) {
+  return fmt::format("/O=Cohort/OU={}/CN={}", identity, side);
 }
-std::string subject_in_permissions(const std::string& door, std::string_view side) {
-  return fmt::format("CN={},OU={},O=Cohort", side, door);
+std::string subject_in_permissions(const std::string& identity, std::string_view side) {
+  return fmt::format("CN={},OU={},O=Cohort", side, identity);
 }
 
 constexpr const char* governance = R"(<?xml version="1.0" encoding="utf-8"?>
@@ -127,7 +127,7 @@ void sign(const fs::path& folder, const std::string& document, std::string_view 
   fs::remove(folder / "document.xml");
 }
 
-// Creates one side of a door, in its own folder inside `making`, which has the certificate authority.
+// Creates one side of an identity, in its own folder inside `making`, which has the certificate authority.
 void make_side(const NewIdentity& identity, wire::Role role, const fs::path& making, const std::string& days) {
   const bool is_server = role == wire::Role::server;
   const std::string_view side = is_server ? server_name : std::string_view("client");
@@ -145,7 +145,7 @@ void make_side(const NewIdentity& identity, wire::Role role, const fs::path& mak
       fmt::format(permissions, side, subject_in_permissions(identity.name, side), rules_of(role, identity.may_control)),
       prefix + std::string(wire::permissions_file));
   for (const auto& file : {wire::authority_file, wire::governance_file}) fs::copy_file(making / file, folder / file);
-  const wire::Identity described{identity.name,       role, identity.door, identity.protection, identity.robots,
+  const wire::Identity described{identity.name,       role, identity.participant, identity.protection, identity.robots,
                                  identity.may_control};
   write_file("an identity", folder / "identity", wire::identity_text(described));
   for (const auto& entry : fs::directory_iterator(folder))
@@ -178,7 +178,7 @@ class Workshop {
 
 }  // namespace
 
-void make_door(const NewIdentity& identity, const fs::path& server, const fs::path& client, unsigned days) {
+void make_identity(const NewIdentity& identity, const fs::path& server, const fs::path& client, unsigned days) {
   const Workshop workshop(server.parent_path());
   const fs::path& making = workshop.path();
   const std::string validity = std::to_string(days);

@@ -13,17 +13,17 @@ namespace cohort::tool {
 struct NewIdentity {
   std::string name{};
   wire::Role role = wire::Role::controller;  ///< role of the client
-  std::uint32_t door = 0;
+  std::uint32_t participant = 0;
   std::string protection = "sign";
   std::vector<std::string> robots{};
   bool may_control = false;
 };
 
-/// Creates the two sides of a door in the folders `server` and `client`, which must not exist. A door has its own
+/// Creates the two sides of an identity in the folders `server` and `client`, which must not exist. It has its own
 /// certificate authority, which signs a certificate and the permissions of each side; its key is then deleted. Only the
 /// owner can read the files. Throws std::runtime_error, and then leaves no files behind.
-void make_door(const NewIdentity& identity, const std::filesystem::path& server, const std::filesystem::path& client,
-               unsigned days);
+void make_identity(const NewIdentity& identity, const std::filesystem::path& server,
+                   const std::filesystem::path& client, unsigned days);
 
 struct Validity {
   std::int64_t begin = 0;  ///< seconds of Unix time

@@ -73,21 +73,21 @@ void initialise(const SecurityCommand& command) {
   std::vector<NewIdentity> identities = {{.name = "observer", .role = wire::Role::observer}};
   for (const std::string& client : command.clients) identities.push_back(parse_client(client));
   if (command.clients.empty()) identities.push_back({.name = "controllers", .robots = {"all"}});
-  for (std::uint32_t door = 0; door < identities.size(); ++door) {
-    NewIdentity& identity = identities[door];
+  for (std::uint32_t i = 0; i < identities.size(); ++i) {
+    NewIdentity& identity = identities[i];
     check_name(identity.name);
     const auto same = [&](const NewIdentity& other) { return other.name == identity.name; };
     if (std::count_if(identities.begin(), identities.end(), same) > 1)
       throw std::invalid_argument(fmt::format("there are two clients named '{}'", identity.name));
-    identity.door = door;
+    identity.participant = i;
     if (command.encrypt) identity.protection = "encrypt";
   }
-  if (identities.size() > wire::last_door + 1)
-    throw std::invalid_argument(fmt::format("expected at most {} clients", wire::last_door));
+  if (identities.size() > wire::last_participant + 1)
+    throw std::invalid_argument(fmt::format("expected at most {} clients", wire::last_participant));
   const bool is_new = !fs::exists(folder);
   try {
     for (const NewIdentity& identity : identities)
-      make_door(identity, server_folder(folder, identity.name), client_folder(folder, identity.name), command.days);
+      make_identity(identity, server_folder(folder, identity.name), client_folder(folder, identity.name), command.days);
   } catch (...) {
     for (const char* made : {"server", "clients"}) fs::remove_all(folder / made);
     if (is_new) fs::remove(folder);
@@ -104,41 +104,43 @@ void initialise(const SecurityCommand& command) {
 
 void add(const SecurityCommand& command) {
   check_name(command.name);
-  const std::vector<wire::Identity> doors = wire::read_doors(command.folder);
+  const std::vector<wire::Identity> existing = wire::read_server_identities(command.folder);
   if (!fs::is_directory(command.folder / "server"))
     throw std::invalid_argument(fmt::format("{} was not created by 'cohort security init'", command.folder.string()));
-  for (const wire::Identity& door : doors)
-    if (door.name == command.name)
+  for (const wire::Identity& each : existing)
+    if (each.name == command.name)
       throw std::invalid_argument(fmt::format(
           "{} already has a client '{}'; to create it again, remove {} and {}", command.folder.string(), command.name,
           server_folder(command.folder, command.name).string(), client_folder(command.folder, command.name).string()));
-  NewIdentity identity{.name = command.name, .protection = doors.front().protection};
+  NewIdentity identity{.name = command.name, .protection = existing.front().protection};
   take_rights(identity, command.robots);
   if (identity.robots.empty() && !identity.may_control)
     throw std::invalid_argument(fmt::format("'{}' would have no rights; expected robots or 'control'", command.name));
-  // The first free door: a removed client leaves a gap.
-  while (std::ranges::find(doors, identity.door, &wire::Identity::door) != doors.end()) ++identity.door;
-  if (identity.door > wire::last_door)
-    throw std::invalid_argument(fmt::format("expected at most {} clients", wire::last_door));
+  // The first free participant: a removed client leaves a gap.
+  while (std::ranges::find(existing, identity.participant, &wire::Identity::participant) != existing.end())
+    ++identity.participant;
+  if (identity.participant > wire::last_participant)
+    throw std::invalid_argument(fmt::format("expected at most {} clients", wire::last_participant));
   const fs::path client = client_folder(command.folder, identity.name);
   if (fs::exists(client)) throw std::invalid_argument(fmt::format("{} already exists", client.string()));
-  make_door(identity, server_folder(command.folder, identity.name), client, command.days);
+  make_identity(identity, server_folder(command.folder, identity.name), client, command.days);
   std::cout << fmt::format("created {}: it may {}. Restart the server with this folder to accept it.\n",
                            client.string(), rights_of(identity.robots, identity.may_control));
 }
 
 void list(const SecurityCommand& command) {
-  const std::vector<wire::Identity> doors = wire::read_doors(command.folder);
-  std::cout << fmt::format("{:<20} {:<6} {:<11} {:<16} {}\n", "client", "door", "messages", "valid until", "may drive");
-  for (const wire::Identity& door : doors) {
-    const std::int64_t end = validity_of(door.folder / wire::certificate_file).end;
+  const std::vector<wire::Identity> existing = wire::read_server_identities(command.folder);
+  std::cout << fmt::format("{:<20} {:<12} {:<11} {:<16} {}\n", "client", "participant", "messages", "valid until",
+                           "may drive");
+  for (const wire::Identity& each : existing) {
+    const std::int64_t end = validity_of(each.folder / wire::certificate_file).end;
     const std::string until = fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(end)));
     const bool is_over = end < std::time(nullptr);
-    std::cout << fmt::format("{:<20} {:<6} {:<11} {:<16} {}{}\n", door.name, door.door,
-                             door.protection == "encrypt" ? "encrypted" : "signed", until,
-                             door.robots.empty()
-                                 ? door.may_control ? "nothing; controls the run" : "nothing; observes only"
-                                 : joined(door.robots) + (door.may_control ? "; controls the run" : ""),
+    std::cout << fmt::format("{:<20} {:<12} {:<11} {:<16} {}{}\n", each.name, each.participant,
+                             each.protection == "encrypt" ? "encrypted" : "signed", until,
+                             each.robots.empty()
+                                 ? each.may_control ? "nothing; controls the run" : "nothing; observes only"
+                                 : joined(each.robots) + (each.may_control ? "; controls the run" : ""),
                              is_over ? "   EXPIRED" : "");
   }
 }

@@ -176,7 +176,7 @@ canvas.addEventListener(
   ({ clientX: x, clientY: y, shiftKey, pointerId }) => {
     pressed = { x, y };
     const isGrabbed = shiftKey && objects.grab(x, y);
-    if (isGrabbed) canvas.setPointerCapture(pointerId); // it is let go also over a card
+    if (isGrabbed) canvas.setPointerCapture(pointerId); // a release over a card counts too
     viewer.cameras.controls.enabled = !isGrabbed && viewer.cameras.mode !== "eye";
   },
   { capture: true },

@@ -26,6 +26,8 @@ const longestWait = 4000;
 
 /** A client of the server that the page came from; connects again when the connection is lost. */
 export class Connection {
+  /** The time of the last message of each topic [ns]. */
+  readonly received = new Map<Topic, bigint>();
   private client: FoxgloveClient | undefined;
   private channels = new Map<string, Channel>();
   private subscribed = new Map<number, Subscribed>();
@@ -89,7 +91,7 @@ export class Connection {
     client.on("advertiseServices", (services) => {
       this.service = services.find((each) => each.name === "/cohort/control");
     });
-    client.on("message", ({ subscriptionId, data }) => this.take(subscriptionId, data));
+    client.on("message", ({ subscriptionId, timestamp, data }) => this.take(subscriptionId, timestamp, data));
     client.on("serviceCallResponse", ({ callId, data }) => {
       this.answer(callId, JSON.parse(new TextDecoder().decode(data)) as Answer);
     });
@@ -117,11 +119,12 @@ export class Connection {
     this.subscribed.set(this.client.subscribe(channel.id), { topic, reader });
   }
 
-  private take(subscription: number, data: ArrayBufferView): void {
+  private take(subscription: number, time: bigint, data: ArrayBufferView): void {
     const found = this.subscribed.get(subscription);
     if (!found) return;
     const handler = this.handlers[found.topic] as ((message: unknown, bytes: number) => void) | undefined;
     handler?.(found.reader.readMessage(data), data.byteLength);
+    this.received.set(found.topic, time);
   }
 
   private answer(callId: number, answer: Answer): void {

@@ -6,6 +6,7 @@ import { ConsolePanel } from "./console";
 import { addConsoleCommands, preferredTheme, showPressed } from "./console_commands";
 import { Driving } from "./driving";
 import { element } from "./element";
+import { FilmMode } from "./film_mode";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 import { Objects } from "./objects";
 import { PhaseCard } from "./phase_card";
@@ -75,6 +76,7 @@ for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/coho
 addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, commands, canvas });
 const driving = new Driving(viewer, connection, commands, consolePanel, canvas);
 const objects = new Objects(viewer, connection, consolePanel, canvas);
+const film = new FilmMode(viewer, connection, canvas);
 for (const command of [...driving.consoleCommands(), ...objects.consoleCommands()]) commands.add(command);
 
 function showStatus(status: ViewStatus): void {
@@ -186,7 +188,7 @@ function draw(now: number): void {
   viewer.draw(now);
   requestAnimationFrame(draw);
 }
-requestAnimationFrame(draw);
+if (!film.isOn) requestAnimationFrame(draw);
 setInterval(() => {
   element("rate").textContent = String(viewer.framesDrawn);
   element("traffic").textContent = (bytes / 1000).toFixed(0);
@@ -196,5 +198,5 @@ setInterval(() => {
 
 /** For tests and for the browser's console. */
 Object.assign(window, {
-  cohort: { viewer, commands, connection, driving, objects, run: (line: string) => commands.run(line) },
+  cohort: { viewer, commands, connection, driving, objects, film, run: (line: string) => commands.run(line) },
 });

@@ -11,15 +11,25 @@ namespace {
 
 constexpr double full_scale = 32767.0;  // of orientations in a frame
 
-// Returns the objects that a name refers to: a team, an object, or robots. Throws std::invalid_argument for none.
+// Returns the objects with this name, of which the first parts may be left out.
+std::vector<std::uint32_t> objects_named(const std::string& name, const Objects& objects) {
+  if (const auto object = objects.find(name)) return {*object};
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t object = 0; object < objects.size(); ++object)
+    if (objects.name(object).ends_with("/" + name)) found.push_back(object);
+  return found;
+}
+
+// Returns the objects that a name refers to: a team, an object, or robots as other commands select them. Throws
+// std::invalid_argument if there are none.
 std::vector<std::uint32_t> objects_called(const std::string& name, const description::Experiment& experiment,
                                           const Simulation& simulation) {
   std::vector<std::uint32_t> robots;
   const auto team = std::ranges::find(experiment.teams, name, &description::Team::name);
   if (team != experiment.teams.end()) {
     robots = team->robots;
-  } else if (const auto object = simulation.objects().find(name)) {
-    return {*object};
+  } else if (auto objects = objects_named(name, simulation.objects()); !objects.empty()) {
+    return objects;
   } else {
     robots = description::select_robots(experiment.world, name);
   }

@@ -179,6 +179,7 @@ void draw_film(const FilmCommand& command, const recording::Recording& recording
   const Schedule schedule = schedule_of(command, recording, writer.is_single());
   std::optional<film::CameraPath> path;
   if (!command.camera.empty()) path = film::read_camera_path(command.camera);
+  const std::filesystem::path browser = film::FilmPage::find_browser();
   const std::string follow = path ? path->follow().value_or(command.follow) : command.follow;
 
   FilmServer* published_to = nullptr;
@@ -192,7 +193,7 @@ void draw_film(const FilmCommand& command, const recording::Recording& recording
   FilmServer server(page_of_view(), topics);
   published_to = &server;
   server.start(source);
-  film::FilmPage page(film::FilmPage::find_browser(), server.address(), command.look, stop);
+  film::FilmPage page(browser, server.address(), command.look, stop);
   Director director(std::move(path));
   FilmProgress progress(log, schedule.count);
   for (std::uint64_t picture = 0; picture < schedule.count; ++picture) {
@@ -209,7 +210,6 @@ int make_film(FilmCommand command, Log& log, const std::atomic<bool>& stop) {
   command.look.size = size_of(command.size);
   if (command.look.caption.size() > longest_caption)
     throw std::invalid_argument(fmt::format("--caption: expected at most {} bytes", longest_caption));
-  film::FilmPage::find_browser();
   refuse_experiment(command.recording);
   const recording::Recording recording(command.recording);
   if (!recording.damage().empty()) log.warning(recording.damage());

@@ -189,9 +189,9 @@ class NumberedPictures final : public FilmWriter {
 
 // Returns the writer of pictures, numbered if the name has a place for a number.
 std::unique_ptr<FilmWriter> make_picture_writer(const std::filesystem::path& file) {
+  if (!has_numbers(file)) return std::make_unique<Picture>(file);
   const std::string name = file.string();
   const std::size_t percent = name.find('%');
-  if (percent == std::string::npos) return std::make_unique<Picture>(file);
   const std::size_t end = name.find('d', percent);
   const std::string width = end == std::string::npos ? "x" : name.substr(percent + 1, end - percent - 1);
   const bool is_width = width.empty() || (width.size() == 2 && width[0] == '0' && width[1] >= '1' && width[1] <= '9');
@@ -208,6 +208,10 @@ std::string lower_case(std::string text) {
 }
 
 }  // namespace
+
+bool has_numbers(const std::filesystem::path& file) {
+  return lower_case(file.extension().string()) == ".png" && file.string().find('%') != std::string::npos;
+}
 
 std::unique_ptr<FilmWriter> make_film_writer(const std::filesystem::path& file, FilmSize size, unsigned fps,
                                              const std::atomic<bool>& stop) {

@@ -25,6 +25,9 @@ struct FilmSize {
   std::uint32_t height = 720;
 };
 
+/// Returns whether a file name is that of numbered pictures, such as frame_%04d.png.
+bool has_numbers(const std::filesystem::path& file);
+
 /// Returns the writer for a file name that ends in .mp4, .webm, .gif, .webp or .png. A name of a PNG with one `%d`, or
 /// for example `%04d`, is that of numbered pictures, from 0. Films are written by ffmpeg. Throws std::invalid_argument
 /// for other names and for sizes that the format does not have, and std::runtime_error if ffmpeg is missing or the file

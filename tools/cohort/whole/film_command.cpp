@@ -210,6 +210,7 @@ int make_film(FilmCommand command, Log& log, const std::atomic<bool>& stop) {
   command.look.size = size_of(command.size);
   if (command.look.caption.size() > longest_caption)
     throw std::invalid_argument(fmt::format("--caption: expected at most {} bytes", longest_caption));
+  if (!film::has_numbers(command.output)) check_writable("the film", command.output);
   refuse_experiment(command.recording);
   const recording::Recording recording(command.recording);
   if (!recording.damage().empty()) log.warning(recording.damage());

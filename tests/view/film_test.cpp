@@ -9,7 +9,7 @@
 
 #include "tests/support/process.hpp"
 
-// `cohort film`: each format, decoded by ffmpeg; that films are repeatable; and how they fail.
+// Tests of `cohort film`: each format as ffmpeg decodes it, repeatability, errors.
 namespace cohort::test {
 namespace {
 
@@ -70,7 +70,7 @@ class Films : public ::testing::Test {
     return scratch / "camera.yaml";
   }
 
-  // What ffprobe says of the first stream, with its pictures counted.
+  // Returns the description of the first stream by ffprobe, which counts its pictures.
   nlohmann::json stream_of(const std::string& output) const {
     const Ended ended = run_to_end({"/usr/bin/env", "ffprobe", "-v", "error", "-count_frames", "-show_streams",
                                     "-show_format", "-of", "json", scratch / output});
@@ -80,7 +80,7 @@ class Films : public ::testing::Test {
     stream["duration"] = found["format"]["duration"];
     return stream;
   }
-  // The checksums of all pictures, in order.
+  // Returns the checksums of all pictures, in order.
   std::vector<std::string> pictures_of(const std::string& output) const {
     const Ended ended =
         run_to_end({"/usr/bin/env", "ffmpeg", "-v", "error", "-i", scratch / output, "-f", "framemd5", "-"});
@@ -91,7 +91,7 @@ class Films : public ::testing::Test {
       if (!line.starts_with('#')) sums.push_back(line.substr(line.rfind(' ') + 1));
     return sums;
   }
-  // Red, green and blue of the pixel in the middle of a picture.
+  // Returns red, green and blue of the pixel in the middle of a picture.
   std::array<int, 3> middle_of(const std::string& output) const {
     const Ended ended = run_to_end(
         {"/usr/bin/env", "ffmpeg", "-v", "error", "-i", scratch / output, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"});

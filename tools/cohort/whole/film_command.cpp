@@ -41,7 +41,7 @@ struct FilmCommand {
   unsigned threads = 0;            ///< threads that replay the recording; 0: one for each core
 };
 
-constexpr std::uint32_t least_pixels = 16;  // of a side
+constexpr std::uint32_t least_pixels = 16;  // width or height
 constexpr std::uint32_t most_pixels = 4096;
 constexpr std::uint32_t most_pixels_in_all = 3840U * 2160U;
 constexpr std::uint64_t most_pictures = 200'000;  // almost two hours
@@ -147,7 +147,7 @@ class Director {
  public:
   explicit Director(std::optional<film::CameraPath> path) : path_(std::move(path)) {}
 
-  // What was followed and has left the world keeps its last place.
+  // An object that was followed and has left the world keeps its last place.
   film::FilmCamera camera(const film::FilmSource& source) {
     if (source.followed()) followed_ = source.followed();
     film::FilmCamera camera{{}, followed_};

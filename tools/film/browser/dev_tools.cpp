@@ -7,7 +7,7 @@ namespace cohort::film {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{64}
-                                   << 20;      // of a message: a picture of the largest size, not compressed
+                                   << 20;      // longest message: a picture of the largest size, without compression
 constexpr std::chrono::seconds patience{300};  // software may draw a picture of a large world that slowly
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace cohort::film {
 namespace {
 
-constexpr double full_scale = 32767.0;  // of orientations in a frame
+constexpr double full_scale = 32767.0;  // scale of orientations in a frame
 
 // Returns the objects with this name, of which the first parts may be left out.
 std::vector<std::uint32_t> objects_named(const std::string& name, const Objects& objects) {

@@ -55,7 +55,7 @@ class FilmSource final : public view::Source {
  private:
   using Nanoseconds = std::chrono::nanoseconds;
 
-  // What is shown of a tick boundary.
+  // The data of a tick boundary that are shown.
   struct Moment {
     Nanoseconds log_time{0};
     messages::SceneFrame frame;
@@ -80,7 +80,7 @@ class FilmSource final : public view::Source {
 
   // The replay is at the first boundary after `time_`, or at the end.
   Nanoseconds time_{0};
-  Nanoseconds log_time_{0};  // of the replay
+  Nanoseconds log_time_{0};  // log time of the replay
   bool has_begun_ = false;
   bool is_at_end_ = false;
   bool is_new_world_ = false;

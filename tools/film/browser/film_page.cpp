@@ -129,8 +129,7 @@ FilmPage::FilmPage(const std::filesystem::path& browser, const std::string& addr
   DevTools& tools = browser_->tools();
   tools.open_page(address, look.size.width, look.size.height);
   tools.evaluate(
-      "new Promise((resolve) => { const look = () => window.cohort?.film ? resolve() : setTimeout(look, 10); look(); "
-      "})");
+      "new Promise(function look(resolve) { window.cohort?.film ? resolve() : setTimeout(look, 10, resolve) })");
   tools.evaluate(fmt::format("window.cohort.film.prepare({})", json_of(look).dump()));
 }
 

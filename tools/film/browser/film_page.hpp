@@ -14,7 +14,7 @@
 
 namespace cohort::film {
 
-/// What pictures show, other than the world.
+/// The look of pictures, and what they show besides the world.
 struct FilmLook {
   FilmSize size{};
   std::string theme = "light";
@@ -25,7 +25,7 @@ struct FilmLook {
   bool shows_contacts = false;
   bool has_shadows = true;
   bool from_above = false;
-  std::optional<double> distance{};  ///< of the camera from what it looks at [m]; by default so that all is seen
+  std::optional<double> distance{};  ///< distance of the camera from its target [m]; by default so that all is visible
 };
 
 /// Where the camera is in a picture: at a viewpoint, or as at first, moved with what is followed.

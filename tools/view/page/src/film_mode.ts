@@ -32,7 +32,7 @@ export class FilmMode {
   private readonly picture = document.createElement("canvas");
   private look: FilmLook | undefined;
   private readonly target = new Vector3();
-  private offset: Vector3 | undefined; // of the camera from its target
+  private offset: Vector3 | undefined; // from the target to the camera
 
   constructor(
     private readonly viewer: Viewer,

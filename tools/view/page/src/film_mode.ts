@@ -50,8 +50,7 @@ export class FilmMode {
     viewer.stage.renderer.setPixelRatio(1);
     viewer.stage.resize(look.width, look.height);
     viewer.wear(look.theme);
-    for (const layer of filmLayers)
-      if (viewer.layers.has(layer) !== look.layers.includes(layer)) viewer.toggle(layer);
+    for (const layer of filmLayers) if (viewer.layers.has(layer) !== look.layers.includes(layer)) viewer.toggle(layer);
     this.connection.want("/cohort/contacts", look.layers.includes("contacts"));
   }
 

@@ -80,7 +80,8 @@ std::vector<CameraPath::Point> read_points(const parsing::YamlNode& list, const 
 
 }  // namespace
 
-CameraPath::CameraPath(std::vector<Point> points, std::optional<std::string> follow) : follow_(std::move(follow)) {
+CameraPath::CameraPath(const std::vector<Point>& points, std::optional<std::string> follow)
+    : follow_(std::move(follow)) {
   for (const Point& point : points) {
     times_.push_back(point.time);
     values_.emplace_back();
@@ -128,7 +129,7 @@ CameraPath parse_camera_path(std::string_view text, const std::filesystem::path&
       points = read_points(list, report);
   }
   if (!problems.empty()) throw description::InputError(std::move(problems));
-  return CameraPath(std::move(points), std::move(follow));
+  return CameraPath(points, std::move(follow));
 }
 
 CameraPath read_camera_path(const std::filesystem::path& file) {

@@ -26,7 +26,7 @@ class CameraPath {
   };
 
   /// `points`: at least one, with ascending times.
-  explicit CameraPath(std::vector<Point> points, std::optional<std::string> follow = {});
+  explicit CameraPath(const std::vector<Point>& points, std::optional<std::string> follow = {});
 
   /// Returns the interpolated viewpoint at a time; before the first point and after the last one, these. Every
   /// component is a monotone piecewise cubic function of time, so it never overshoots, and a pause of the camera is

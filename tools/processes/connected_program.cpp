@@ -24,16 +24,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int poll_interval = 100;          // [ms]; interval at which `stop` is read
+constexpr int stop_interval = 100;          // [ms]; interval at which `stop` is read
 constexpr std::size_t most_printed = 4096;  // bytes that are kept
 constexpr int first_free_descriptor = 64;   // above the descriptors of a program
 
 [[noreturn]] void throw_errno(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
-
-void close_if_open(int& descriptor) {
-  if (descriptor >= 0) ::close(descriptor);
-  descriptor = -1;
-}
 
 // Runs between fork and exec, where only functions that are safe in a signal handler may be called.
 [[noreturn]] void become(char* const* arguments, const int* descriptors, std::size_t count, int socket, int output,
@@ -139,7 +134,7 @@ int ConnectedProgram::finish() {
   while (!has_ended()) {
     if (stop_) throw Interrupted();
     pollfd printed{output_, POLLIN, 0};
-    poll(&printed, 1, poll_interval);
+    poll(&printed, 1, stop_interval);
     read_printed();
     // The pipe is closed shortly before the process has ended.
     if ((printed.revents & POLLIN) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -164,7 +159,7 @@ ConnectedProgram::Event ConnectedProgram::wait(bool for_writing) {
   if (stop_) throw Interrupted();
   std::array<pollfd, 2> watched = {
       {{socket_, static_cast<short>(for_writing ? POLLOUT : POLLIN), 0}, {output_, POLLIN, 0}}};
-  if (poll(watched.data(), watched.size(), poll_interval) <= 0) return Event::none;
+  if (poll(watched.data(), watched.size(), stop_interval) <= 0) return Event::none;
   if ((watched[1].revents & POLLIN) != 0) read_printed();
   if (watched[0].revents == 0) return Event::none;
   return for_writing ? Event::writable : Event::readable;

@@ -6,9 +6,9 @@
 namespace cohort::film {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{64}
-                                   << 20;      // longest message: a picture of the largest size, without compression
-constexpr std::chrono::seconds patience{300};  // software may draw a picture of a large world that slowly
+constexpr std::size_t most_of_message = std::size_t{64}
+                                        << 20;  // longest message: a picture of the largest size, without compression
+constexpr std::chrono::seconds patience{300};   // software may draw a picture of a large world that slowly
 
 }  // namespace
 
@@ -20,7 +20,7 @@ DevTools::Json DevTools::call(const std::string& method, const Json& parameters)
   text.push_back('\0');
   browser_.send(text);
   for (;;) {
-    const Json message = Json::parse(browser_.receive('\0', most_bytes, patience), nullptr, false);
+    const Json message = Json::parse(browser_.receive('\0', most_of_message, patience), nullptr, false);
     if (!message.is_object()) throw std::runtime_error("the browser sends invalid messages");
     if (message.value("method", "") == "Inspector.targetCrashed" ||
         message.value("method", "") == "Target.targetCrashed")

@@ -283,7 +283,7 @@ INSTANTIATE_TEST_SUITE_P(
         Typed{{"film", "run.mcap", "-o", "run.png", "--theme", "drak"},
               "--theme: there is no 'drak'; did you mean 'dark'?"},
         Typed{{"film", "run.mcap", "-o", "run.png", "--top", "--camera", "c.yaml"},
-              "'--top' cannot be used with '--camera'"},
+              "'--camera' cannot be used with '--top'"},
         Typed{{"film", "obstacle_avoidance", "-o", "run.png"}, "cohort run obstacle_avoidance --record run.mcap"},
         Typed{{"bench", "--scene", "crowd,crwd"}, "--scene: there is no 'crwd'; did you mean 'crowd'?"},
         Typed{{"bench", "--engines", "mujocko"}, "--engines: there is no 'mujocko'; did you mean 'mujoco'?"},

@@ -58,7 +58,7 @@ class Films : public ::testing::Test {
     for (const auto& entry : fs::directory_iterator(scratch.path())) names.push_back(entry.path().filename());
     std::ranges::sort(names);
     EXPECT_EQ(names, (std::vector<std::string>{"run.mcap", "tmp"}));
-    EXPECT_TRUE(fs::is_empty(scratch / "tmp"));
+    EXPECT_TRUE(fs::is_empty(scratch / "tmp")) << run_to_end({"/usr/bin/find", scratch / "tmp"}).out;
   }
 
   // A camera that moves. Returns its file.

@@ -31,8 +31,8 @@ constexpr int first_free_descriptor = 64;   // above the descriptors of a progra
 [[noreturn]] void throw_errno(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
 // Runs between fork and exec, where only functions that are safe in a signal handler may be called.
-[[noreturn]] void become(char* const* arguments, const int* descriptors, std::size_t count, int socket, int output,
-                         pid_t parent) {
+[[noreturn]] void become(char* const* arguments, char* const* environment, const int* descriptors, std::size_t count,
+                         int socket, int output, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);  // the parent died meanwhile
   setpgid(0, 0);
@@ -46,8 +46,20 @@ constexpr int first_free_descriptor = 64;   // above the descriptors of a progra
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   for (std::size_t i = 0; i < count; ++i) dup2(socket, descriptors[i]);
   signal(SIGPIPE, SIG_DFL);
-  execv(arguments[0], arguments);
+  execve(arguments[0], arguments, environment);
   _exit(127);
+}
+
+// Returns the environment of this process with changes, `NAME=VALUE` each.
+std::vector<std::string> environment_with(const std::vector<std::string>& variables) {
+  std::vector<std::string> environment = variables;
+  for (char** each = environ; *each != nullptr; ++each) {
+    const std::string variable = *each;
+    const std::string name = variable.substr(0, variable.find('=') + 1);
+    if (std::ranges::none_of(variables, [&](const std::string& other) { return other.starts_with(name); }))
+      environment.push_back(variable);
+  }
+  return environment;
 }
 
 }  // namespace
@@ -64,9 +76,11 @@ std::optional<std::filesystem::path> find_program(const std::string& name) {
 }
 
 ConnectedProgram::ConnectedProgram(const std::vector<std::string>& command, const std::vector<int>& descriptors,
-                                   const std::atomic<bool>& stop)
+                                   const std::atomic<bool>& stop, const std::vector<std::string>& variables)
     : stop_(stop), name_(std::filesystem::path(command.front()).filename().string()) {
   const std::vector<char*> arguments = arguments_of(command);
+  const std::vector<std::string> environment = environment_with(variables);
+  const std::vector<char*> environment_pointers = arguments_of(environment);
   std::array<int, 2> sockets{};
   std::array<int, 2> outputs{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0) throw_errno("socketpair");
@@ -81,7 +95,9 @@ ConnectedProgram::ConnectedProgram(const std::vector<std::string>& command, cons
   signal(SIGCHLD, SIG_DFL);  // the starting process may have ignored it, and then waiting for children fails
   const pid_t parent = getpid();
   pid_ = fork();
-  if (pid_ == 0) become(arguments.data(), descriptors.data(), descriptors.size(), sockets[1], outputs[1], parent);
+  if (pid_ == 0)
+    become(arguments.data(), environment_pointers.data(), descriptors.data(), descriptors.size(), sockets[1],
+           outputs[1], parent);
   const int error = errno;
   ::close(sockets[1]);
   ::close(outputs[1]);
@@ -182,13 +198,16 @@ bool ConnectedProgram::has_ended() const {
          (waitid(P_PID, static_cast<id_t>(pid_), &end, WEXITED | WNOHANG | WNOWAIT) == 0 && end.si_pid == pid_);
 }
 
-// Kills what is left of the process group before its id can be reused.
+// Kills what is left of the process group before its id can be reused, and waits until all of it has ended, so that
+// files of the group can be deleted.
 void ConnectedProgram::reap() {
   if (pid_ <= 0) return;
   kill(-pid_, SIGKILL);
   int status = 0;
   while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
   }
+  const Clock::time_point deadline = Clock::now() + std::chrono::seconds(2);  // nobody may wait for its members
+  while (kill(-pid_, 0) == 0 && Clock::now() < deadline) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   pid_ = -1;
   exit_code_ = exit_code_of(status);
 }

@@ -27,9 +27,10 @@ std::optional<std::filesystem::path> find_program(const std::string& name);
 class ConnectedProgram {
  public:
   /// Starts a program. `command`: its path and its arguments. `descriptors`: the descriptors of the program that are
-  /// the socket, such as {0} for its standard input. Throws std::system_error. `stop` must outlive this.
+  /// the socket, such as {0} for its standard input. `variables`: changes of its environment, such as HOME=/tmp. Throws
+  /// std::system_error. `stop` must outlive this.
   ConnectedProgram(const std::vector<std::string>& command, const std::vector<int>& descriptors,
-                   const std::atomic<bool>& stop);
+                   const std::atomic<bool>& stop, const std::vector<std::string>& variables = {});
   ConnectedProgram(const ConnectedProgram&) = delete;
   ConnectedProgram& operator=(const ConnectedProgram&) = delete;
   /// Kills the process group if the program has not ended.

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
 
 #include "tools/film/browser/dev_tools.hpp"
 
@@ -26,9 +28,15 @@ class ScratchFolder {
   }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
+  // The browser's handlers of crashes, which are in no process group of it, may still be starting in the folder.
   ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
+    constexpr int most_attempts = 200;
+    std::error_code error;
+    for (int i = 0; i < most_attempts; ++i) {
+      std::filesystem::remove_all(path_, error);
+      if (!error) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
   }
   const std::string& path() const { return path_; }
 
@@ -62,6 +70,11 @@ std::vector<std::string> command_of(const std::filesystem::path& browser, const 
                                       "--disable-sync"};
   if (geteuid() == 0) command.emplace_back("--no-sandbox");  // chromium has no sandbox for root
   return command;
+}
+
+// All that the browser writes is in its profile, also if it is killed.
+std::vector<std::string> variables_of(const std::string& profile) {
+  return {"HOME=" + profile, "TMPDIR=" + profile, "XDG_CONFIG_HOME=" + profile, "XDG_CACHE_HOME=" + profile};
 }
 
 // Decodes base64 (RFC 4648). Throws std::runtime_error.
@@ -106,7 +119,7 @@ Json json_of(const FilmLook& look) {
 class FilmPage::Browser {
  public:
   Browser(const std::filesystem::path& program, const std::atomic<bool>& stop)
-      : process_(command_of(program, profile_.path()), {3, 4}, stop) {}
+      : process_(command_of(program, profile_.path()), {3, 4}, stop, variables_of(profile_.path())) {}
   ~Browser() { process_.close(std::chrono::seconds(2)); }
   DevTools& tools() { return tools_; }
 

@@ -251,11 +251,9 @@ INSTANTIATE_TEST_SUITE_P(
     Mistakes, MistypedCommand,
     ::testing::Values(
         Typed{{},
-              "expected a command; known: run, serve, host, teleop, exec, ctl, record, view, page, examples, check, "
-              "export, "
-              "models, samples, security, doctor, recordings, replay, diff, export-data, plot, recover, help, "
-              "completion, "
-              "man-page, bench. Try 'cohort --help'"},
+              "expected a command; known: run, serve, host, teleop, exec, ctl, record, view, page, film, examples, "
+              "check, export, models, samples, security, doctor, recordings, replay, diff, export-data, plot, recover, "
+              "help, completion, man-page, bench. Try 'cohort --help'"},
         Typed{{"rn", "x"}, "there is no command 'rn'; did you mean 'run'?"},
         Typed{{"run"}, "FILE is required. Try 'cohort run --help'"}, Typed{{"run", "x", "y"}, "unexpected 'y'"},
         Typed{{"run", "x", "--thread", "3"}, "there is no option '--thread'; did you mean '--threads'?"},
@@ -281,6 +279,15 @@ INSTANTIATE_TEST_SUITE_P(
         Typed{{"page"}, "FILE is required"}, Typed{{"page", "run.mcap"}, "--output is required"},
         Typed{{"page", "run.mcap", "-o", "run.html", "--fps", "0"}, "--fps: expected a number above 0"},
         Typed{{"page", "/nowhere/run.mcap", "-o", "run.html"}, "/nowhere/run.mcap"},
+        Typed{{"film", "run.mcap"}, "--output is required"},
+        Typed{{"film", "run.mcap", "-o", "run.png", "--size", "640"}, "--size 640: expected WIDTHxHEIGHT in pixels"},
+        Typed{{"film", "run.mcap", "-o", "run.png", "--size", "4096x4096"}, "at most 3840x2160 in all"},
+        Typed{{"film", "run.mcap", "-o", "run.png", "--fps", "0"}, "--fps: expected a whole number from 1 to 120"},
+        Typed{{"film", "run.mcap", "-o", "run.png", "--theme", "drak"},
+              "--theme: there is no 'drak'; did you mean 'dark'?"},
+        Typed{{"film", "run.mcap", "-o", "run.png", "--top", "--camera", "c.yaml"},
+              "'--camera' cannot be used with '--top'"},
+        Typed{{"film", "obstacle_avoidance", "-o", "run.png"}, "cohort run obstacle_avoidance --record run.mcap"},
         Typed{{"bench", "--scene", "crowd,crwd"}, "--scene: there is no 'crwd'; did you mean 'crowd'?"},
         Typed{{"bench", "--engines", "mujocko"}, "--engines: there is no 'mujocko'; did you mean 'mujoco'?"},
         Typed{{"bench", "--robots", "0"}, "--robots: expected a whole number from 1 to 100000, not '0'"},
@@ -298,7 +305,7 @@ TEST(Errors, ReportAViewThatWasNotBuilt) {
 }
 
 TEST(Help, ShowsAnExampleForEveryCommand) {
-  for (const char* command : {"", "run", "serve", "host", "check", "view", "page", "bench"}) {
+  for (const char* command : {"", "run", "serve", "host", "check", "view", "page", "film", "bench"}) {
     std::vector<std::string> arguments = {cohort_program(), command, "--help"};
     if (*command == '\0') arguments.erase(arguments.begin() + 1);
     const Ended help = run_to_end(arguments);

@@ -49,6 +49,7 @@ Subcommand add_left(CommandLine app, const InWhole& command) {
 
 Subcommand add_view(CommandLine app) { return add_left(std::move(app), in_whole::view); }
 Subcommand add_page(CommandLine app) { return add_left(std::move(app), in_whole::page); }
+Subcommand add_film(CommandLine app) { return add_left(std::move(app), in_whole::film); }
 Subcommand add_completion(CommandLine app) { return add_left(std::move(app), in_whole::completion); }
 Subcommand add_man_page(CommandLine app) { return add_left(std::move(app), in_whole::man_page); }
 Subcommand add_bench(CommandLine app) { return add_left(std::move(app), in_whole::bench); }

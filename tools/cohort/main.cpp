@@ -30,10 +30,10 @@ std::vector<Subcommand> add_commands(CommandLine app, LogFlags& flags) {
   std::vector<Subcommand> commands;
   for (const auto add : {add_run, add_serve, add_host}) commands.push_back(add(app, flags));
   for (const auto add : {
-           add_teleop,   add_exec,       add_ctl,        add_record,   add_view,        add_page,
-           add_examples, add_check,      add_export,     add_models,   add_samples,     add_security,
-           add_doctor,   add_recordings, add_replay,     add_diff,     add_export_data, add_plot,
-           add_recover,  add_help,       add_completion, add_man_page, add_bench,
+           add_teleop,   add_exec,     add_ctl,        add_record,     add_view,     add_page,
+           add_film,     add_examples, add_check,      add_export,     add_models,   add_samples,
+           add_security, add_doctor,   add_recordings, add_replay,     add_diff,     add_export_data,
+           add_plot,     add_recover,  add_help,       add_completion, add_man_page, add_bench,
        }) {
     commands.push_back(add(app));
     add_log_flags(commands.back().line, flags);

@@ -28,11 +28,6 @@ constexpr std::size_t longest_line = std::size_t{64} * 1024;
 
 int open_pidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
 
-void close_if_open(int& descriptor) {
-  if (descriptor >= 0) close(descriptor);
-  descriptor = -1;
-}
-
 // Returns the text of strsignal, which need not be thread-safe.
 std::string description_of(int signal_number) {
   if (const char* description = sigdescr_np(signal_number); description != nullptr) return description;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <string>
@@ -18,6 +19,12 @@ inline std::vector<char*> arguments_of(const std::vector<std::string>& command) 
 
 /// Returns the exit code for a status of `wait`: 128 plus the signal's number if a signal ended the process.
 inline int exit_code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
+
+/// Closes a descriptor that is not -1, and makes it -1.
+inline void close_if_open(int& descriptor) {
+  if (descriptor >= 0) ::close(descriptor);
+  descriptor = -1;
+}
 
 struct ProgramResult {
   int exit_code = 0;  ///< as exit_code_of

@@ -75,6 +75,10 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
       if (command.get_require_subcommand_min() > 0 && command.get_subcommands().empty()) message = unexpected(app);
       break;
     case CLI::ExitCodes::ArgumentMismatch: message = message.substr(0, message.find(':')) + " needs a value"; break;
+    case CLI::ExitCodes::ExcludesError:
+      if (const std::size_t verb = message.find(" excludes "); verb != std::string::npos)
+        message = fmt::format("'{}' cannot be used with '{}'", message.substr(0, verb), message.substr(verb + 10));
+      break;
     default: message += origin(command, message);
   }
   if (!message.ends_with('?')) message += '.';

@@ -28,6 +28,7 @@ struct InWhole {
 namespace in_whole {
 inline constexpr InWhole view = {"view", "Show a recording or a running server in a browser"};
 inline constexpr InWhole page = {"page", "Write a recording as one HTML file that plays in any browser"};
+inline constexpr InWhole film = {"film", "Make a film or pictures of a recording"};
 inline constexpr InWhole completion = {"completion", "Print a shell's completion script"};
 inline constexpr InWhole man_page = {"man-page", "Print the manual page, which contains the help of all commands"};
 inline constexpr InWhole bench = {
@@ -45,6 +46,7 @@ Subcommand add_ctl(CommandLine app);
 Subcommand add_record(CommandLine app);
 Subcommand add_view(CommandLine app);
 Subcommand add_page(CommandLine app);
+Subcommand add_film(CommandLine app);
 Subcommand add_examples(CommandLine app);
 Subcommand add_check(CommandLine app);
 Subcommand add_export(CommandLine app);

@@ -34,6 +34,8 @@ const longestWait = 4000;
 
 /** The source of what the page shows. */
 export interface Connection {
+  /** The time of the last message of each topic of a server [ns]. */
+  readonly received: ReadonlyMap<Topic, bigint>;
   /** Passes messages of a topic to its handler from now on, or no longer; also after the connection was lost. */
   want(topic: Topic, isWanted?: boolean): void;
   ask(request: ViewRequest): Promise<Answer>;
@@ -49,6 +51,7 @@ export function connect(url: string, handlers: Handlers, changed: (isConnected: 
 
 /** A client of the server that the page came from; connects again when the connection is lost. */
 class ServerConnection implements Connection {
+  readonly received = new Map<Topic, bigint>();
   private client: FoxgloveClient | undefined;
   private channels = new Map<string, Channel>();
   private subscribed = new Map<number, Subscribed>();
@@ -111,7 +114,7 @@ class ServerConnection implements Connection {
     client.on("advertiseServices", (services) => {
       this.service = services.find((each) => each.name === "/cohort/control");
     });
-    client.on("message", ({ subscriptionId, data }) => this.take(subscriptionId, data));
+    client.on("message", ({ subscriptionId, timestamp, data }) => this.take(subscriptionId, timestamp, data));
     client.on("serviceCallResponse", ({ callId, data }) => {
       this.answer(callId, JSON.parse(new TextDecoder().decode(data)) as Answer);
     });
@@ -139,11 +142,12 @@ class ServerConnection implements Connection {
     this.subscribed.set(this.client.subscribe(channel.id), { topic, reader });
   }
 
-  private take(subscription: number, data: ArrayBufferView): void {
+  private take(subscription: number, time: bigint, data: ArrayBufferView): void {
     const found = this.subscribed.get(subscription);
     if (!found) return;
     const handler = this.handlers[found.topic] as ((message: unknown, bytes: number) => void) | undefined;
     handler?.(found.reader.readMessage(data), data.byteLength);
+    this.received.set(found.topic, time);
   }
 
   private answer(callId: number, answer: Answer): void {

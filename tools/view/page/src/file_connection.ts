@@ -11,6 +11,7 @@ const smoothing = 0.05;
 
 /** Plays the recording that the document contains, with the requests of a recording in a view (RecordingSource). */
 export class FileConnection implements Connection {
+  readonly received: ReadonlyMap<Topic, bigint> = new Map();
   private readonly wanted = new Set<Topic>();
   private readonly readers = new Map<string, MessageReader>();
   private frames: RecordedFrames | undefined;

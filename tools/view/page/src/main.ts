@@ -6,6 +6,7 @@ import { ConsolePanel } from "./console";
 import { addConsoleCommands, preferredTheme, showPressed } from "./console_commands";
 import { Driving } from "./driving";
 import { element } from "./element";
+import { FilmMode } from "./film_mode";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 import { Objects } from "./objects";
 import { Panels } from "./panels";
@@ -105,6 +106,7 @@ for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/coho
 addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, plots, commands, canvas, panels });
 const driving = new Driving(viewer, connection, commands, consolePanel, canvas);
 const objects = new Objects(viewer, connection, consolePanel, canvas, panels);
+const film = new FilmMode(viewer, connection, canvas);
 for (const command of [...driving.consoleCommands(), ...objects.consoleCommands()]) commands.add(command);
 
 function showStatus(status: ViewStatus): void {
@@ -226,7 +228,7 @@ function draw(now: number): void {
   viewer.draw(now);
   requestAnimationFrame(draw);
 }
-requestAnimationFrame(draw);
+if (!film.isOn) requestAnimationFrame(draw);
 setInterval(() => {
   element("seen").textContent = viewer.describe();
   element("rate").textContent = String(viewer.framesDrawn);
@@ -237,5 +239,5 @@ setInterval(() => {
 
 /** For tests and for the browser's console. */
 Object.assign(window, {
-  cohort: { viewer, commands, connection, driving, objects, plots, run: (line: string) => commands.run(line) },
+  cohort: { viewer, commands, connection, driving, objects, plots, film, run: (line: string) => commands.run(line) },
 });

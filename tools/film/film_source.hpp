@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/recording/replay.hpp"
+#include "server/viewing/scene_maker.hpp"
+#include "tools/view/messages/scene_publisher.hpp"
+#include "tools/view/source.hpp"
+
+namespace cohort::film {
+
+/// A message that was published: its topic, and its time, by which the page recognizes it.
+struct Stamp {
+  view::Topic topic;
+  std::int64_t time;
+};
+
+/// Shows the moments of a recording, forwards. Between two ticks, poses are interpolated. All but `ask` and `watch` are
+/// for one thread.
+class FilmSource final : public view::Source {
+ public:
+  struct Options {
+    std::string follow{};  ///< team, robot or object to follow; empty: none
+    bool shows_contacts = false;
+    unsigned threads = 1;
+  };
+  /// Both must outlive this.
+  FilmSource(const recording::Recording& recording, view::Topics& topics, Options options);
+
+  /// Goes to the last tick boundary that is not after `log_time`, or to the first one. Throws McapError, and
+  /// std::invalid_argument if there is nothing to follow.
+  void go_to(std::chrono::nanoseconds log_time);
+  /// Returns the scene of the moment. The page must have received it before `show`.
+  Stamp scene() const { return {view::Topic::scene, scene_stamp_}; }
+  /// Publishes the moment.
+  std::vector<Stamp> show();
+
+  /// The place of what is followed: the centre of the objects, and the largest distance from it [m].
+  struct Followed {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    double radius = 0.0;
+  };
+  /// Returns nothing if all of it is absent, or if nothing is followed.
+  const std::optional<Followed>& followed() const { return shown_.followed; }
+  std::chrono::nanoseconds time() const { return time_; }
+
+  void ask(const view::ViewRequest& request, std::function<void(const view::Answer&)> answer) override;
+  void watch(const std::vector<std::uint32_t>&) override {}
+
+ private:
+  using Nanoseconds = std::chrono::nanoseconds;
+
+  // The data of a tick boundary that are shown.
+  struct Moment {
+    Nanoseconds log_time{0};
+    messages::SceneFrame frame;
+    std::optional<Followed> followed;
+  };
+  void begin(Nanoseconds log_time);
+  void prepare_world();
+  void keep();
+  Moment moment() const;
+  void interpolate();
+  bool advance();
+  std::optional<Followed> find_followed() const;
+  std::int64_t next_stamp() { return ++stamps_; }
+
+  const Options options_;
+  const recording::Recording& recording_;
+  recording::Replay replay_;
+  view::ScenePublisher publisher_;
+  std::int64_t stamps_ = 0;
+  std::int64_t scene_stamp_ = 0;
+  std::uint32_t revision_ = 0;
+
+  // The replay is at the first boundary after `time_`, or at the end.
+  Nanoseconds time_{0};
+  Nanoseconds log_time_{0};  // log time of the replay
+  bool has_begun_ = false;
+  bool is_at_end_ = false;
+  bool is_new_world_ = false;
+  std::uint32_t run_ = 0;
+  std::optional<viewing::SceneMaker> maker_;
+  std::vector<std::uint32_t> followed_objects_;
+  Moment kept_;                 // the last boundary that is not after `time_`
+  std::optional<Moment> next_;  // the boundary of the replay, once it was needed
+  messages::SceneSignals signals_;
+  messages::SceneContacts contacts_;
+  Moment shown_;  // between the two
+};
+
+/// Returns the frame between two of the same scene; `share`: 0 at the first, 1 at the second. Everything but poses is
+/// of the first.
+messages::SceneFrame interpolated(const messages::SceneFrame& first, const messages::SceneFrame& second, double share);
+
+}  // namespace cohort::film

@@ -22,7 +22,7 @@ export interface LegendEntry {
   kind: LegendKind;
 }
 
-/** What is drawn beside bodies. */
+/** Things that are drawn in addition to bodies. */
 export interface ShownOverlays {
   rays: boolean;
   contacts: boolean;

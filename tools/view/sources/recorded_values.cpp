@@ -13,7 +13,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds longest_part{400};  // wall time that is spent on samples before an answer
 constexpr std::uint32_t ticks_between_looks = 16;
-constexpr std::size_t points_of_sweep = 4000;  // of each value: as many as the page asks for
+constexpr std::size_t points_of_sweep = 4000;  // for each value: as many as the page asks for
 constexpr std::size_t most_swept = 600;        // values; of more, only those that are asked for
 
 std::string topic_of_observations(const std::string& robot) { return "/" + robot + recording::observation_topic_end; }

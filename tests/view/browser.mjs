@@ -328,7 +328,9 @@ const fileOf = async (page, button) => {
 
 /** Puts the mouse on a time of the first plot. */
 async function hoverAt(page, time, range) {
-  const over = await page.locator("#plots .u-over").first().boundingBox();
+  const first = page.locator("#plots .u-over").first();
+  await first.scrollIntoViewIfNeeded();
+  const over = await first.boundingBox();
   const x = over.x + ((time - range[0]) / (range[1] - range[0])) * over.width;
   await page.mouse.move(x - 3, over.y + 0.5 * over.height);
   await page.mouse.move(x, over.y + 0.5 * over.height);

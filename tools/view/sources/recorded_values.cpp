@@ -249,6 +249,7 @@ Answer RecordedValues::replay(const HistoryRequest& request, const HistoryThread
 }
 
 bool RecordedValues::is_as_coarse_as_sweep(const HistoryRequest& request) const {
+  if (sweep_ != nullptr && request.from == sweep_->next && request.to == end_) return true;  // continues it
   constexpr double tolerance = 0.9;
   const auto interval = [](Nanoseconds from, Nanoseconds to, std::size_t points) {
     return static_cast<double>((to - from).count()) / static_cast<double>(points);

@@ -198,15 +198,15 @@ bool ConnectedProgram::has_ended() const {
          (waitid(P_PID, static_cast<id_t>(pid_), &end, WEXITED | WNOHANG | WNOWAIT) == 0 && end.si_pid == pid_);
 }
 
-// Kills what is left of the process group before its id can be reused, and waits until all of it has ended, so that
-// files of the group can be deleted.
+// Kills what is left of the process group before its id can be reused. Waits until all of it has ended, so that its
+// files can be deleted.
 void ConnectedProgram::reap() {
   if (pid_ <= 0) return;
   kill(-pid_, SIGKILL);
   int status = 0;
   while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
   }
-  const Clock::time_point deadline = Clock::now() + std::chrono::seconds(2);  // nobody may wait for its members
+  const Clock::time_point deadline = Clock::now() + std::chrono::seconds(2);  // members that no process waits for stay
   while (kill(-pid_, 0) == 0 && Clock::now() < deadline) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   pid_ = -1;
   exit_code_ = exit_code_of(status);

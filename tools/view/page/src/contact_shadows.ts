@@ -7,14 +7,14 @@ import { matrixOf } from "./shapes";
 const spread = 0.5; // how far a shadow goes beyond a body, as a ratio to the body's smaller half
 const mostSpread = 0.12; // [m]
 const lift = 0.002; // [m] above the ground
-const lowPart = 0.35; // of a body's height, where it may touch the ground
+const lowPart = 0.35; // share of a body's height that may touch the ground
 
 // A box of the body, flattened onto the ground. It fades with the height of the box above the ground.
 const vertexShader = `
 ${placeDeclarations}
 attribute vec2 inBox;
-attribute vec3 boxSize; // half lengths, and how far the shadow goes beyond them
-attribute vec3 boxCentre; // of its lower face
+attribute vec3 boxSize; // half lengths, and the width of the shadow beyond them
+attribute vec3 boxCentre; // the middle of its lower face
 uniform float ground;
 varying vec2 at;
 varying vec3 size;

@@ -122,7 +122,7 @@ export class Instances {
     }
   }
 
-  /** Returns the attributes that place a link, for whatever else is drawn there. */
+  /** Returns the attributes that place a link, for other things that are drawn there. */
   placesOf(model: number, link: number): InstancedBufferGeometry | undefined {
     return this.drawn.find((each) => each.model === model && each.link === link)?.geometry;
   }

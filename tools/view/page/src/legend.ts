@@ -22,7 +22,7 @@ export interface LegendEntry {
   kind: LegendKind;
 }
 
-/** What is drawn beside bodies. */
+/** The overlays that are shown. */
 export interface ShownOverlays {
   rays: boolean;
   contacts: boolean;

@@ -22,7 +22,7 @@ export class Cameras {
   mode: CameraMode = "orbit";
   /** Keys that are held and fly the camera: forward, back, left, right, up, down. */
   readonly held = new Set<string>();
-  /** Returns whether the camera must not move by itself, such as while the user aims. */
+  /** Returns true while the camera must stand still, such as while the user aims. */
   isHeld: () => boolean = () => false;
   private followed: number | undefined;
   private readonly at = new Vector3();
@@ -54,7 +54,7 @@ export class Cameras {
     canvas.addEventListener("wheel", () => this.keeper.end(), { passive: true });
   }
 
-  /** True while everything is kept in the picture. */
+  /** Returns true while the camera keeps everything in the picture. */
   get keepsAll(): boolean {
     return this.keeper.isOn;
   }
@@ -168,7 +168,7 @@ export class Cameras {
   }
 }
 
-// Flat scenes are seen from higher up, tall ones with the horizon behind them.
+// Looks at flat worlds from higher up, and at tall ones with the horizon behind them.
 function firstDirection(boxes: readonly Box3[]): Vector3 {
   const { x, y, z } = unionOf(boxes).getSize(new Vector3());
   const flatness = Math.min(1, Math.hypot(x, y) / Math.max(1e-6, 12 * z));

@@ -13,8 +13,8 @@ const lowPart = 0.35; // share of a body's height that may touch the ground
 const vertexShader = `
 ${placeDeclarations}
 attribute vec2 inBox;
-attribute vec3 boxSize; // half lengths, and how far the shadow goes beyond them
-attribute vec3 boxCentre; // middle of its lower face
+attribute vec3 boxSize; // half lengths, and the width of the shadow beyond them
+attribute vec3 boxCentre; // the middle of its lower face
 uniform float ground;
 varying vec2 at;
 varying vec3 size;

@@ -70,9 +70,9 @@ function middleAt(boxes: readonly Box3[], axis: Vector3, ahead: Vector3, tangent
  * Returns the nearest view along `direction` that shows all boxes in the middle of the picture. `margin` is the share of
  * each half of the picture that stays free, from 0 to less than 1.
  *
- * Coordinates (x, y, z) are to the right, upwards and ahead. A camera at (a, b, c) sees a point if |x - a| and |y - b| are
- * at most (z - c) times the tangent of half the angle of view. So each edge of the picture is a plane with a fixed
- * normal. The box that reaches farthest beyond it places the plane, and opposite planes meet at the camera.
+ * Let x, y and z be coordinates to the right, upwards and ahead. A camera at (a, b, c) sees a point if |x - a| and
+ * |y - b| are at most (z - c) times the tangent of half the angle of view. So each edge of the picture is a plane with
+ * a fixed normal. The box that reaches farthest beyond it places the plane, and opposite planes meet at the camera.
  */
 export function fit(boxes: readonly Box3[], direction: Vector3, lens: Lens, margin: number): View {
   const { right, up, ahead } = axesAlong(direction);
@@ -121,7 +121,7 @@ export function growBy(box: Box3, part: Box3, matrix: Matrix4): void {
   }
 }
 
-const marginOf = (count: number): number => (count <= 2 ? 0.35 : 0.08); // margin of a new view
+const marginOf = (count: number): number => (count <= 2 ? 0.35 : 0.08); // free in a new view
 const leastMargin = 0.03; // below, it is a new view
 const mostRoom = 1.6; // above this ratio of distances, too
 const easing = 0.35; // [s]

@@ -22,7 +22,7 @@ export interface LegendEntry {
   kind: LegendKind;
 }
 
-/** Things that are drawn in addition to bodies. */
+/** The overlays that are shown. */
 export interface ShownOverlays {
   rays: boolean;
   contacts: boolean;

@@ -3,7 +3,7 @@ export interface Level {
   /** Ratio to the pixels of the screen. */
   resolution: number;
   shadows: boolean;
-  /** True if surfaces reflect the sky. */
+  /** Surfaces reflect the sky. */
   reflections: boolean;
   /** Time between pictures of which the page draws coarser [ms]. */
   slow: number;

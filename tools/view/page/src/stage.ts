@@ -55,7 +55,7 @@ export class Stage {
   readonly renderer: WebGLRenderer;
   readonly scene = new ThreeScene();
   readonly camera = new PerspectiveCamera(45, 1, 0.01, 2000);
-  /** True if the picture is drawn by software, without a graphics card. */
+  /** A program draws, not a graphics card. */
   readonly isSoftware: boolean;
   readonly quality: Quality;
   /** Around everything that casts shadows. */

@@ -33,7 +33,7 @@ extern "C" void keep_error(png_structp png, png_const_charp message) {
 extern "C" void ignore_warning(png_structp, png_const_charp) {}
 extern "C" void take_bytes(png_structp png, png_bytep bytes, std::size_t count) {
   std::string_view& unread = static_cast<Image*>(png_get_io_ptr(png))->unread;
-  if (count > unread.size()) png_error(png, "the file ends too early");
+  if (count > unread.size()) png_error(png, "the file is truncated");
   std::memcpy(bytes, unread.data(), count);
   unread.remove_prefix(count);
 }

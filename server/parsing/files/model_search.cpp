@@ -79,7 +79,7 @@ fs::path ModelSearch::sdf_file_of(const fs::path& folder) const {
   if (outline.root.name != "model" || sdf == nullptr || sdf->text.empty())
     throw std::runtime_error(config.string() + " must contain <model> with <sdf version=\"1.9\">FILE</sdf>");
   const std::string file = best_file(outline.root);
-  if (file.empty()) throw std::runtime_error(config.string() + " does not name an SDF file of a supported version");
+  if (file.empty()) throw std::runtime_error(config.string() + " does not list an SDF file of a supported version");
   if (!input_.is_file(folder / file))
     throw std::runtime_error("there is no '" + (folder / file).string() + "', which " + config.string() + " names");
   return folder / file;

@@ -127,7 +127,7 @@ std::string References::flaw_of_joint(Referent to, std::size_t index) {
   if (joint.type == JointType::fixed) return "is fixed";
   if (joint.type == JointType::ball) return "is a ball joint, which has no single axis";
   if (to == Referent::moving_joint) return "";
-  if (wheels_.contains(index)) return "belongs to a wheel of a treel_drive, which moves it";
+  if (wheels_.contains(index)) return "is already driven by a treel_drive, as the joint of one of its wheels";
   return motorised_.insert(index).second ? "" : "already has a motor";
 }
 
@@ -148,8 +148,9 @@ void check(const ProximityRing& ring, const ExtensionValues& values, const SdfRe
   check_samples(ring.samples, ring.count, values, report);
   const bool takes_samples = ring.technique == ProximityTechnique::samples;
   if (takes_samples != values.has("samples"))
-    report.problem(values.where("samples"), takes_samples ? "the technique 'samples' needs a file <cohort:samples>"
-                                                          : "only the technique 'samples' uses a sample file");
+    report.problem(values.where("samples"), takes_samples
+                                                ? "the technique 'samples' requires a sample file, <cohort:samples>"
+                                                : "only the technique 'samples' uses a sample file");
 }
 
 void check(const LightSensors& sensors, const ExtensionValues& values, const SdfReport& report) {

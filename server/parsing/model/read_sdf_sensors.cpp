@@ -117,7 +117,7 @@ void SensorElement::add_noise(const sdf::ElementPtr& noise, const std::string& q
     type = trimmed(noise->GetAttribute("type")->GetAsString());
   if (type == "none") return;
   if (type != "gaussian" && type != "gaussian_quantized") {
-    report().problem(noise, "expected noise of the type none, gaussian or gaussian_quantized, not '" + type + "'");
+    report().problem(noise, "expected the noise type none, gaussian or gaussian_quantized, not '" + type + "'");
     return;
   }
   Noise result;
@@ -366,7 +366,7 @@ std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, con
     std::string plain = sensor.name();
     std::ranges::replace(plain, '/', '_');
     if (plain != sensor.name() &&
-        reading.report.flaw(sensor.element(), "expected a name without '/' in it", "it is renamed to '" + plain + "'"))
+        reading.report.flaw(sensor.element(), "expected a name without '/'", "it is renamed to '" + plain + "'"))
       sensor.rename(plain);
     if (!names.insert(sensor.name()).second) {
       std::string other = place->owner + "_" + sensor.name();

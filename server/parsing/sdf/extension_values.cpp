@@ -163,7 +163,7 @@ bool ExtensionValues::read_children(const Extension& extension, const SdfReport&
 
 bool ExtensionValues::read_value(const sdf::ElementPtr& element, const ExtensionKey& key, const SdfReport& report) {
   if (const sdf::ElementPtr stray = element->GetFirstElement()) {
-    report.problem(stray, "unexpected element; <" + element->GetName() + "> holds " + expected(key));
+    report.problem(stray, "unexpected element; <" + element->GetName() + "> must contain " + expected(key));
     return false;
   }
   const std::string text = value_text(element);

@@ -54,7 +54,7 @@ TEST_F(Devices, RejectInvalidTechniques) {
   };
   expect_flaw("<cohort:technique>five_ray</cohort:technique>", "/cohort:technique", "did you mean 'five_rays'?");
   expect_flaw("<cohort:cone>3.2</cohort:cone>", "/cohort:cone", "less than half a turn");
-  expect_flaw("<cohort:technique>samples</cohort:technique>", "", "needs a file");
+  expect_flaw("<cohort:technique>samples</cohort:technique>", "", "requires a sample file");
   expect_flaw("<cohort:samples>s.csv</cohort:samples>", "/cohort:samples", "only the technique 'samples'");
 }
 

@@ -129,7 +129,7 @@ description::KeptFiles inputs_of(const McapReader& reader, const std::filesystem
   if (std::to_string(inputs.files.size()) != entries["files"])
     throw McapError(
         file, 0,
-        "it has " + std::to_string(inputs.files.size()) + " input files of its run, expected " + entries["files"]);
+        "it contains " + std::to_string(inputs.files.size()) + " input files of its run, expected " + entries["files"]);
   return inputs;
 }
 

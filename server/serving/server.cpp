@@ -265,8 +265,8 @@ void Server::handle_inbox() {
   }
   for (const std::uint32_t major : inbox.foreign_versions)
     run_->monitor.add_event("version",
-                            "a client speaks version " + std::to_string(major) +
-                                " of the protocol, and this server version 1: they cannot connect. Install the "
+                            "a client uses version " + std::to_string(major) +
+                                " of the protocol, but this server uses version 1, so they cannot connect. Install the "
                                 "same major version of Cohort on both sides");
   clients_.note_rejections(inbox.rejected);
   clients_.take_states(inbox.states);

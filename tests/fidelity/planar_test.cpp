@@ -302,7 +302,7 @@ TEST(Planar, RejectsUnsupportedModelsByName) {
 
   description::World slope = planar.world();
   slope.instances[0].X_WM = turned(0, 0, 0, Vector3d::UnitX(), 0.1);
-  EXPECT_EQ(refusal_of(slope), "model 'floor': planar physics supports only level and upright planes");
+  EXPECT_EQ(refusal_of(slope), "model 'floor': planar physics supports only horizontal and vertical planes");
 
   description::World moon = planar.world();
   moon.gravity = {0.0, 1.0, -1.6};
@@ -321,7 +321,7 @@ TEST(Planar, RejectsUnsupportedModelsByName) {
   description::World hole = planar.world();
   hole.instances.clear();
   place(hole, tracked_robot(), "robot", at(0, 0, 0));
-  EXPECT_EQ(refusal_of(hole), "model 'tracked_robot': planar physics requires ground under it");
+  EXPECT_EQ(refusal_of(hole), "model 'tracked_robot': planar physics requires ground under the model");
 }
 
 TEST(Planar, ABodyAddedWithoutGroundIsRejectedAndTheWorldContinues) {

@@ -85,7 +85,7 @@ void Control::begin(ControlledRun run) {
 }
 
 void Control::end(RunResult::End how) {
-  const std::string at = "the run has ended at tick " + std::to_string(run_->simulation.tick());
+  const std::string at = "the run ended at tick " + std::to_string(run_->simulation.tick());
   answer_steps(playback_.set(PlaybackState::playing), ResultCode::operation_failed, at);
   for (const Request& request : std::exchange(ledger_.waiting(), {}))
     if (!is_query(request)) answer(request, ResultCode::incorrect_state, at);  // queries are repeated by their clients

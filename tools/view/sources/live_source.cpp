@@ -106,7 +106,8 @@ void LiveSource::show_what_arrives() {
       show(arrived);
     } catch (const messages::CdrError& error) {
       ViewStatus status = status_without_run();
-      status.note = std::string("the server's data cannot be read; its version may differ: ") + error.what();
+      status.note =
+          std::string("the server's data cannot be read; the server may have another version:  ") + error.what();
       show_status(status);
     }
   }

@@ -63,7 +63,7 @@ std::string complaint_about(const One& operation) {
   std::string wrong;
   wire::for_each_name(operation, [&](const std::string& name) {
     if (name.size() > longest_name)
-      wrong = "a name of " + std::to_string(name.size()) + " bytes is longer than " + std::to_string(longest_name);
+      wrong = "a name has " + std::to_string(name.size()) + " bytes; the maximum is " + std::to_string(longest_name);
   });
   if constexpr (requires { what_is_wrong_with(operation); })
     if (wrong.empty()) wrong = what_is_wrong_with(operation);

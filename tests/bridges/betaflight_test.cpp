@@ -325,7 +325,7 @@ TEST_F(Betaflight, ItsEndInTheMiddleOfARunIsNamed) {
   ASSERT_TRUE(bridge_->wait_for_output("flies the robot")) << bridge_->output() << server_->output();
   for (const pid_t child : children_of(bridge_->pid())) ::kill(child, SIGKILL);
   EXPECT_EQ(bridge_->wait_for_exit(), 1);
-  EXPECT_NE(bridge_->output().find("Betaflight was ended by the signal Killed"), std::string::npos)
+  EXPECT_NE(bridge_->output().find("Betaflight was terminated by the signal Killed"), std::string::npos)
       << bridge_->output();
 }
 

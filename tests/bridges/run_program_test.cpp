@@ -203,7 +203,8 @@ TEST(RunByBridge, TheProgramsClockGoesOnThroughAReset) {
 TEST(RunByBridge, AProgramThatNeverWaitsIsNamedAndEndsWithTheBridge) {
   RunByBridge run({.command = course("spin")});
   EXPECT_TRUE(run.bridge().wait_for_output("spin > ")) << run.bridge().output();
-  EXPECT_NE(run.bridge().output().find("has not waited for anything for 5 s, so time stands still"), std::string::npos)
+  EXPECT_NE(run.bridge().output().find("has not waited for anything for 5 s, so simulated time does not advance"),
+            std::string::npos)
       << run.bridge().output();
   run.bridge().signal(SIGTERM);
   EXPECT_EQ(run.bridge().wait_for_exit(), 130) << run.bridge().output();

@@ -64,7 +64,7 @@ TEST(Doctor, PrintsFindingsAsText) {
   EXPECT_TRUE(has(ended.out,
                   "problem  interface  no active interface has the address 10.250.250.1; active interfaces: 127.0.0.1"))
       << ended.out;
-  EXPECT_TRUE(has(ended.out, "-> Give --network one of these addresses")) << ended.out;
+  EXPECT_TRUE(has(ended.out, "-> Use one of these addresses for --network")) << ended.out;
 }
 
 TEST(Doctor, ReportsAServerItsRobotsAndItsTick) {

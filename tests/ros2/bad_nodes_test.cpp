@@ -47,7 +47,8 @@ TEST(Ros2BadNodes, ARobotStopsOrKeepsItsCommandWhenItsNodeIsKilled) {
     ASSERT_TRUE(run.says("/commander commands it"));
     ASSERT_TRUE(eventually([&] { return last_speed(watcher->output()) > 0.05; })) << watcher->output();
     node->signal(SIGKILL);
-    EXPECT_TRUE(run.says(stands ? ": the robot stands until one comes" : ": the robot keeps its last command until"));
+    EXPECT_TRUE(
+        run.says(stands ? ": the robot stands until a command arrives" : ": the robot keeps its last command until"));
     EXPECT_TRUE(run.says("robot turtlebot3: no /cmd_vel of /commander for tick "));
     const std::size_t heard = watcher->output().size();
     const auto is_heard_again = [&] { return watcher->output().size() > heard + 4000; };
@@ -78,9 +79,9 @@ TEST(Ros2BadNodes, TheRunNamesTheNodeThatItWaitsFor) {
   EXPECT_TRUE(run.says(" for /cmd_vel of /commander\n"));
   node->signal(SIGCONT);
   node->signal(SIGINT);
-  EXPECT_TRUE(run.says("robot turtlebot3: /commander has gone\n"));
+  EXPECT_TRUE(run.says("robot turtlebot3: /commander no longer commands it\n"));
   node = run.start_node(kilted(), "commander.py", good_commander);
-  EXPECT_TRUE(run.says("/commander has gone\nrobot turtlebot3: /commander commands it\n"));
+  EXPECT_TRUE(run.says("/commander no longer commands it\nrobot turtlebot3: /commander commands it\n"));
 }
 
 TEST(Ros2BadNodes, ANodeReplacesAKilledOne) {

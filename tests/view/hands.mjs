@@ -236,7 +236,7 @@ async function drivesAlone(page) {
   const beating = setInterval(() => void guest.ask({ operation: "drive", name: robot, numbers: slowly }), 100);
   await isTold(0.05);
   clearInterval(beating);
-  assert.deepEqual(await guest.ask({ operation: "release", name: robot }), { done: true, text: "lets people/keys go" });
+  assert.deepEqual(await guest.ask({ operation: "release", name: robot }), { done: true, text: "released people/keys" });
   guest.close();
 }
 

@@ -33,8 +33,7 @@ void Autopilot::start(const DrivenRobot& robot) {
   is_free_ = !robot.policy.waits;
   if (options_.is_hardware && !is_free_)
     throw std::runtime_error(
-        "hardware runs in real time and cannot follow a robot of a team in lockstep: give the team "
-        "'mode: free'");
+        "hardware runs in real time and cannot wait for a simulation in lockstep: set 'mode: free' for the team");
   period_ = static_cast<std::uint64_t>(std::llround(robot.start.seconds_per_step() * second));
   motion_.start(robot.start);
   magnetic_field_ = robot.start.observation("magnetometer/0/magnetic_field");

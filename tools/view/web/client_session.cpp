@@ -158,7 +158,7 @@ void ClientSession::respond(const protocol::ServiceCall& call, const Answer& ans
   Json json{{"done", answer.is_done}, {"text", answer.text}};
   if (answer.history != nullptr) {
     if (histories_ == most_histories)
-      return respond(call, {false, "earlier histories have not been read: ask for one after the other"});
+      return respond(call, {false, "earlier histories have not been read: request one at a time"});
     json["series"] = json_of(*answer.history);
     json["reduced"] = answer.history->is_reduced;
     if (answer.history->next) json["next"] = *answer.history->next;

@@ -78,7 +78,7 @@ void RosRobot::tell_commanders() {
     return;
   const std::string now = commanders();
   if (now == told_commanders_) return;
-  options_.tell(now.empty() ? told_commanders_ + " has gone" : now + " commands it");
+  options_.tell(now.empty() ? told_commanders_ + " no longer commands it" : now + " commands it");
   told_commanders_ = now;
 }
 
@@ -136,7 +136,7 @@ void RosRobot::go_on_unanswered(std::uint64_t tick) {
   if (std::exchange(is_silent_, true)) return;
   const std::string who = commanders();
   options_.tell("no " + command_topic() + (who.empty() ? "" : " of " + who) + " for tick " + std::to_string(tick) +
-                ": the robot " + (stands ? "stands" : "keeps its last command") + " until one comes");
+                ": the robot " + (stands ? "stands" : "keeps its last command") + " until a command arrives");
 }
 
 void RosRobot::answer(Command& command) {

@@ -254,8 +254,8 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   std::uint64_t version = 0;
   reader.read(version);
   if (version != hash_name(COHORT_VERSION)) throw SnapshotError("the snapshot is not from version " COHORT_VERSION);
-  reader.expect_count(seed_, "as seed");
-  reader.expect_count(static_cast<std::size_t>(experiment_->world.step.count()), "ns as time step");
+  reader.expect_count(seed_, "as its seed");
+  reader.expect_count(static_cast<std::size_t>(experiment_->world.step.count()), "ns as its time step");
   reader.read(tick_);
   if (tick_ > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max() / experiment_->world.step.count()))
     throw SnapshotError("snapshot: the tick is out of range");

@@ -101,7 +101,7 @@ TEST(Links, OverTcpTakeOneFirmwareAtATimeAndTellWhoComesAndWhyItLeaves) {
   second.write("three\n");
   EXPECT_EQ(bridge.receive(), "three\n");
   EXPECT_NE(bridge.told.find("the firmware has connected from 127.0.0.1:"), std::string::npos) << bridge.told;
-  EXPECT_NE(bridge.told.find("has left inside a message, after 4 bytes"), std::string::npos) << bridge.told;
+  EXPECT_NE(bridge.told.find("has disconnected inside a message, after 4 bytes"), std::string::npos) << bridge.told;
 }
 
 TEST(Links, OverUdpAnswerWhereTheLastDatagramCameFrom) {

@@ -105,7 +105,7 @@ std::string text_of(std::chrono::seconds time) { return std::to_string(time.coun
 std::string why_ended(int status, const ChildLimits& limits) {
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
-    if (number == SIGXCPU) return "took longer than " + text_of(limits.processor_time) + " of processor time";
+    if (number == SIGXCPU) return "used more than " + text_of(limits.processor_time) + " of processor time";
     if (number == SIGALRM) return "took longer than " + text_of(limits.wall_time);
     return "crashed (signal " + std::to_string(number) + ")";
   }

@@ -291,7 +291,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{model(cart() + drive_with(key("left_wheel", "to_bb"))), 5, in_drive + "/cohort:left_wheel",
              "no joint 'to_bb'"},
         Flaw{model(cart() + drive_with(key("left_wheel", "to_e"))), 5, in_drive + "/cohort:left_wheel",
-             "is not between 'a' and a wheel"},
+             "does not connect 'a' to a wheel"},
         Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "prismatic") +
                    drive_with(key("right_wheel", "j"))),
              4, in_drive + "/cohort:right_wheel", "is not revolute"},

@@ -239,7 +239,7 @@ TEST_F(DriversTest, SelectorsAndTooManyRobotsAreRefused) {
   for (const char* name : {"", "all", "3", "0..7", "team/*"})
     EXPECT_NE(drive(1, {}, name).text.find("the full name of one robot"), std::string::npos) << name;
   for (std::size_t robot = 0; robot < Drivers::most; ++robot) ask(1, {}, "team/cart_" + std::to_string(robot));
-  EXPECT_EQ(drive(1, {}, "team/one_more").text, "one view drives at most 8 robots");
+  EXPECT_EQ(drive(1, {}, "team/one_more").text, "one view can drive at most 8 robots");
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ class TcpLink final : public Link {
   std::size_t read(std::span<std::uint8_t> bytes) override {
     const ssize_t count = ::recv(connection_.number(), bytes.data(), bytes.size(), 0);
     if (count > 0) return static_cast<std::size_t>(count);
-    if (count == 0) throw LinkLost("has left");
+    if (count == 0) throw LinkLost("has disconnected");
     if (is_for_later(errno)) return 0;
     throw LinkLost("is lost: " + text_of_error(errno));
   }

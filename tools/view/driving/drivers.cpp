@@ -32,7 +32,7 @@ void Drivers::drive(const ViewRequest& request, std::function<void(const Answer&
       else if (!is_name(request.name))
         told = {false, "'drive' requires the full name of one robot, such as explorers/sbot_7"};
       else if (driven_.size() + leaving_.size() >= most)
-        told = {false, "one view drives at most " + std::to_string(most) + " robots"};
+        told = {false, "one view can drive at most " + std::to_string(most) + " robots"};
       else
         return claim(request, std::move(answer));
     } else if (found->second.driver->has_ended()) {

@@ -100,7 +100,7 @@ void Checker::check_top(const XmlNode& node) {
   } else if (node.name == "link" || node.name == "joint") {
     const std::string* const name = node.attribute("name");
     if (name == nullptr || name->empty() || name->find("::") != std::string::npos)
-      problem(node, path, "expected an attribute name=\"NAME\", without '::' in it");
+      problem(node, path, "expected an attribute name=\"NAME\", with a NAME without '::'");
     else if (!(node.name == "link" ? links_ : joints_).emplace(*name, &node).second)
       problem(node, path, "another " + node.name + " has the name '" + *name + "'");
     node.name == "link" ? check_link(node, path) : check_joint(node, path);

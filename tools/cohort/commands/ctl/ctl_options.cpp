@@ -205,7 +205,7 @@ ControlReply ask_of_object(Control& control, const std::string& name, Ask ask) {
     if (names.empty()) throw;
     if (names.size() > 1)
       throw std::invalid_argument("several objects are called '" + name + "', such as '" + names[0] + "' and '" +
-                                  names[1] + "': give the name with its scope");
+                                  names[1] + "': use the name with its scope");
     return ask(names.front());
   }
 }

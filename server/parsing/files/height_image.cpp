@@ -73,7 +73,7 @@ Image read_png(InputFiles& input, const std::filesystem::path& path) {
 
   if (!read_header(png, info, image)) fail(image.error + "; expected a PNG image");
   if (image.colours != PNG_COLOR_TYPE_GRAY || image.bits < 8)
-    fail("expected a grey PNG image of 8 or 16 bits, without transparency");
+    fail("expected a greyscale PNG image with 8 or 16 bits per pixel and without transparency");
   if (image.width < 2 || image.height < 2) fail("expected at least 2 by 2 pixels");
   const std::size_t row_bytes = png_get_rowbytes(png, info);
   image.bytes.resize(image.height * row_bytes);

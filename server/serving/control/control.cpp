@@ -242,8 +242,7 @@ void Control::answer_steps(const std::vector<Playback::Steps>& steps, ResultCode
   for (const Playback::Steps& each : steps) {
     const Request request{.client = each.client, .number = each.number, .operation = wire::StepSimulation{}};
     const std::uint64_t tick = run_->simulation.tick();
-    answer(request, result,
-           each.until > tick ? text + ", " + ticks_text(each.until - tick) + " before the last step" : text);
+    answer(request, result, each.until > tick ? text + ", with " + ticks_text(each.until - tick) + " left" : text);
   }
 }
 

@@ -272,8 +272,8 @@ INSTANTIATE_TEST_SUITE_P(
              "expected a size > 0"},
         Flaw{still(height_image("none.png")), 3, in_heightmap, "there is no such file"},
         Flaw{still(height_image("not.png")), 3, in_heightmap, "expected a PNG image"},
-        Flaw{still(height_image("colours.png")), 3, in_heightmap, "expected a grey PNG image of 8 or 16 bits"},
-        Flaw{still(height_image("glass.png")), 3, in_heightmap, "expected a grey PNG image of 8 or 16 bits"},
+        Flaw{still(height_image("colours.png")), 3, in_heightmap, "expected a greyscale PNG image with 8 or 16 bits"},
+        Flaw{still(height_image("glass.png")), 3, in_heightmap, "expected a greyscale PNG image with 8 or 16 bits"},
         Flaw{still(height_image("dot.png")), 3, in_heightmap, "at least 2 by 2 pixels"}));
 
 // ---- Convex hulls ----

@@ -277,7 +277,7 @@ void RosBridge::tell_awaited(const RosRobot& robot, const Frame& frame) const {
   options_.tell("robot " + robot.name() + ": the run waits " +
                 (who.empty()
                      ? "for a node that publishes " + robot.command_topic()
-                     : "at tick " + std::to_string(frame.tick) + " for " + robot.command_topic() + " of " + who));
+                     : "at tick " + std::to_string(frame.tick) + " for " + robot.command_topic() + " from " + who));
 }
 
 // The first robot whose command is not there and is still waited for.

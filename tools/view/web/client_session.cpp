@@ -38,8 +38,8 @@ ViewRequest read_request(const std::string& payload) {
       request.to = value.get<double>();
     } else {
       throw protocol::ProtocolError(
-          "a request has operation, name and text, which are strings, number, from and to, which are numbers, and "
-          "numbers and names, lists of at most 64");
+          "invalid request: expected operation, name and text as strings, number, from and to as numbers, and numbers "
+          "and names as lists of at most 64 elements");
     }
   }
   if (request.operation.empty()) throw protocol::ProtocolError("a request needs an operation");

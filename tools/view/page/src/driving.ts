@@ -112,7 +112,7 @@ export class Driving {
     const robot = this.selectedRobot();
     const driven = robot === this.driven?.name ? this.driven : undefined;
     this.button.hidden = robot === undefined;
-    this.button.textContent = this.isClaiming ? "claiming …" : driven ? "let go" : "drive";
+    this.button.textContent = this.isClaiming ? "claiming …" : driven ? "release" : "drive";
     this.button.disabled = this.isClaiming;
     this.button.classList.toggle("on", driven !== undefined);
     element("sliders").replaceChildren(...(driven ? this.sliders(driven) : []));

@@ -108,8 +108,9 @@ void Clients::set_alive(AttachedClient& client, bool alive) {
     if (const lockstep::Leases::Lease* lease = run_->leases.lease(client.id())) {
       if (lease->alive == alive) return;
       run_->leases.set_alive(client.id(), alive);
-      run_->monitor.add_event(alive ? "back" : "lost", client.label + " with " + run_->robots_text(lease->robots) +
-                                                           (alive ? " is back" : " is gone or does not respond"));
+      run_->monitor.add_event(alive ? "back" : "lost", client.label + ", the controller of " +
+                                                           run_->robots_text(lease->robots) +
+                                                           (alive ? ", is back" : ", is gone or does not respond"));
       // The run does not wait for a robot that does not require its controller.
       for (const std::uint32_t robot : lease->robots)
         if (!alive && !run_->simulation.policy(robot).required) run_->exchange.barrier().set_driven(robot, false);

@@ -175,8 +175,8 @@ TEST_F(BetaflightBridge, InvalidServoPacketsAreReportedAndIgnored) {
   program_.command({0.5F, std::nanf(""), 0.5F, 0.5F});
   program_.command({0.5F, 0.5F, 7.0F, 0.5F});
   EXPECT_TRUE(bridge_->wait_for_output("has sent a datagram of 7 bytes"));
-  EXPECT_TRUE(bridge_->wait_for_output("motor 3 is commanded nan"));
-  EXPECT_TRUE(bridge_->wait_for_output("motor 4 is commanded 7"));
+  EXPECT_TRUE(bridge_->wait_for_output("motor 3 has the command nan"));
+  EXPECT_TRUE(bridge_->wait_for_output("motor 4 has the command 7"));
   program_.command({0.54F, 0.54F, 0.54F, 0.54F});
   fly();
   EXPECT_EQ(hash(), expected);

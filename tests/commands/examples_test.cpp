@@ -45,7 +45,7 @@ TEST(Examples, AreCopiedWithTheirDependencies) {
   EXPECT_EQ(cohort({"check", copy + "/experiments/retrieval.yaml"}).exit_code, 0);
   const Ended again = cohort({"examples", "--copy", copy});
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_NE(again.err.find("exists: give a new folder"), std::string::npos) << again.err;
+  EXPECT_NE(again.err.find("exists and is not an empty folder"), std::string::npos) << again.err;
 }
 
 TEST(Seeds, ProduceOneRunEach) {

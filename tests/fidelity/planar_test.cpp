@@ -316,7 +316,7 @@ TEST(Planar, RejectsUnsupportedModelsByName) {
   hinge.child = 0;
   hinged.joints.push_back(hinge);
   place(door, hinged, "door", at(0, 0, 0.5));
-  EXPECT_EQ(refusal_of(door), "model 'door': planar physics does not support moving joints to the world");
+  EXPECT_EQ(refusal_of(door), "model 'door': planar physics does not support joints to the world that are not fixed");
 
   description::World hole = planar.world();
   hole.instances.clear();

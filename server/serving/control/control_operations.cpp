@@ -18,7 +18,7 @@ constexpr std::uint32_t scope_default = 0;
 constexpr std::uint32_t scope_all = 255;
 
 std::string speed_text(double speed) {
-  return speed == 0.0 ? "as fast as possible" : std::to_string(speed) + " simulated seconds per second at most";
+  return speed == 0.0 ? "as fast as possible" : "at most " + std::to_string(speed) + " simulated seconds per second";
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ void LiveSource::show_what_arrives() {
     } catch (const messages::CdrError& error) {
       ViewStatus status = status_without_run();
       status.note =
-          std::string("the server's data cannot be read; the server may have another version:  ") + error.what();
+          std::string("the server's data cannot be read; the server may have another version: ") + error.what();
       show_status(status);
     }
   }

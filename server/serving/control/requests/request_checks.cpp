@@ -29,7 +29,7 @@ std::string what_is_wrong_with(const wire::SetSimulationState& operation) {
 }
 std::string what_is_wrong_with(const wire::StepSimulation& operation) {
   if (operation.steps > 0 && operation.steps <= most_steps) return {};
-  return "expected at least 1 step, and at most 2^62, not " + std::to_string(operation.steps);
+  return "expected 1 to 2^62 steps, not " + std::to_string(operation.steps);
 }
 std::string what_is_wrong_with(const wire::AdvanceTime& operation) {
   if (operation.steps <= most_steps) return {};

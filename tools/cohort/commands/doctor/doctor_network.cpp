@@ -254,7 +254,7 @@ Finding check_server(const DoctorCommand& command, const std::optional<wire::Ide
             fmt::format("at {}, {} uses UDP port {}, but refuses the connection", where, holder, port),
             identity ? "The certificates come from different authorities, a certificate has expired, or the server "
                        "runs without --secure."
-                     : "The server runs with --secure: give --secure DIR/clients/NAME."};
+                     : "The server runs with --secure: use --secure DIR/clients/NAME."};
   return {
       "server", bad, fmt::format("at {}, no server answers on UDP port {}", where, port),
       is_expected

@@ -75,7 +75,7 @@ std::vector<ObservationChannel> Start::observations(std::string_view pattern, st
   std::vector<ObservationChannel> found = observations(pattern);
   if (found.size() != count)
     throw ChannelError("robot '" + name + "' (" + model + ") has " + std::to_string(found.size()) + " " +
-                       std::string(observation_kind) + "s '" + std::string(pattern) + "', expected " +
+                       std::string(observation_kind) + "s that match '" + std::string(pattern) + "', expected " +
                        std::to_string(count));
   return found;
 }

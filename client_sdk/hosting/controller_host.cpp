@@ -59,7 +59,7 @@ StartReason reason_of(wire::StartReason reason) {
 const wire::Team* team_of(const wire::Admit& admit, const wire::AdmittedRobot& robot) {
   if (admit.teams.empty()) return nullptr;
   if (robot.team < admit.teams.size()) return &admit.teams[robot.team];
-  throw ControllerFailure("robot '" + robot.name + "' has a team without a description from the server");
+  throw ControllerFailure("the server sent no description of the team of robot '" + robot.name + "'");
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
     return candidate.description == robot.description;
   });
   if (description == descriptions.end()) {
-    throw ControllerFailure("robot '" + robot.name + "' has no description from the server");
+    throw ControllerFailure("the server sent no description of robot '" + robot.name + "'");
   }
   Start start;
   start.robot = robot.robot;

@@ -71,7 +71,7 @@ std::string why_no_program(const std::filesystem::path& path) {
   const std::string is_program = path.string() + " is a program, not a plugin. ";
   std::error_code none;
   if (std::filesystem::is_regular_file(plugin, none)) return is_program + "Its plugin is " + plugin.string();
-  return is_program + "A plugin is a shared object, as cohort_add_controller builds it beside the program";
+  return is_program + "A plugin is a shared object; cohort_add_controller builds it beside the program";
 }
 
 bool is_of_this_machine(const Elf64_Ehdr& header) {

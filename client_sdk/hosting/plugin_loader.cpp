@@ -91,7 +91,7 @@ fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path
     tried += (tried.empty() ? "" : ", ") + path.string();
   }
   throw std::runtime_error("unknown controller plugin '" + name_or_path + "'" + names_of_plugins(directories) +
-                           ". Tried " + tried + ". Give the plugin's path, or add its folder to COHORT_PLUGIN_PATH");
+                           ". Tried " + tried + ". Specify the plugin's path, or add its folder to COHORT_PLUGIN_PATH");
 }
 
 LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs::path>& directories)

@@ -374,7 +374,7 @@ void Attachment::tell_whether_server_responds(bool is_acknowledged) {
   const std::string server = "the server at " + options_.server + ", domain " + std::to_string(options_.domain);
   tell(Severity::warning, is_silent ? server +
                                           " has not responded for 1 s: it has ended or stopped, or it cannot be "
-                                          "reached. Waiting some seconds for it"
+                                          "reached. Waiting a few seconds for it"
                                     : server + " responds again");
 }
 

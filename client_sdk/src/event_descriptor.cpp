@@ -12,7 +12,7 @@ namespace {
 
 int open_event_descriptor() {
   const int descriptor = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (descriptor < 0) throw std::system_error(errno, std::generic_category(), "cannot make an event descriptor");
+  if (descriptor < 0) throw std::system_error(errno, std::generic_category(), "cannot create an eventfd");
   return descriptor;
 }
 

@@ -49,9 +49,10 @@ void HandOver::answer() {
 void HandOver::leave_unanswered() {
   const Lock lock(mutex_);
   const auto* frame = taken_ ? std::get_if<Frame>(&*event_) : nullptr;
-  if (frame == nullptr) throw std::logic_error("leave_unanswered: no frame is under way");
+  if (frame == nullptr) throw std::logic_error("leave_unanswered: no frame has been received that needs an answer");
   if (std::ranges::any_of(frame->robots, [](const FrameRobot& robot) { return robot.robot->policy.waits; }))
-    throw std::logic_error("leave_unanswered: the frame has robots of a team in lockstep, which must be answered");
+    throw std::logic_error(
+        "leave_unanswered: the frame has robots of a team in lockstep, for which an answer is required");
   taken_ = false;
   unanswered_ = true;
   event_.reset();

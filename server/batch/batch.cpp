@@ -63,7 +63,7 @@ std::vector<Pose> Batch::placed(std::uint64_t seed) const {
   std::vector<Pose> X_WM = described_poses_;
   try {
     if (!placer_.place(seed, std::span(X_WM).subspan(placer_.first(), placer_.count())))
-      throw std::invalid_argument("seed " + std::to_string(seed) + " gives other sizes of populations than " +
+      throw std::invalid_argument("seed " + std::to_string(seed) + " results in other population sizes than seed " +
                                   std::to_string(first_.experiment().seed));
   } catch (const description::InputError& error) {
     throw std::invalid_argument("seed " + std::to_string(seed) + ": " + error.what());
@@ -89,7 +89,7 @@ void Batch::reset(std::size_t world, std::uint64_t seed, std::span<const Pose> X
 void Batch::step(std::uint64_t ticks, std::span<const std::uint8_t> only) {
   if (ticks == 0) throw std::invalid_argument("expected at least one tick");
   if (!only.empty() && only.size() != worlds())
-    throw std::invalid_argument("got a selection of " + std::to_string(only.size()) + " worlds, expected " +
+    throw std::invalid_argument("the selection has " + std::to_string(only.size()) + " worlds, expected " +
                                 std::to_string(worlds()));
   const auto is_stepped = [&](std::size_t world) { return !stands_still(world) && (only.empty() || only[world] != 0); };
   for (std::size_t world = 0; world < worlds(); ++world)

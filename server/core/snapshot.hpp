@@ -86,7 +86,7 @@ class SnapshotReader {
     std::uint64_t saved = 0;
     read(saved);
     if (saved != count)
-      throw SnapshotError("the snapshot is of another experiment: it has " + std::to_string(saved) + " " + what +
+      throw SnapshotError("the snapshot belongs to another experiment: it has " + std::to_string(saved) + " " + what +
                           ", not " + std::to_string(count));
   }
   bool is_at_end() const { return bytes_.empty(); }

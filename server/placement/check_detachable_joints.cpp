@@ -19,7 +19,7 @@ std::vector<std::string> names_of(const Things& things) {
 
 // Returns why `holder` cannot hold the child; empty if it can.
 std::string flaw_of(const HeldChild& held, const Instance& holder, const Instance& child, const World& world) {
-  if (&child == &holder) return "expected another object than '" + child.name + "', to which it is attached";
+  if (&child == &holder) return "expected an object other than '" + child.name + "', to which it is attached";
   const std::vector<std::string> links = names_of(world.models[child.model].links);
   if (held.child_link.empty() || std::ranges::find(links, held.child_link) != links.end()) return "";
   return "'" + child.name + "' has no link '" + held.child_link + "'" + suggestion(held.child_link, links);

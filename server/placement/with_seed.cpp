@@ -23,7 +23,7 @@ Experiment with_seed(const Experiment& experiment, const Placer& placer, std::ui
     throw InputError(
         {{other.file, 0, "",
           "seed " + std::to_string(seed) +
-              " results in different instances, but the experiment was not read from a file that can select them"}});
+              " results in different instances; only an experiment that was read from a file supports this"}});
   other.select_again(other);
   return other;
 }

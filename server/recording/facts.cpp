@@ -109,9 +109,9 @@ description::KeptFiles inputs_of(const McapReader& reader, const std::filesystem
   const std::optional<Metadata> metadata = reader.metadata(inputs_name);
   if (!metadata)
     throw McapError(file, 0,
-                    "it has no metadata '" + std::string(inputs_name) +
-                        "', so the world of its run is unknown: Cohort did not record it from an "
-                        "experiment file, or its beginning is lost");
+                    "the metadata '" + std::string(inputs_name) +
+                        "' with the world of the run is missing: the run was not read from an experiment file, or the "
+                        "beginning of the recording is lost");
   StringMap entries = metadata->entries;
   description::KeptFiles inputs;
   inputs.experiment = entries["experiment"];
@@ -129,7 +129,7 @@ description::KeptFiles inputs_of(const McapReader& reader, const std::filesystem
   if (std::to_string(inputs.files.size()) != entries["files"])
     throw McapError(
         file, 0,
-        "it has " + std::to_string(inputs.files.size()) + " input files of its run, expected " + entries["files"]);
+        "it contains " + std::to_string(inputs.files.size()) + " input files of its run, expected " + entries["files"]);
   return inputs;
 }
 

@@ -73,7 +73,7 @@ Recording::Recording(const std::filesystem::path& file) : file_(file), reader_(f
   const Channel* const worlds = reader_.channel(WorldBegins::topic);
   if (!facts || worlds == nullptr)
     throw McapError(file, 0,
-                    reader_.is_complete() ? "it is an MCAP file, but not a recording of Cohort"
+                    reader_.is_complete() ? "it is an MCAP file, but not a Cohort recording"
                                           : "it has no readable run: " + reader_.damage());
   facts_ = facts->entries;
   try {

@@ -34,8 +34,8 @@ bool Replay::advance() {
   } else {
     if (simulation_ == nullptr) fail("the beginning of the world is lost");
     if (before && recorded_->tick != before->tick + 1)
-      fail("after tick " + std::to_string(before->tick) + " comes tick " + std::to_string(recorded_->tick) +
-           ": the ticks between are lost, so the replay ends here");
+      fail("tick " + std::to_string(recorded_->tick) + " follows tick " + std::to_string(before->tick) +
+           ": the ticks between them are lost, so the replay ends here");
     simulation_->step();
   }
   take_actions();

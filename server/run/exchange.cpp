@@ -79,7 +79,7 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
   };
   const auto frame_text = [&] { return "the answer to tick " + std::to_string(frame_tick); };
   if (frame_tick > barrier_.tick()) {
-    reject("early", frame_text() + " came at tick " + std::to_string(barrier_.tick()));
+    reject("early", frame_text() + " arrived at tick " + std::to_string(barrier_.tick()));
     return taken;
   }
   due_.clear();
@@ -90,7 +90,7 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
     expected_size += simulation_.kinds()[simulation_.kind_of(robot)].command_size;
   }
   if (!std::ranges::equal(due_, robots)) {
-    reject("malformed", frame_text() + " is for other robots than its frame");
+    reject("malformed", frame_text() + " does not have the robots of its frame");
     return taken;
   }
   const bool sizes_fit = values.size() == expected_size;
@@ -118,10 +118,12 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
         }
         break;
       }
-      case lockstep::Barrier::Verdict::repeated: reject("repeated", frame_text() + " came twice"); break;
-      case lockstep::Barrier::Verdict::early: reject("early", frame_text() + " came before its frame"); break;
+      case lockstep::Barrier::Verdict::repeated: reject("repeated", frame_text() + " arrived twice"); break;
+      case lockstep::Barrier::Verdict::early:
+        reject("early", frame_text() + " arrived before its frame was sent");
+        break;
       case lockstep::Barrier::Verdict::stale:
-        reject("stale", frame_text() + " came at tick " + std::to_string(barrier_.tick()));
+        reject("stale", frame_text() + " arrived at tick " + std::to_string(barrier_.tick()));
         break;
     }
     if (sizes_fit) values = values.subspan(size);

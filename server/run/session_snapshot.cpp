@@ -98,8 +98,8 @@ std::vector<std::string> what_is_left_out(const SessionSnapshot& snapshot, const
   if (snapshot.tick == 0) return sentences;
   for (const description::Team& team : experiment.teams)
     if (states_of(snapshot, team.robots).size() < team.robots.size())
-      sentences.push_back("the snapshot has no state of the controllers of team '" + team.name + "' (" +
-                          team.controller + "): a run from this snapshot starts them without state");
+      sentences.push_back("the snapshot does not contain the state of the controllers of team '" + team.name + "' (" +
+                          team.controller + "): a run that continues from it starts them without state");
   return sentences;
 }
 
@@ -161,8 +161,8 @@ SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes) {
 
 void expect_same_experiment(const SessionSnapshot& snapshot, const description::Experiment& experiment) {
   if (snapshot.experiment != experiment.name)
-    throw SnapshotError("the snapshot is of the experiment '" + snapshot.experiment + "', not of '" + experiment.name +
-                        "'");
+    throw SnapshotError("the snapshot belongs to the experiment '" + snapshot.experiment + "', not to '" +
+                        experiment.name + "'");
 }
 
 void restore(const SessionSnapshot& snapshot, Simulation& simulation) {

@@ -108,8 +108,9 @@ void Clients::set_alive(AttachedClient& client, bool alive) {
     if (const lockstep::Leases::Lease* lease = run_->leases.lease(client.id())) {
       if (lease->alive == alive) return;
       run_->leases.set_alive(client.id(), alive);
-      run_->monitor.add_event(alive ? "back" : "lost", client.label + " with " + run_->robots_text(lease->robots) +
-                                                           (alive ? " is back" : " is gone or does not respond"));
+      run_->monitor.add_event(alive ? "back" : "lost", client.label + ", the controller of " +
+                                                           run_->robots_text(lease->robots) +
+                                                           (alive ? ", is back" : ", is gone or does not respond"));
       // The run does not wait for a robot that does not require its controller.
       for (const std::uint32_t robot : lease->robots)
         if (!alive && !run_->simulation.policy(robot).required) run_->exchange.barrier().set_driven(robot, false);
@@ -180,7 +181,7 @@ void Clients::claim(AttachedClient& client) {
   std::set<std::uint32_t> robots;
   std::string refusal;
   if (client.join.robots.size() > most_selectors)
-    refusal = "it asks with more than " + std::to_string(most_selectors) + " selectors; use ranges";
+    refusal = "the client requests more than " + std::to_string(most_selectors) + " selectors; use ranges";
   for (const std::string& selector : client.join.robots) {
     if (!refusal.empty()) break;
     try {
@@ -190,7 +191,7 @@ void Clients::claim(AttachedClient& client) {
       refusal = error.what();
     }
   }
-  if (robots.empty() && refusal.empty()) refusal = "it asks for no robot";
+  if (robots.empty() && refusal.empty()) refusal = "the client requests no robot";
   if (refusal.empty()) refusal = why_forbidden(client, robots);
   if (!refusal.empty()) return client.refuse(*run_, refusal);
   client.robots.assign(robots.begin(), robots.end());
@@ -236,7 +237,7 @@ void Clients::decide_claims() {
 void Clients::admit(const lockstep::Leases::Granted& granted) {
   AttachedClient& client = clients_.at(granted.client);
   for (const std::uint64_t loser : granted.superseded) {
-    const std::string text = client.label + " has taken over its robots";
+    const std::string text = client.label + " has taken over the robots of this client";
     tell(clients_.at(loser), wire::ReportKind::superseded, "superseded", text);
     run_->monitor.add_event("superseded", label_of(loser) + ": " + text);
   }
@@ -307,7 +308,7 @@ bool Clients::give_state(AttachedClient& client, std::span<const std::uint32_t> 
   }
   run_->monitor.add_event(
       "unsaved",
-      client.label + " starts without state: it does not load the state of its controllers " + "that the snapshot has");
+      client.label + " starts without state: it does not load the controller state that the snapshot contains");
   return false;
 }
 

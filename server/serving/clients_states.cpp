@@ -78,7 +78,7 @@ void Clients::take_states(const Inbox::States& states) {
 void Clients::refuse_state(AttachedClient& client, const std::string& why) {
   client.state.give_up();
   ++client.rejected;
-  run_->monitor.add_event("rejected", "malformed from " + client.label + ": its controllers' state: " + why);
+  run_->monitor.add_event("rejected", "malformed from " + client.label + ": the state of its controllers: " + why);
 }
 
 // Returns the reasons of all controllers that cannot save; empty if there are none.

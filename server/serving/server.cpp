@@ -265,8 +265,8 @@ void Server::handle_inbox() {
   }
   for (const std::uint32_t major : inbox.foreign_versions)
     run_->monitor.add_event("version",
-                            "a client speaks version " + std::to_string(major) +
-                                " of the protocol, and this server version 1: they cannot connect. Install the "
+                            "a client uses version " + std::to_string(major) +
+                                " of the protocol, but this server uses version 1, so they cannot connect. Install the "
                                 "same major version of Cohort on both sides");
   clients_.note_rejections(inbox.rejected);
   clients_.take_states(inbox.states);
@@ -317,7 +317,7 @@ void Server::report_progress(bool now_anyway) {
     if (!awaited.empty())
       if (const auto holder = run_->leases.holder(awaited.front())) progress.awaited_from = clients_.label_of(*holder);
     if (awaited.empty() && run_->started && !progress.paused && control_.holds_time()) {
-      progress.awaited.emplace_back("the time");
+      progress.awaited.emplace_back("the client that holds the time");
       progress.awaited_from = control_.time_holder();
     }
   });
@@ -366,7 +366,7 @@ void Server::fill_status(wire::SimulationStatus& status) {
   for (std::size_t i = 0; i < std::min(awaited.size(), most_names); ++i)
     status.awaited.push_back(run_->simulation.robot_name(awaited[i]));
   if (awaited.empty() && run_->started && !control_.holds() && control_.holds_time())
-    status.awaited.push_back("the time: " + control_.time_holder());
+    status.awaited.push_back("the client that holds the time: " + control_.time_holder());
   if (!status.awaited.empty()) status.waiting_ns = run_->waiting().count();
   status.controllers = clients_.status();
 }

@@ -126,7 +126,7 @@ std::uint8_t number_of(const Action& action) {
 }
 
 void read_text(ModelChoice& model, const description::ModelReader& read_model) {
-  if (!read_model) throw std::invalid_argument("the model is a text, which this experiment does not accept");
+  if (!read_model) throw std::invalid_argument("the model is given as text, which this experiment does not accept");
   model = read_model(std::get<std::string>(model));
 }
 

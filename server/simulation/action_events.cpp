@@ -169,7 +169,7 @@ std::string name_of_new(const SpawnObject& spawn, const std::string& model, cons
   if (!spawn.allow_renaming)
     refuse(objects.is_present(*objects.find(wanted))
                ? "another object has the name " + quoted(wanted)
-               : "an object that has left the world, or joins it later, has the name " + quoted(wanted) +
+               : "an object that has left the world, or is added later, has the name " + quoted(wanted) +
                      "; names are not reused in a run");
   for (std::size_t number = 1;; ++number)
     if (std::string name = wanted + "_" + std::to_string(number); !objects.find(name)) return name;

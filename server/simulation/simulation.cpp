@@ -256,8 +256,8 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   reader.read(version);
   if (std::ranges::find(versions_of_snapshots(), version, hash_name) == versions_of_snapshots().end())
     throw SnapshotError("version " COHORT_VERSION " cannot read snapshots of the version that made this one");
-  reader.expect_count(seed_, "as seed");
-  reader.expect_count(static_cast<std::size_t>(experiment_->world.step.count()), "ns as time step");
+  reader.expect_count(seed_, "as its seed");
+  reader.expect_count(static_cast<std::size_t>(experiment_->world.step.count()), "ns as its time step");
   reader.read(tick_);
   if (tick_ > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max() / experiment_->world.step.count()))
     throw SnapshotError("snapshot: the tick is out of range");

@@ -12,9 +12,9 @@ void expect(bool holds, const char* otherwise) {
 void check_mesh(const messages::SceneMesh& mesh) {
   const std::size_t vertices = mesh.vertices.size() / 3;
   expect(std::ranges::all_of(mesh.triangles, [&](std::uint32_t vertex) { return vertex < vertices; }),
-         "a triangle has an unknown vertex");
+         "a triangle refers to an unknown vertex");
   expect(mesh.colors.empty() || mesh.colors.size() == mesh.triangles.size(),
-         "the numbers of colours and triangles of a mesh differ");
+         "a mesh has different numbers of colours and triangles");
 }
 
 void check_shape(const messages::Scene& scene, const messages::SceneShape& shape) {
@@ -41,7 +41,7 @@ std::size_t check_scene(const messages::Scene& scene) {
 
 void check_frame(const messages::SceneFrame& frame, std::size_t links) {
   expect(frame.positions.size() == 3 * links && frame.orientations.size() == 4 * links,
-         "the numbers of links of a frame and its scene differ");
+         "a frame and its scene have different numbers of links");
 }
 
 }  // namespace cohort::viewing

@@ -221,12 +221,13 @@ TEST_F(ArdupilotRover, TheBridgeLeavesWithTheServerWhileItsSitlIsSilent) {
 }
 
 TEST(ArdupilotBridgeOptions, AreRefusedWithWhatToDo) {
-  expect_refusals("cohort-ardupilot-bridge", {{{"--output", "1=left"}, "expected NUMBER=CHANNEL:LOW..HIGH"},
-                                              {{"--output", "33=left/0/velocity:0..1"}, "the number of an output is from 1 to 32"},
-                                              {{"--output", "1=left/0/velocity:0..x"}, "not finite numbers"},
-                                              {{"--patience", "0"}, "--patience"},
-                                              {{"--robots", "0..9", "--port", "65500"}, "the last robot exceeds 65535"},
-                                              {{"--without-firmware", "dance"}, "--without-firmware"}});
+  expect_refusals("cohort-ardupilot-bridge",
+                  {{{"--output", "1=left"}, "expected NUMBER=CHANNEL:LOW..HIGH"},
+                   {{"--output", "33=left/0/velocity:0..1"}, "the output number must be from 1 to 32"},
+                   {{"--output", "1=left/0/velocity:0..x"}, "not finite numbers"},
+                   {{"--patience", "0"}, "--patience"},
+                   {{"--robots", "0..9", "--port", "65500"}, "the last robot exceeds 65535"},
+                   {{"--without-firmware", "dance"}, "--without-firmware"}});
 }
 
 TEST(ArdupilotBridgeOptions, AnUnknownChannelEndsTheBridgeByName) {

@@ -175,8 +175,8 @@ TEST_F(BetaflightBridge, InvalidServoPacketsAreReportedAndIgnored) {
   program_.command({0.5F, std::nanf(""), 0.5F, 0.5F});
   program_.command({0.5F, 0.5F, 7.0F, 0.5F});
   EXPECT_TRUE(bridge_->wait_for_output("has sent a datagram of 7 bytes"));
-  EXPECT_TRUE(bridge_->wait_for_output("motor 3 is commanded nan"));
-  EXPECT_TRUE(bridge_->wait_for_output("motor 4 is commanded 7"));
+  EXPECT_TRUE(bridge_->wait_for_output("motor 3 has the command nan"));
+  EXPECT_TRUE(bridge_->wait_for_output("motor 4 has the command 7"));
   program_.command({0.54F, 0.54F, 0.54F, 0.54F});
   fly();
   EXPECT_EQ(hash(), expected);
@@ -325,7 +325,7 @@ TEST_F(Betaflight, ItsEndInTheMiddleOfARunIsNamed) {
   ASSERT_TRUE(bridge_->wait_for_output("flies the robot")) << bridge_->output() << server_->output();
   for (const pid_t child : children_of(bridge_->pid())) ::kill(child, SIGKILL);
   EXPECT_EQ(bridge_->wait_for_exit(), 1);
-  EXPECT_NE(bridge_->output().find("Betaflight was ended by the signal Killed"), std::string::npos)
+  EXPECT_NE(bridge_->output().find("Betaflight was terminated by the signal Killed"), std::string::npos)
       << bridge_->output();
 }
 

@@ -50,7 +50,7 @@ class BridgedRun {
   bool says(const std::string& text) { return bridge_->wait_for_output(text); }
 
   std::uint16_t port(const std::string& robot = "0") {
-    const std::string prefix = "robot " + robot + ": the " + who_ + " connects at ";
+    const std::string prefix = "robot " + robot + ": waiting for the " + who_ + " at ";
     if (!bridge_->wait_for_output(prefix)) throw std::runtime_error("no port: " + bridge_->output());
     std::smatch match;
     const std::string output = bridge_->output();

@@ -286,7 +286,7 @@ TEST(Epuck2BridgeOptions, AreRefusedWithWhatToDo) {
                                         {{"--robots", ","}, "'--robots' is empty"},
                                         {{"--robots", "0..3", "--listen", "127.0.0.1,127.0.0.2"}, "one for each robot"},
                                         {{"--listen", "nowhere"}, "is not an IPv4 address"},
-                                        {{"--listen", "192.0.2.1", "--port", "0"}, "cannot listen at 192.0.2.1:0"},
+                                        {{"--listen", "192.0.2.1", "--port", "0"}, "cannot listen on 192.0.2.1:0"},
                                         {{"--robots", "0..3", "--port", "65534"}, "the last robot exceeds 65535"},
                                         {{"--without-program", "dance"}, "--without-program"}}) {
     std::vector<std::string> command{program};

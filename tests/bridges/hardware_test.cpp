@@ -217,7 +217,7 @@ TEST_F(HardwareInTheLoop, IsRefusedForATeamInLockstepWithWhatToDo) {
   Process server(serve());
   Process bridge(this->bridge());
   EXPECT_EQ(bridge.wait_for_exit(), 1);
-  EXPECT_NE(bridge.output().find("give the team 'mode: free'"), std::string::npos) << bridge.output();
+  EXPECT_NE(bridge.output().find("set 'mode: free' for the team"), std::string::npos) << bridge.output();
 }
 
 TEST_F(HardwareInTheLoop, MistakesInTheDevicesAreNamed) {

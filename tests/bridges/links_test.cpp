@@ -101,7 +101,7 @@ TEST(Links, OverTcpTakeOneFirmwareAtATimeAndTellWhoComesAndWhyItLeaves) {
   second.write("three\n");
   EXPECT_EQ(bridge.receive(), "three\n");
   EXPECT_NE(bridge.told.find("the firmware has connected from 127.0.0.1:"), std::string::npos) << bridge.told;
-  EXPECT_NE(bridge.told.find("has left inside a message, after 4 bytes"), std::string::npos) << bridge.told;
+  EXPECT_NE(bridge.told.find("has disconnected inside a message, after 4 bytes"), std::string::npos) << bridge.told;
 }
 
 TEST(Links, OverUdpAnswerWhereTheLastDatagramCameFrom) {
@@ -132,7 +132,7 @@ TEST(Links, OverUdpHearTheLaterOfTwoUntilItIsHungUp) {
   second.write("broken!\n");
   first.write("four\n");
   EXPECT_EQ(bridge.receive(), "four\n");
-  EXPECT_NE(bridge.told.find("the firmware speaks from 127.0.0.1:"), std::string::npos) << bridge.told;
+  EXPECT_NE(bridge.told.find("the firmware now sends from 127.0.0.1:"), std::string::npos) << bridge.told;
 }
 
 TEST(Links, OverUdpWithAPeerSendFirstAndIgnoreOtherSenders) {
@@ -219,7 +219,7 @@ TEST(Links, ToASerialDeviceAreExclusiveAndItsNameMayHaveColons) {
     open_link("serial:" + device + ":9600");
     ADD_FAILURE() << "opened twice";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("another program has it open"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("another program is using it"), std::string::npos) << error.what();
   }
 }
 
@@ -255,7 +255,7 @@ TEST(Links, ThatCannotBeOpenedSayWhy) {
            {"tcp:localhost:1", "'localhost' is not an IPv4 address"},
            {"tcp:127.0.0.1:70000", "'70000' is not a port"},
            {"udp:127.0.0.1:1:127.0.0.1", "expected a link tcp:ADDRESS:PORT"},
-           {"tcp:192.0.2.1:0", "cannot listen at 192.0.2.1:0"},
+           {"tcp:192.0.2.1:0", "cannot listen on 192.0.2.1:0"},
            {"serial:/no/such/device:115200", "cannot open /no/such/device"},
            {"serial:/dev/null:115200", "cannot be set up as a serial line"},
            {"serial:/dev/null:12345", "unsupported rate of 12345 baud: expected one of 9600"}}) {

@@ -57,10 +57,10 @@ class RunByBridge {
     EXPECT_EQ(ended.exit_code, 0) << ended.err;
   }
   std::uint16_t port() {
-    EXPECT_TRUE(bridge_->wait_for_output("connects at 127.0.0.1:")) << bridge_->output();
+    EXPECT_TRUE(bridge_->wait_for_output(" at 127.0.0.1:")) << bridge_->output();
     std::smatch match;
     const std::string output = bridge_->output();
-    if (!std::regex_search(output, match, std::regex(R"(connects at [\d.]+:(\d+)\n)"))) return 0;
+    if (!std::regex_search(output, match, std::regex(R"( at [\d.]+:(\d+)\n)"))) return 0;
     return static_cast<std::uint16_t>(std::stoul(match[1]));
   }
   std::string written(const std::string& robot = "epuck") const { return read_file(folder_ / (robot + ".txt")); }
@@ -142,7 +142,8 @@ TEST(RunByBridge, AProgramThatEndsIsNamedWithItsExitCode) {
 
 TEST(RunByBridge, OrTheRunWaitsForAnotherOne) {
   RunByBridge run({.command = course("leave")});
-  EXPECT_TRUE(run.bridge().wait_for_output("' has ended with the exit code 3: the run waits for another one"))
+  EXPECT_TRUE(
+      run.bridge().wait_for_output("' has ended with the exit code 3: the run waits until a program connects again"))
       << run.bridge().output();
   EpuckProgram program(run.port());
   for (;;) {
@@ -203,7 +204,8 @@ TEST(RunByBridge, TheProgramsClockGoesOnThroughAReset) {
 TEST(RunByBridge, AProgramThatNeverWaitsIsNamedAndEndsWithTheBridge) {
   RunByBridge run({.command = course("spin")});
   EXPECT_TRUE(run.bridge().wait_for_output("spin > ")) << run.bridge().output();
-  EXPECT_NE(run.bridge().output().find("has not waited for anything for 5 s, so time stands still"), std::string::npos)
+  EXPECT_NE(run.bridge().output().find("has not waited for anything for 5 s, so simulated time does not advance"),
+            std::string::npos)
       << run.bridge().output();
   run.bridge().signal(SIGTERM);
   EXPECT_EQ(run.bridge().wait_for_exit(), 130) << run.bridge().output();

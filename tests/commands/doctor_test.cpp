@@ -64,7 +64,7 @@ TEST(Doctor, PrintsFindingsAsText) {
   EXPECT_TRUE(has(ended.out,
                   "problem  interface  no active interface has the address 10.250.250.1; active interfaces: 127.0.0.1"))
       << ended.out;
-  EXPECT_TRUE(has(ended.out, "-> Give --network one of these addresses")) << ended.out;
+  EXPECT_TRUE(has(ended.out, "-> Use one of these addresses for --network")) << ended.out;
 }
 
 TEST(Doctor, ReportsAServerItsRobotsAndItsTick) {
@@ -141,12 +141,13 @@ TEST(Versions, TheServerNamesAClientOfAnotherMajorVersionOnce) {
   ASSERT_TRUE(server.wait_for_output("serving")) << server.output();
   const test::Version2 first(wire::Participant::client(domain.number())),
       second(wire::Participant::client(domain.number()));
-  EXPECT_TRUE(server.wait_for_output("version: a client speaks version 2 of the protocol, and this server version 1"))
+  EXPECT_TRUE(
+      server.wait_for_output("version: a client uses version 2 of the protocol, but this server uses version 1"))
       << server.output();
   Process controllers({cohort_program(), "host", "obstacle_avoidance", "--robots", "all", "--domain", domain.text()});
   EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
   const std::string output = server.output();
-  EXPECT_EQ(output.find("speaks version"), output.rfind("speaks version")) << output;
+  EXPECT_EQ(output.find("a client uses version"), output.rfind("a client uses version")) << output;
 }
 
 TEST(Versions, AreReadFromTheNamesOfTopics) {

@@ -266,7 +266,7 @@ TEST(AFileThatIsNotYaml, IsToldWithLineAndWhatWasExpected) {
   expect_told("world: [a\nduration: 5\n", "2", "'[' is not closed. Expected ',' or ']'");
   expect_told("world: {a: 1\nduration: 5\n", "2", "'{' is not closed. Expected ',' or '}'");
   expect_told("teams:\n  - name: t\n name: u\n", "3", "wrong indentation");
-  expect_told("world: @a.sdf\n", "1", "a text cannot begin with this character. Expected quotes");
+  expect_told("world: @a.sdf\n", "1", "an unquoted string cannot begin with this character. Expected quotes");
 }
 
 }  // namespace

@@ -334,7 +334,7 @@ TEST_F(Recordings, AreDrawnInTheFormatOfTheFilesNameOrRefused) {
   for (const char* const what : {"paths", "speed"})
     refused({"plot", file, "-o", *this / "none.svg", "--what", what, "--robots", "green/*"},
             "there is no robot 'green/*'; known: swarm/sbot_0, swarm/sbot_1");
-  refused({"plot", file, "-o", *this / "none.svg", "--what", "speed,paths"}, "'paths' is a picture of its own");
+  refused({"plot", file, "-o", *this / "none.svg", "--what", "speed,paths"}, "'paths' makes a separate picture");
   refused({"plot", file, "-o", *this / "none.svg", "--what", "path"}, "did you mean 'paths'?");
   EXPECT_FALSE(std::filesystem::exists(*this / "none.svg"));
 }

@@ -87,7 +87,7 @@ TEST(RecoverCommand, DoesNotReplaceAFileByOneWithoutMessages) {
     expect_refused({file}, "no message in the file can be read");
     EXPECT_EQ(test::read_bytes(file), part);
   }
-  expect_refused({file}, "only 1 attachment and 0 records of metadata, which can be written to another file with -o");
+  expect_refused({file}, "only 1 attachment and 0 records of metadata, which '-o' writes to another file");
   EXPECT_EQ(recover({file, "-o", folder / "rest.mcap"}).exit_code, 0);
   EXPECT_EQ(McapReader(folder / "rest.mcap").attachments().size(), 1U);
 }

@@ -15,7 +15,7 @@ std::size_t times(const std::string& text, const std::string& part) {
   return count;
 }
 
-const std::string aborted = " was ended by signal 6 (Aborted)";
+const std::string aborted = " was terminated by signal 6 (Aborted)";
 
 TEST(Restarts, KeepTheHashOfTheRun) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 1.0);

@@ -187,7 +187,7 @@ TEST(VirtualProgram, NamesWhatRunsInRealTimeOrNeverWaits) {
   VirtualProgram program(options);
   EXPECT_FALSE(program.run_now());
   ASSERT_FALSE(told.empty());
-  EXPECT_NE(told.front().find("has not waited for anything for 5 s, so time stands still: 'sh' (thread"),
+  EXPECT_NE(told.front().find("has not waited for anything for 5 s, so simulated time does not advance: 'sh' (thread"),
             std::string::npos)
       << told.front();
 

@@ -688,7 +688,7 @@ TEST(PlanarFluids, AreRejected) {
                    [](description::World& world) {
                      world.air.wind = {1, 0, 0};
                    }),
-            "model 'box': planar physics does not support links with wind");
+            "model 'box': planar physics does not support links with <enable_wind>");
 }
 
 }  // namespace

@@ -302,7 +302,7 @@ TEST(Planar, RejectsUnsupportedModelsByName) {
 
   description::World slope = planar.world();
   slope.instances[0].X_WM = turned(0, 0, 0, Vector3d::UnitX(), 0.1);
-  EXPECT_EQ(refusal_of(slope), "model 'floor': planar physics supports only level and upright planes");
+  EXPECT_EQ(refusal_of(slope), "model 'floor': planar physics supports only horizontal and vertical planes");
 
   description::World moon = planar.world();
   moon.gravity = {0.0, 1.0, -1.6};
@@ -316,12 +316,12 @@ TEST(Planar, RejectsUnsupportedModelsByName) {
   hinge.child = 0;
   hinged.joints.push_back(hinge);
   place(door, hinged, "door", at(0, 0, 0.5));
-  EXPECT_EQ(refusal_of(door), "model 'door': planar physics does not support moving joints to the world");
+  EXPECT_EQ(refusal_of(door), "model 'door': planar physics does not support joints to the world that are not fixed");
 
   description::World hole = planar.world();
   hole.instances.clear();
   place(hole, tracked_robot(), "robot", at(0, 0, 0));
-  EXPECT_EQ(refusal_of(hole), "model 'tracked_robot': planar physics requires ground under it");
+  EXPECT_EQ(refusal_of(hole), "model 'tracked_robot': planar physics requires ground under the model");
 }
 
 TEST(Planar, ABodyAddedWithoutGroundIsRejectedAndTheWorldContinues) {

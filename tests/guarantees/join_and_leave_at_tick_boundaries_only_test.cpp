@@ -26,7 +26,7 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, ControllersThatAreNotRequired) {
   ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_2")) << server.output();
   control(domain, {"step", "100"});
   early.signal(SIGTERM);
-  ASSERT_TRUE(server.wait_for_output("with swarm/sbot_0 and 1 more is gone")) << server.output();
+  ASSERT_TRUE(server.wait_for_output("the controller of swarm/sbot_0 and 1 more, is gone")) << server.output();
   control(domain, {"step", "100"});
   Process again(FieldOfRobots::host(domain, "0", "constant"));
   ASSERT_TRUE(comes_to_drive(domain, 0)) << server.output();

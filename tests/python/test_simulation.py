@@ -245,7 +245,7 @@ def test_a_bound_that_a_policy_has_rounded_to_float32_acts_as_the_bound(simulati
         (lambda batch: batch.observation_channels(99), "no robot 99"),
         (lambda batch: batch.tick(2), "no world 2, expected a number below 2"),
         (lambda batch: batch.state_hash(7), "no world 7"),
-        (lambda batch: batch.step(only=numpy.ones(3, dtype=bool)), "got a selection of 3 worlds, expected 2"),
+        (lambda batch: batch.step(only=numpy.ones(3, dtype=bool)), "the selection has 3 worlds, expected 2"),
     ],
 )
 def test_a_missing_robot_or_world_of_a_batch_is_named(call, message):

@@ -258,7 +258,7 @@ def test_a_port_is_free_again_after_close(simulation, view):
     other = cohort.Simulation("obstacle_avoidance")
     with Viewer(view.url, "/cohort/frame") as viewer:
         viewer.next()
-        with pytest.raises(RuntimeError, match=f"cannot listen at 127.0.0.1, port {view.port}: .*choose another port"):
+        with pytest.raises(RuntimeError, match=f"cannot listen on 127.0.0.1, port {view.port}: .*choose another port"):
             other.view(port=view.port)
         view.close()
     with pytest.raises(urllib.error.URLError):

@@ -47,8 +47,9 @@ TEST(Ros2BadNodes, ARobotStopsOrKeepsItsCommandWhenItsNodeIsKilled) {
     ASSERT_TRUE(run.says("/commander commands it"));
     ASSERT_TRUE(eventually([&] { return last_speed(watcher->output()) > 0.05; })) << watcher->output();
     node->signal(SIGKILL);
-    EXPECT_TRUE(run.says(stands ? ": the robot stands until one comes" : ": the robot keeps its last command until"));
-    EXPECT_TRUE(run.says("robot turtlebot3: no /cmd_vel of /commander for tick "));
+    EXPECT_TRUE(
+        run.says(stands ? ": the robot stands until a command arrives" : ": the robot keeps its last command until"));
+    EXPECT_TRUE(run.says("robot turtlebot3: no /cmd_vel from /commander for tick "));
     const std::size_t heard = watcher->output().size();
     const auto is_heard_again = [&] { return watcher->output().size() > heard + 4000; };
     ASSERT_TRUE(eventually(is_heard_again)) << "the run does not go on";
@@ -75,12 +76,12 @@ TEST(Ros2BadNodes, TheRunNamesTheNodeThatItWaitsFor) {
   auto node = run.start_node(jazzy(), "commander.py", good_commander);
   ASSERT_TRUE(run.says("robot turtlebot3: /commander commands it\n"));
   node->signal(SIGSTOP);
-  EXPECT_TRUE(run.says(" for /cmd_vel of /commander\n"));
+  EXPECT_TRUE(run.says(" for /cmd_vel from /commander\n"));
   node->signal(SIGCONT);
   node->signal(SIGINT);
-  EXPECT_TRUE(run.says("robot turtlebot3: /commander has gone\n"));
+  EXPECT_TRUE(run.says("robot turtlebot3: /commander no longer commands it\n"));
   node = run.start_node(kilted(), "commander.py", good_commander);
-  EXPECT_TRUE(run.says("/commander has gone\nrobot turtlebot3: /commander commands it\n"));
+  EXPECT_TRUE(run.says("/commander no longer commands it\nrobot turtlebot3: /commander commands it\n"));
 }
 
 TEST(Ros2BadNodes, ANodeReplacesAKilledOne) {
@@ -120,12 +121,13 @@ TEST(Ros2BadNodes, AnInvalidMessageIsReportedWithTheNodesName) {
   };
   const std::string stands = ", wait: 0.05, on_silence: stand";
   expect_text(turtlebot(stands, "1e6"), {"/cmd_vel", "nan"},
-              "robot turtlebot3: /cmd_vel of /odd: a value is not finite; this message is ignored\n");
+              "robot turtlebot3: /cmd_vel from /odd: a value is not finite; this message is ignored\n");
   const BridgedNodes::Options arm{
       .experiment = "arm", .ros2 = "{sync: command, namespace: /" + stands + "}", .seconds = "1e6"};
-  expect_text(arm, {"/velocity_controller/commands", "short"},
-              "robot arm: /velocity_controller/commands of /odd: it has 1 values; expected 3, one for each motor; this "
-              "message is ignored\n");
+  expect_text(
+      arm, {"/velocity_controller/commands", "short"},
+      "robot arm: /velocity_controller/commands from /odd: it has 1 values; expected 3, one for each motor; this "
+      "message is ignored\n");
 }
 
 TEST(Ros2BadNodes, ANodeWithAnotherTypeIsReportedAndIgnored) {
@@ -135,7 +137,7 @@ TEST(Ros2BadNodes, ANodeWithAnotherTypeIsReportedAndIgnored) {
   run.start();
   const auto odd = run.start_node(jazzy(), "odd_commander.py", {"/cmd_vel", "foreign"});
   EXPECT_TRUE(
-      run.says("robot turtlebot3: /cmd_vel of /odd is a std_msgs/msg/String; expected a geometry_msgs/msg/Twist or "
+      run.says("robot turtlebot3: /cmd_vel from /odd is a std_msgs/msg/String; expected a geometry_msgs/msg/Twist or "
                "geometry_msgs/msg/TwistStamped\n"));
   const auto node = run.start_node(jazzy(), "commander.py", good_commander);
   EXPECT_EQ(run.hash(), hash);
@@ -155,7 +157,7 @@ TEST(Ros2BadNodes, InvalidBytesAreReportedAndIgnored) {
     run.start();
     const auto stray =
         run.network().start({COHORT_BUILD_DIR "/bin/ros_writer", "/cmd_vel", "geometry_msgs/msg/Twist", bytes});
-    EXPECT_TRUE(run.says("robot turtlebot3: /cmd_vel of /stray: ")) << bytes;
+    EXPECT_TRUE(run.says("robot turtlebot3: /cmd_vel from /stray: ")) << bytes;
     EXPECT_TRUE(run.says("; this message is ignored\n")) << bytes;
     const auto node = run.start_node(jazzy(), "commander.py", good_commander);
     EXPECT_EQ(run.hash(), hash) << bytes;

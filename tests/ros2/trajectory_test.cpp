@@ -100,11 +100,13 @@ TEST(Ros2Trajectory, AnErrorIsReportedAndKeepsTheCurrentTrajectory) {
       EXPECT_EQ(error.what(), text);
     }
   };
-  expect_error(trajectory({"tail"}, {}), "it has no joint 'tail' that takes positions; there are lift, bend");
+  expect_error(trajectory({"tail"}, {}), "it has no position-controlled joint 'tail'; there are lift, bend");
   expect_error(trajectory({"lift"}, {{100ms, {1.0, 2.0}}}), "a point has 2 positions for 1 joints");
   expect_error(trajectory({"lift"}, {{100ms, {NAN}}}), "a position is not finite");
-  expect_error(trajectory({"lift"}, {{100ms, {1.0}}, {50ms, {1.0}}}), "the times of its points do not ascend");
-  expect_error(trajectory({"lift"}, {{-1000ms, {1.0}}}), "the times of its points do not ascend");
+  expect_error(trajectory({"lift"}, {{100ms, {1.0}}, {50ms, {1.0}}}),
+               "the times of its points must be non-negative and in ascending order");
+  expect_error(trajectory({"lift"}, {{-1000ms, {1.0}}}),
+               "the times of its points must be non-negative and in ascending order");
   EXPECT_EQ(at(moving, 1500ms, {0.0, 0.0, 0.0}), (Values{0.5, 0.0, 0.0}));
 }
 

@@ -75,7 +75,8 @@ TEST(RosIdle, NeedsNodesThatTheBridgeStarts) {
   if (const std::string missing = missing_for_ros2(); !missing.empty()) GTEST_SKIP() << missing;
   BridgedNodes run({.experiment = "arduino", .ros2 = "{sync: idle}", .seconds = "1"});
   run.start();
-  EXPECT_TRUE(run.says("robot robot_0 has 'sync: idle', which needs --run COMMAND: the bridge has to start its nodes"));
+  EXPECT_TRUE(
+      run.says("robot robot_0 has 'sync: idle', which requires --run COMMAND: the bridge must start its nodes"));
 }
 
 }  // namespace

@@ -239,7 +239,7 @@ async function drivesAlone(page) {
   clearInterval(beating);
   assert.deepEqual(await guest.ask({ operation: "release", name: robot }), {
     done: true,
-    text: "releases people/keys",
+    text: "released people/keys",
   });
   guest.close();
 }

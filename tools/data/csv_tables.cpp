@@ -58,7 +58,7 @@ class CsvTables final : public TableSink {
   explicit CsvTables(std::filesystem::path folder) : folder_(std::move(folder)) {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
-    if (error) refuse_to_write("the folder " + folder_.string() + " cannot be made", error.value());
+    if (error) refuse_to_write("the folder " + folder_.string() + " cannot be created", error.value());
   }
   std::unique_ptr<TableWriter> begin(const std::string& name, const std::vector<Column>& columns) override {
     std::string units;

@@ -134,12 +134,12 @@ class RecordingTables {
       robot_of_topic_["/" + roster_.robots[id].name + observation_topic_end] = id;
       commanded_[id] = roster_.robots[id].command;
       if (commanded_[id].size() != size_of(roster_.kinds[roster_.robots[id].kind].command))
-        throw messages::CdrError("a robot's command is not of its kind");
+        throw messages::CdrError("a robot's command has the wrong number of values");
     }
   }
 
   const RecordedRobot& robot(std::uint32_t id) const {
-    if (id >= roster_.robots.size()) throw messages::CdrError("a message is of a robot that is not in the roster");
+    if (id >= roster_.robots.size()) throw messages::CdrError("a message belongs to a robot that is not in the roster");
     return roster_.robots[id];
   }
   // Returns the team of a robot, or of the robot that the frame is a part of; empty if it is of neither.
@@ -182,7 +182,7 @@ class RecordingTables {
       std::vector<double>& values = commanded_[id];
       for (; i < commands.robots.size() && commands.robots[i] == id; ++i) {
         if (commands.places[i] >= values.size())
-          throw messages::CdrError("a command is of a channel that its robot does not have");
+          throw messages::CdrError("a command is for a channel that its robot does not have");
         values[commands.places[i]] = commands.values[i];
       }
       if (time != nullptr && is_selected(each))

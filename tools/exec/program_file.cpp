@@ -50,7 +50,7 @@ std::string why_not_elf(const std::string& head, const std::filesystem::path& fi
   std::ifstream self("/proc/self/exe", std::ios::binary);
   Elf64_Ehdr own{};
   self.read(reinterpret_cast<char*>(&own), sizeof own);
-  if (header.e_machine != own.e_machine) return "it is a program for another kind of processor";
+  if (header.e_machine != own.e_machine) return "it is a program for another processor architecture";
   const std::string table = head_of(file, std::size_t{header.e_phnum} * header.e_phentsize, header.e_phoff);
   bool has_loader = false;
   std::string notes;

@@ -54,7 +54,7 @@ class PageFile {
   PageFile() {
     std::string name = "/dev/shm/cohort-exec-XXXXXX";
     const int file = ::mkostemp(name.data(), O_CLOEXEC);
-    if (file < 0) throw std::runtime_error(system_text("cannot make a file in /dev/shm"));
+    if (file < 0) throw std::runtime_error(system_text("cannot create a file in /dev/shm"));
     path_ = name;
     if (::ftruncate(file, sizeof(ClockPage)) == 0)
       memory_ = ::mmap(nullptr, sizeof(ClockPage), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
@@ -115,7 +115,7 @@ struct VirtualProgram::State {
     const std::vector<char*> arguments = pointers(options.command);
     const std::vector<char*> variables = pointers(environment);
     int problem[2];
-    if (::pipe2(problem, O_CLOEXEC) != 0) throw std::runtime_error(system_text("cannot make a pipe"));
+    if (::pipe2(problem, O_CLOEXEC) != 0) throw std::runtime_error(system_text("cannot create a pipe"));
     const pid_t parent = ::getpid();
     process = ::fork();
     if (process == 0) {
@@ -251,7 +251,7 @@ struct VirtualProgram::State {
     for (const ThreadWatch::SystemCall& call : watch.system_calls())
       if ((call.number == SYS_nanosleep || call.number == SYS_clock_nanosleep) && told.insert(call.thread).second)
         tell("thread " + std::to_string(call.thread) + " of '" + options.name +
-             "' sleeps in real time: it makes system calls without the C library, or belongs to DDS");
+             "' sleeps in real time: it makes system calls without the C library, or is a thread of DDS");
   }
 
   void tell(const std::string& text) const {
@@ -261,7 +261,7 @@ struct VirtualProgram::State {
   void tell_busy() {
     const std::string busy = watch.busy_threads();
     if (!has_started()) return tell("'" + options.name + "' does not load the library that replaces its clocks");
-    tell("'" + options.name + "' has not waited for anything for 5 s, so time stands still: " +
+    tell("'" + options.name + "' has not waited for anything for 5 s, so simulated time does not advance: " +
          (busy.empty() ? "its threads wake each other" : busy));
   }
 
@@ -381,7 +381,7 @@ int VirtualProgram::end(std::chrono::milliseconds at_most) {
 
 std::string text_of_end(int exit_code) {
   constexpr int signals = 128;
-  return exit_code > signals ? "was ended by the signal " + std::string(::strsignal(exit_code - signals))
+  return exit_code > signals ? "was terminated by the signal " + std::string(::strsignal(exit_code - signals))
                              : "has ended with the exit code " + std::to_string(exit_code);
 }
 

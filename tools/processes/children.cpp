@@ -39,7 +39,7 @@ std::string end_of(pid_t pid, int status) {
   const std::string process = "controller process " + std::to_string(pid);
   if (!WIFSIGNALED(status)) return process + " ended with exit code " + std::to_string(WEXITSTATUS(status));
   const int number = WTERMSIG(status);
-  return process + " was ended by signal " + std::to_string(number) + " (" + description_of(number) + ")";
+  return process + " was terminated by signal " + std::to_string(number) + " (" + description_of(number) + ")";
 }
 
 // Runs between fork and exec, where only functions that are safe in a signal handler may be called.

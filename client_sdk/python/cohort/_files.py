@@ -30,8 +30,8 @@ def page_folder():
     folder = worlds_folder().parent / "view"
     if not (folder / "index.html").is_file():
         raise FileNotFoundError(
-            f"the web page of the view is missing in '{folder}'. It is built with Cohort if node 18 and npm are "
-            "installed (tools/install-packages tools/packages-node.txt); build it with "
+            f"the web page of the view is missing from '{folder}'. To build it, install node 18 and npm "
+            "(tools/install-packages tools/packages-node.txt), then run "
             "cmake --build build/release --target view_page"
         )
     return folder

@@ -75,7 +75,7 @@ class Parameters:
 
     def text(self, name: str, fallback: str | None = None) -> str:
         """Returns one string."""
-        text = self._single(name, "a text", fallback)
+        text = self._single(name, "a single value", fallback)
         return fallback or "" if text is None else text
 
     def texts(self, name: str) -> list[str]:

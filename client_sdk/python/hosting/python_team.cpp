@@ -16,8 +16,8 @@ decltype(auto) guarded(const std::string& name, const char* function, std::uint6
   try {
     return call();
   } catch (const std::exception& error) {
-    throw Failure("the controller '" + name + "' of all robots failed in " + function + " at tick " +
-                  std::to_string(tick) + ": " + error.what());
+    throw Failure("the team controller '" + name + "' failed in " + function + " at tick " + std::to_string(tick) +
+                  ": " + error.what());
   }
 }
 

@@ -75,7 +75,8 @@ void reset_worlds(HeldBatch& held, const Mask& mask, const Seeds& seeds) {
   const OneUser::Turn turn(held.user);
   const std::size_t worlds = held.batch.worlds();
   if (mask.shape(0) != worlds || seeds.shape(0) != worlds)
-    throw std::invalid_argument("expected `only` and `seeds` for " + std::to_string(worlds) + " worlds");
+    throw std::invalid_argument("`only` and `seeds` must each have " + std::to_string(worlds) +
+                                " elements, one for each world");
   const nb::gil_scoped_release no_gil;
   for (std::size_t world = 0; world < worlds; ++world)
     if (mask(world)) held.batch.reset(world, seeds(world));

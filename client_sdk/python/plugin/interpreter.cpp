@@ -37,7 +37,9 @@ struct Found {
   std::string library{};
 };
 
-std::string advice() { return ". Set COHORT_PYTHON to a Python interpreter that has the Python package of Cohort"; }
+std::string advice() {
+  return ". Set COHORT_PYTHON to a Python interpreter in which the Python package of Cohort is installed";
+}
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;

@@ -9,7 +9,7 @@ extern "C" __attribute__((visibility("default"))) const cohort::Plugin cohort_pl
     cohort::Plugin::current_abi, "python",
     []() -> cohort::Controller* {
       throw std::runtime_error(
-          "the plugin 'python' cannot be used alone; give a controller's file, such as wanderer.py");
+          "the plugin 'python' cannot be used alone; use the path of a controller's file, such as wanderer.py");
     },
     [](cohort::Controller* controller) { delete controller; }};
 

@@ -35,7 +35,7 @@ struct Control::State {
     std::ostringstream seconds;
     seconds << 1e-3 * static_cast<double>(limit.count());
     const char* const why = client.sees_server() ? "" : ": no controllable server found";
-    return ControlError("request not done within " + seconds.str() + " s" + why, ControlResult::no_answer);
+    return ControlError("the request was not completed within " + seconds.str() + " s" + why, ControlResult::no_answer);
   }
 
   // Sends a request and returns its reply. Throws unless it was done.

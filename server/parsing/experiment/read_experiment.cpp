@@ -236,7 +236,8 @@ Experiment read_experiment_with_joint_motors(const fs::path& named, std::optiona
   } catch (const InputError& error) {
     plain.world.warnings.push_back(
         {file, 0, "",
-         std::string("joints cannot be moved from the page, since the model cannot be included: ") + error.what()});
+         std::string("the page cannot move the joints of this model, because the model cannot be included: ") +
+             error.what()});
     return plain;
   }
 }

@@ -127,14 +127,14 @@ void Ros2Reader::read_names(const ScheduleEntry& entry, Ros2Settings& settings) 
     if (name != "/" && (!name.starts_with('/') || !is_ros_name(name)))
       entry.problem(
           "namespace",
-          "expected '/', or names of letters, digits and underscores, each after a slash, not '" + name + "'");
+          "expected '/', or names of letters, digits and underscores, each preceded by a slash, not '" + name + "'");
     settings.name_space = name;
   }
   const auto take_frame = [&](const char* key, std::string& frame) {
     if (!entry.values().has(key)) return;
     frame = entry.values().text(key);
     if (!is_frame(frame))
-      entry.problem(key, "expected a frame without spaces that does not begin with a slash, not '" + frame + "'");
+      entry.problem(key, "expected a frame name without spaces and without a leading slash, not '" + frame + "'");
   };
   take_frame("frames", settings.frames);
   take_frame("base_frame", settings.base_frame);
@@ -173,8 +173,8 @@ std::optional<Ros2Topic> Ros2Reader::read_topic(const YamlNode& key, const YamlN
   if (topic.topic.find('*') != std::string::npos)
     entry.problem("name", "'" + topic.topic + "' can match several topics, which cannot share a name");
   else if (!is_ros_name(topic.name))
-    entry.problem("name", "expected names of letters, digits and underscores with a slash between them, not '" +
-                              topic.name + "'");
+    entry.problem("name",
+                  "expected names of letters, digits and underscores, separated by slashes, not '" + topic.name + "'");
   return topic;
 }
 

@@ -114,7 +114,7 @@ void ScheduleReader::choose_kind(const YamlMap& map, const std::vector<std::stri
   for (const std::string& kind : kinds) {
     if (!map.has(kind)) continue;
     if (!written.kind.empty()) {
-      map.problem(kind, "is unexpected; each entry of the list has only one of these keys");
+      map.problem(kind, "unexpected key; each entry of this list must have exactly one key of this kind");
       continue;
     }
     written.kind = kind;

@@ -81,7 +81,7 @@ std::vector<Event> read_spawn_events(const ScheduleEntry& entry, std::optional<s
   Spawner spawner{values.text("name"), 0, values.pose("pose"), values.point("area"), "", 1};
   if (is_reaction || values.has("every")) spawner.most = static_cast<std::size_t>(values.whole("most"));
   if (!is_object_name(spawner.name + "_" + std::to_string(most_spawned)))
-    entry.problem("name", "expected a name of parts that are separated by slashes, shorter than 250 bytes");
+    entry.problem("name", "expected a name shorter than 250 bytes, with parts separated by single slashes");
   const auto& models = experiment.world.spawnable_models;
   const auto model = std::ranges::find(models, values.text("model"), &SpawnableModel::uri);
   if (model == models.end()) return {};  // which is reported with the world

@@ -48,7 +48,7 @@ Policy read_policy(const YamlMap& team) {
   policy.mode = read_mode(team);
   const bool is_free = policy.mode == Mode::free;
   if (is_free && policy.delay != 0)
-    team.problem("delay", "cannot be used with mode: free, where answers act on arrival");
+    team.problem("delay", "cannot be used with mode: free, in which commands take effect on arrival");
   policy.required = read_required(team, !is_free);
 
   const std::string on_late = team.text("on_late").value_or(is_free ? "hold" : "wait");
@@ -60,7 +60,8 @@ Policy read_policy(const YamlMap& team) {
   policy.on_late = choice_of<OnLate>(late_policies, on_late);
   if (policy.on_late == OnLate::wait) {
     if (is_free) team.problem("on_late", "'wait' cannot be used with mode: free; expected hold, zero, detach or stop");
-    if (team.has("deadline")) team.problem("deadline", "cannot be used with on_late: wait, which waits without limit");
+    if (team.has("deadline"))
+      team.problem("deadline", "cannot be used with on_late: wait, which waits without a time limit");
     return policy;
   }
   if (is_free && policy.on_late == OnLate::hold) {
@@ -68,7 +69,7 @@ Policy read_policy(const YamlMap& team) {
       team.problem("deadline", "cannot be used with mode: free and on_late: hold, which has no time limit");
     return policy;
   }
-  team.require("deadline", "wall time to wait before '" + on_late + "', in seconds");
+  team.require("deadline", "wall time to wait for an answer before '" + on_late + "', in seconds");
   policy.deadline = read_seconds(team, "deadline").value_or(policy.deadline);
   return policy;
 }
@@ -196,7 +197,7 @@ void TeamReader::read_parameters(const YamlNode& map, const std::string& path, c
     if (!is_right) {
       report_.problem(*key, path_to_it,
                       "expected a value or a list of values, not " +
-                          (value->is_list() ? "a list of something else" : shown(*value)));
+                          (value->is_list() ? "a list that contains lists or maps" : shown(*value)));
     } else if (std::ranges::any_of(parameters, [&](const Parameter& other) { return other.name == name; })) {
       report_.problem(*key, path_to_it, "the parameter is given twice");
     } else {

@@ -33,7 +33,7 @@ extern "C" void keep_error(png_structp png, png_const_charp message) {
 extern "C" void ignore_warning(png_structp, png_const_charp) {}
 extern "C" void take_bytes(png_structp png, png_bytep bytes, std::size_t count) {
   std::string_view& unread = static_cast<Image*>(png_get_io_ptr(png))->unread;
-  if (count > unread.size()) png_error(png, "the file ends too early");
+  if (count > unread.size()) png_error(png, "the file is truncated");
   std::memcpy(bytes, unread.data(), count);
   unread.remove_prefix(count);
 }
@@ -73,7 +73,7 @@ Image read_png(InputFiles& input, const std::filesystem::path& path) {
 
   if (!read_header(png, info, image)) fail(image.error + "; expected a PNG image");
   if (image.colours != PNG_COLOR_TYPE_GRAY || image.bits < 8)
-    fail("expected a grey PNG image of 8 or 16 bits, without transparency");
+    fail("expected a greyscale PNG image with 8 or 16 bits per pixel and without transparency");
   if (image.width < 2 || image.height < 2) fail("expected at least 2 by 2 pixels");
   const std::size_t row_bytes = png_get_rowbytes(png, info);
   image.bytes.resize(image.height * row_bytes);

@@ -105,13 +105,14 @@ std::string text_of(std::chrono::seconds time) { return std::to_string(time.coun
 std::string why_ended(int status, const ChildLimits& limits) {
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
-    if (number == SIGXCPU) return "took longer than " + text_of(limits.processor_time) + " of processor time";
+    if (number == SIGXCPU) return "used more than " + text_of(limits.processor_time) + " of processor time";
     if (number == SIGALRM) return "took longer than " + text_of(limits.wall_time);
     return "crashed (signal " + std::to_string(number) + ")";
   }
   const int code = WEXITSTATUS(status);
   if (code == is_out_of_memory) return "needed more than " + text_of(limits.memory) + " of memory";
-  if (code == cannot_be_limited) return "could not be limited in memory and time; check that /proc is mounted";
+  if (code == cannot_be_limited)
+    return "could not be started with limits on its memory and time; check that /proc is mounted";
   return "crashed (exit code " + std::to_string(code) + ")";
 }
 
@@ -144,7 +145,7 @@ void ChildStream::receive(void* bytes, std::size_t size) {
 LimitedChild::Ends::Ends() {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    throw std::system_error(errno, std::generic_category(), "no process can be started");
+    throw std::system_error(errno, std::generic_category(), "cannot start a process");
   of_parent = ends[0];
   of_child = ends[1];
 }
@@ -158,7 +159,7 @@ LimitedChild::LimitedChild(Ends ends, const ChildLimits& limits, const Work& wor
   if (process_ == 0) be_child(ends.of_child, parent, limits, work);
   const int error = errno;
   close(ends.of_child);
-  if (process_ < 0) throw std::system_error(error, std::generic_category(), "no process can be started");
+  if (process_ < 0) throw std::system_error(error, std::generic_category(), "cannot start a process");
 }
 
 LimitedChild::~LimitedChild() {

@@ -79,9 +79,10 @@ fs::path ModelSearch::sdf_file_of(const fs::path& folder) const {
   if (outline.root.name != "model" || sdf == nullptr || sdf->text.empty())
     throw std::runtime_error(config.string() + " must contain <model> with <sdf version=\"1.9\">FILE</sdf>");
   const std::string file = best_file(outline.root);
-  if (file.empty()) throw std::runtime_error(config.string() + " does not name an SDF file of a supported version");
+  if (file.empty()) throw std::runtime_error(config.string() + " does not list an SDF file of a supported version");
   if (!input_.is_file(folder / file))
-    throw std::runtime_error("there is no '" + (folder / file).string() + "', which " + config.string() + " names");
+    throw std::runtime_error("there is no '" + (folder / file).string() + "', the file that " + config.string() +
+                             " lists");
   return folder / file;
 }
 
@@ -118,9 +119,9 @@ std::string ModelSearch::searched_folders() const {
 void ModelSearch::fail_to_find_file(const std::string& file, const fs::path& folder) const {
   const std::string name = file.substr(0, file.find('/'));
   const std::string searched = searched_folders();
-  throw std::runtime_error("there is no '" + file + "' in a folder above or beside " + folder.string() +
+  throw std::runtime_error("there is no '" + file + "' in " + folder.string() + " or its parent folders" +
                            (searched.empty() ? "" : ", nor in " + searched) +
-                           ", and no package.xml above names the package '" + name +
+                           ", and no package.xml there declares the package '" + name +
                            "'; use --allow-files DIR if DIR contains '" + name + "'");
 }
 
@@ -184,8 +185,8 @@ fs::path ModelSearch::find_fetched(const std::string& uri) const {
     return found;
   }
   throw std::runtime_error(
-      "'" + uri + "' cannot be downloaded; expected model://NAME or a path" +
-      (is_model ? "; download it with `gz fuel download -u \"" + uri + "\"`; Cohort finds it in ~/.gz/fuel" : ""));
+      "Cohort does not download '" + uri + "'; expected model://NAME or a path" +
+      (is_model ? ". After `gz fuel download -u \"" + uri + "\"`, Cohort finds the model in ~/.gz/fuel" : ""));
 }
 
 std::string ModelSearch::newest_version(const fs::path& model) const {

@@ -124,11 +124,11 @@ class SampleReader {
       if (distance < 0.0) return refuse(number, "distance", "expected at least 0 m");
       if (!distances.empty() && distance < distances.back())
         return refuse(number, "distance",
-                      "expected at least " + shortest_text(distances.back()) + ", the distance of the line before");
+                      "expected at least " + shortest_text(distances.back()) + ", the distance in the previous line");
       if (!distances.empty() && angles_here_ < angles.size())
         return refuse(number, "angle",
                       "expected " + shortest_text(angles[angles_here_]) + " at the previous distance; " +
-                          "every distance must have the angles of the first");
+                          "every distance must have the same angles as the first");
       distances.push_back(distance);
       angles_here_ = 0;
     }
@@ -140,11 +140,12 @@ class SampleReader {
         return refuse(number, "angle", "expected an angle less than a full turn from the first");
       angles.push_back(angle);
     } else if (angles_here_ >= angles.size()) {
-      return refuse(number, "angle", "expected the next distance; every distance must have the angles of the first");
+      return refuse(number, "angle",
+                    "expected the next distance; every distance must have the same angles as the first");
     } else if (angle != angles[angles_here_]) {
-      return refuse(
-          number, "angle",
-          "expected " + shortest_text(angles[angles_here_]) + "; every distance must have the angles of the first");
+      return refuse(number, "angle",
+                    "expected " + shortest_text(angles[angles_here_]) +
+                        "; every distance must have the same angles as the first");
     }
     ++angles_here_;
     return true;
@@ -161,7 +162,7 @@ class SampleReader {
     else if (angles_here_ < samples_.angles.size())
       add_problem(last_line, "angle",
                   "the file ends before the angle " + shortest_text(samples_.angles[angles_here_]) +
-                      "; every distance must have the angles of the first");
+                      "; every distance must have the same angles as the first");
   }
 
   InputFiles& input_;

@@ -126,8 +126,8 @@ const XmlNode* find_macro(const XmlNode& root, const std::filesystem::path& file
 }
 
 std::string why_not_expanded(const std::filesystem::path& file) {
-  return "this is a xacro file, which can contain code that its expansion runs; run `xacro " +
-         file.filename().string() + " > robot.urdf` and use robot.urdf, or use --xacro for a file that you trust";
+  return "this is a xacro file, whose expansion can execute code; run `xacro " + file.filename().string() +
+         " > robot.urdf` and use robot.urdf, or use --xacro if you trust the file";
 }
 
 void expand_named(InputFiles& input, const std::filesystem::path& file) {

@@ -80,7 +80,7 @@ OutlineBuilder::OutlineBuilder(std::string_view text) : text_(text) {
 
 XmlOutline OutlineBuilder::build() {
   if (text_.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    outline_.error = {0, "has more than 2 GB"};
+    outline_.error = {0, "is larger than 2 GB"};
   else if (XML_Parse(parser_.get(), text_.data(), static_cast<int>(text_.size()), XML_TRUE) == XML_STATUS_ERROR &&
            !outline_.error)
     outline_.error = error();

@@ -24,7 +24,7 @@ std::optional<std::size_t> find_joint(const Model& model, const std::string& nam
     return std::nullopt;
   }
   if (std::ranges::any_of(model.loop_joints, [&](const Joint& joint) { return joint.name == name; }))
-    report.problem(where, "the joint '" + name + "' closes a loop and has no position of its own");
+    report.problem(where, "the joint '" + name + "' closes a kinematic loop, so its position is not independent");
   else
     report.problem(where, "the model has no joint '" + name + "'" + suggestion(name, names));
   return std::nullopt;

@@ -119,7 +119,7 @@ std::string References::flaw_of_joint(Referent to, std::size_t index) {
   const Joint& joint = model_.joints[index];
   if (to == Referent::wheel_joint) {
     if (joint.type != JointType::revolute) return "is not revolute; the joint of a wheel must be revolute";
-    if (joint.parent != 0) return "is not between '" + model_.links[0].name + "' and a wheel";
+    if (joint.parent != 0) return "does not connect '" + model_.links[0].name + "' to a wheel";
     if (motorised_.contains(index)) return "already has a motor";
     return wheels_.insert(index).second ? "" : "is already listed as the joint of a wheel";
   }
@@ -127,7 +127,7 @@ std::string References::flaw_of_joint(Referent to, std::size_t index) {
   if (joint.type == JointType::fixed) return "is fixed";
   if (joint.type == JointType::ball) return "is a ball joint, which has no single axis";
   if (to == Referent::moving_joint) return "";
-  if (wheels_.contains(index)) return "belongs to a wheel of a treel_drive, which moves it";
+  if (wheels_.contains(index)) return "is already driven by a treel_drive, as the joint of one of its wheels";
   return motorised_.insert(index).second ? "" : "already has a motor";
 }
 
@@ -139,7 +139,7 @@ void check_samples(const std::shared_ptr<const Samples>& samples, std::size_t co
                    const SdfReport& report) {
   if (samples && samples->count() != count)
     report.problem(values.where("samples"), "'" + values.text("samples") + "' has " + std::to_string(samples->count()) +
-                                                " readings at each place, but the device has " + std::to_string(count));
+                                                " readings in each line, but the device has " + std::to_string(count));
 }
 
 void check(const ProximityRing& ring, const ExtensionValues& values, const SdfReport& report) {
@@ -148,8 +148,9 @@ void check(const ProximityRing& ring, const ExtensionValues& values, const SdfRe
   check_samples(ring.samples, ring.count, values, report);
   const bool takes_samples = ring.technique == ProximityTechnique::samples;
   if (takes_samples != values.has("samples"))
-    report.problem(values.where("samples"), takes_samples ? "the technique 'samples' needs a file <cohort:samples>"
-                                                          : "only the technique 'samples' uses a sample file");
+    report.problem(values.where("samples"), takes_samples
+                                                ? "the technique 'samples' requires a sample file, <cohort:samples>"
+                                                : "only the technique 'samples' uses a sample file");
 }
 
 void check(const LightSensors& sensors, const ExtensionValues& values, const SdfReport& report) {

@@ -71,7 +71,7 @@ void read_give_of_limits(const sdf::JointAxis& sdf_axis, const SdfReport& report
     report.problem(dissipation, "expected a dissipation >= 0");
   if (!is_soft) {
     if (is_written(dissipation) && dissipation->GetExplicitlySetInFile() && sdf_axis.Dissipation() != 1.0)
-      report.warning(dissipation, "<dissipation> is ignored; without a <stiffness> below 1e8 limits are rigid");
+      report.warning(dissipation, "<dissipation> is ignored, because limits are rigid unless <stiffness> is below 1e8");
     return;
   }
   axis.limit_stiffness = sdf_axis.Stiffness();
@@ -150,9 +150,10 @@ void read_ball(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& join
   joint.axis.damping = read.damping;
   joint.axis.friction = read.friction;
   if (read.spring_stiffness > 0.0)
-    report.warning(find(sdf_axis->Element(), {"dynamics", "spring_stiffness"}), "a ball joint has no spring");
+    report.warning(find(sdf_axis->Element(), {"dynamics", "spring_stiffness"}),
+                   "the spring is ignored, because a ball joint cannot have one");
   if (std::isfinite(read.lower) || std::isfinite(read.upper))
-    report.warning(find(sdf_axis->Element(), {"limit"}), "a ball joint has no limits");
+    report.warning(find(sdf_axis->Element(), {"limit"}), "<limit> is ignored, because a ball joint cannot have limits");
 }
 
 void read_axes(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& joint) {

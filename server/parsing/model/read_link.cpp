@@ -80,9 +80,10 @@ Inertial read_written_inertial(const sdf::Link& sdf_link, const Link& link, cons
   const sdf::ElementPtr element = sdf_link.Element();
   const sdf::ElementPtr mass = find(element, {"inertial", "mass"});
   const sdf::ElementPtr inertia = find(element, {"inertial", "inertia"});
-  if (mass && mass->Get<double>() == 0.0 && report.is_foreign(mass)) return inertial_of_shapes(link);  // already reported
-  if (!mass) report.warning(element, "has no mass; the default of SDF is used, 1 kg");
-  if (!inertia) report.warning(element, "has no inertia; the default of SDF is used, 1 kg m^2 about each axis");
+  if (mass && mass->Get<double>() == 0.0 && report.is_foreign(mass))
+    return inertial_of_shapes(link);  // already reported
+  if (!mass) report.warning(element, "has no mass; SDF's default of 1 kg is used");
+  if (!inertia) report.warning(element, "has no inertia; SDF's default of 1 kg m^2 about each axis is used");
 
   Inertial inertial;
   inertial.X_LI = written_pose(sdf_link.Inertial().Pose(), find(element, {"inertial"}));
@@ -151,9 +152,10 @@ std::optional<Inertial> read_inertial_from_density(const sdf::Link& sdf_link, co
     report.problem(written, "expected either <inertial> or <cohort:density>, not both");
   const MassProperties whole = together(parts);
   if (!(whole.mass > 0.0) && link.collisions.size() == sdf_link.CollisionCount())
-    report.problem(sdf_link.Element(), "<cohort:density> needs a <collision> that has a volume");
+    report.problem(sdf_link.Element(), "<cohort:density> requires a <collision> with a volume");
   if (!std::isfinite(whole.mass) || !whole.inertia.allFinite())
-    report.problem(sdf_link.Element(), "the collisions are too large for their density");
+    report.problem(sdf_link.Element(),
+                   "the mass or inertia of the collisions is not finite: check their sizes and <cohort:density>");
   return Inertial{whole.mass, {whole.centre, Eigen::Quaterniond::Identity()}, whole.inertia};
 }
 
@@ -170,7 +172,7 @@ double read_coefficient(const sdf::ElementPtr& element, double by_default, doubl
 double read_friction_coefficient(const sdf::ElementPtr& element, const SdfReport& report) {
   constexpr double as_if_glued = 1e3;
   const char* const expected = "expected a coefficient >= 0";
-  if (element && element->Get<double>() < 0.0 && report.flaw(element, expected, "friction without limit is used"))
+  if (element && element->Get<double>() < 0.0 && report.flaw(element, expected, "unlimited friction is used"))
     return as_if_glued;
   return read_coefficient(element, 1.0, std::numeric_limits<double>::max(), expected, report);
 }

@@ -84,8 +84,7 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
     std::string names;
     for (const std::size_t root : roots) names += (names.empty() ? "'" : ", '") + model.links[root].name + "'";
     report.problem(sdf_model.Element(),
-                   "the links " + names +
-                       " have no joint to a parent link, and loops of joints connect them; expected one such root");
+                   "the links " + names + " are all root links, but loop joints connect them; expected one root link");
     return false;
   }
   for (const std::size_t root : roots) put(root);
@@ -121,8 +120,9 @@ void take_kinematic_links(Model& model, const SdfReport& report, const sdf::Elem
   for (std::size_t link = 0; link < model.links.size(); ++link) {
     if (!model.links[link].is_kinematic || !is_child(link)) continue;
     model.links[link].is_kinematic = false;
-    report.warning(element, "<kinematic> of the link '" + model.links[link].name +
-                                "' is ignored because a joint holds the link; only a free root link can be kinematic");
+    report.warning(element,
+                   "<kinematic> of the link '" + model.links[link].name +
+                       "' is ignored because the link is attached by a joint; only a free root link can be kinematic");
   }
 }
 

@@ -117,7 +117,7 @@ void SensorElement::add_noise(const sdf::ElementPtr& noise, const std::string& q
     type = trimmed(noise->GetAttribute("type")->GetAsString());
   if (type == "none") return;
   if (type != "gaussian" && type != "gaussian_quantized") {
-    report().problem(noise, "expected noise of the type none, gaussian or gaussian_quantized, not '" + type + "'");
+    report().problem(noise, "expected the noise type none, gaussian or gaussian_quantized, not '" + type + "'");
     return;
   }
   Noise result;
@@ -365,14 +365,14 @@ std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, con
     // A slash separates the parts of the names of channels.
     std::string plain = sensor.name();
     std::ranges::replace(plain, '/', '_');
-    if (plain != sensor.name() &&
-        reading.report.flaw(sensor.element(), "expected a name without '/' in it", "it is renamed to '" + plain + "'"))
+    if (plain != sensor.name() && reading.report.flaw(sensor.element(), "expected a name without '/'",
+                                                      "the sensor is renamed to '" + plain + "'"))
       sensor.rename(plain);
     if (!names.insert(sensor.name()).second) {
       std::string other = place->owner + "_" + sensor.name();
       while (names.contains(other)) other += "_";
       if (reading.report.flaw(sensor.element(), "another device of the model has the name '" + sensor.name() + "'",
-                              "it is renamed to '" + other + "'")) {
+                              "the sensor is renamed to '" + other + "'")) {
         sensor.rename(other);
         names.insert(other);
       }

@@ -14,7 +14,7 @@ std::size_t intervals(double length, double spacing) {
   const double count = std::max(1.0, std::ceil(length / spacing - 1e-9));  // a whole multiple stays one
   if (!(count < most_terrain_heights))
     throw std::runtime_error("expected at most " + std::to_string(static_cast<int>(most_terrain_heights)) +
-                             " heights along a side; the spacing is too small for this size");
+                             " height samples along each side; the spacing is too small for this size");
   return static_cast<std::size_t>(count);
 }
 

@@ -115,7 +115,7 @@ constexpr ParameterNames joint_names = {"joint_name", "jointName"};
 
 void need_joint(ModelPlugin& plugin) {
   if (!plugin.first(joint_names))
-    plugin.report().problem(plugin.element(), "missing: the joint that it moves", *joint_names.begin());
+    plugin.report().problem(plugin.element(), "missing: the joint that the plugin moves", *joint_names.begin());
 }
 
 }  // namespace
@@ -162,7 +162,7 @@ struct Carrier {
 };
 std::optional<Carrier> carrier_of(ModelPlugin& plugin, const Joint& joint, const sdf::ElementPtr& parameter) {
   if (joint.parent == Joint::world) {
-    plugin.report().problem(parameter, "expected the joint of a propeller on a link, not on the world");
+    plugin.report().problem(parameter, "expected a propeller joint whose parent is a link, not the world");
     return std::nullopt;
   }
   const Link& parent = plugin.model().links[joint.parent];
@@ -175,7 +175,7 @@ void multicopter_motor_model(ModelPlugin& plugin) {
   need_joint(plugin);
   plugin.all({"linkName"});  // it is that of the joint
   if (const sdf::ElementPtr type = plugin.first({"motorType"}); type && text_of_parameter(type) != "velocity")
-    plugin.report().warning(type, "is not supported: the command of a motor is a velocity");
+    plugin.report().warning(type, "is not supported: motors are commanded by velocity");
   for (const auto& [joint, parameter] : plugin.joints(joint_names))
     if (const auto carrier = carrier_of(plugin, *joint, parameter))
       plugin.as<Rotor>()
@@ -231,7 +231,7 @@ namespace {
 std::optional<std::string> link_of(ModelPlugin& plugin) {
   const sdf::ElementPtr parameter = plugin.first({"link_name"});
   if (!parameter) {
-    plugin.report().problem(plugin.element(), "missing: the link that it acts on", "link_name");
+    plugin.report().problem(plugin.element(), "missing: the link on which the plugin acts", "link_name");
     return std::nullopt;
   }
   const std::string name = text_of_parameter(parameter);
@@ -253,7 +253,7 @@ void lift_drag(ModelPlugin& plugin) {
   const Eigen::Vector3d aside = upward.cross(forward);
   constexpr double parallel = 1e-6;
   if (!(aside.norm() > parallel * upward.norm() * forward.norm())) {
-    plugin.report().problem(plugin.element(), "expected <forward> and <upward> in different directions, not zero");
+    plugin.report().problem(plugin.element(), "expected <forward> and <upward> to be nonzero and not parallel");
     return;
   }
   Eigen::Matrix3d axes;

@@ -124,7 +124,7 @@ bool ExtensionValues::read_name(const Extension& extension, const SdfReport& rep
   if (element_->HasAttribute("name")) name_ = trimmed(element_->GetAttribute("name")->GetAsString());
   // A slash separates the parts of the names of channels and instances.
   if (name_.empty() || name_.find('/') != std::string::npos) {
-    report.problem(element_, "expected an attribute name=\"NAME\", without '/' in it");
+    report.problem(element_, "expected an attribute name=\"NAME\", with a NAME without '/'");
     valid = false;
   }
   return valid;
@@ -163,7 +163,7 @@ bool ExtensionValues::read_children(const Extension& extension, const SdfReport&
 
 bool ExtensionValues::read_value(const sdf::ElementPtr& element, const ExtensionKey& key, const SdfReport& report) {
   if (const sdf::ElementPtr stray = element->GetFirstElement()) {
-    report.problem(stray, "unexpected element; <" + element->GetName() + "> holds " + expected(key));
+    report.problem(stray, "unexpected element; <" + element->GetName() + "> must contain " + expected(key));
     return false;
   }
   const std::string text = value_text(element);

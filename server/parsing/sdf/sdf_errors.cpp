@@ -46,11 +46,11 @@ struct Saying {
 };
 constexpr Saying sayings[] = {
     {"causing a graph cycle", "name[", "'*' refers to itself; expected another frame"},
-    {"must not specify its own name", "name[", "the joint '*' names itself; expected a link or another frame"},
-    {"cycle detected", "", "frames refer to each other in a circle"},
+    {"must not specify its own name", "name[", "the joint '*' refers to itself; expected a link or another frame"},
+    {"cycle detected", "", "frames refer to each other in a cycle"},
     {"not found in model", "name[", "there is no link or frame '*' in the model"},
-    {"relative_to name[", "name[", "there is no frame '*' for relative_to"},
-    {"attached_to name[", "name[", "there is no frame '*' for attached_to"},
+    {"relative_to name[", "name[", "relative_to refers to a frame '*' that does not exist"},
+    {"attached_to name[", "name[", "attached_to refers to a frame '*' that does not exist"},
     {"is reserved.", "name [", "the name '*' is reserved; choose another name"},
     {"already exists.", "name[", "the name '*' is already used; names must be unique within their parent element"},
     {"non-unique name", "name [", "another element of the model has the name '*'; names must be unique within a model"},

@@ -128,7 +128,7 @@ bool SdfFiles::fits(const XmlNode& include, const std::string& path, const SdfFi
   if (file.size <= most_elements) return true;
   problems_.push_back(
       {include.file->shown, include.line, path,
-       "this include increases the size of nested models to more than " + std::to_string(most_elements) + " elements"});
+       "with this include, nested models have more than " + std::to_string(most_elements) + " elements"});
   return false;
 }
 

@@ -24,8 +24,9 @@ std::optional<std::chrono::nanoseconds> read_step(const sdf::Physics* physics, c
   const sdf::ParamPtr type = physics->Element()->GetAttribute("type");
   if (const std::string engine = type && type->GetSet() ? type->GetAsString() : "ignored";
       engine != "bullet" && engine != "ignored" && physics->Element()->GetExplicitlySetInFile())
-    report.warning(physics->Element(), "the engine '" + engine +
-                                           "' is not supported; Cohort uses the bodies of Bullet with its own solvers");
+    report.warning(
+        physics->Element(),
+        "the engine '" + engine + "' is not supported; Cohort uses Bullet's rigid bodies with its own solvers");
   // The default of SDF is 1 ms, which libsdformat adds if there is no value.
   const sdf::ElementPtr step = physics->Element()->FindElement("max_step_size");
   if (!step || !step->GetExplicitlySetInFile()) return std::nullopt;

@@ -46,7 +46,7 @@ std::optional<BreakableJoint> read_breakable_joint(const ExtensionValues& values
   const auto second_link = find_link(values, "second_link", world.instances[*second], model(*second), report);
   if (!first_link || !second_link) return std::nullopt;
   if (*first == *second) {
-    report.problem(values.where("second"), "expected another object than '" + values.text("first") + "'");
+    report.problem(values.where("second"), "expected an object other than '" + values.text("first") + "'");
     return std::nullopt;
   }
   if (model(*first).is_static && model(*second).is_static) {

@@ -53,7 +53,8 @@ Vector3d place_in(std::string_view pattern, std::uint64_t member, std::uint64_t 
 std::optional<Layout> read_formation(const ExtensionValues& values, std::uint64_t count, const SdfReport& report) {
   FormationLayout layout{values.point("center"), values.vectors("member")};
   if (values.has("pattern") == !layout.members.empty()) {
-    report.problem(values.element(), "expected either a <cohort:pattern> or its members, each as a <cohort:member>");
+    report.problem(values.element(),
+                   "expected either a <cohort:pattern> or a list of members, each as a <cohort:member>");
     return std::nullopt;
   }
   if (values.has("pattern")) {
@@ -65,7 +66,7 @@ std::optional<Layout> read_formation(const ExtensionValues& values, std::uint64_
       layout.members.emplace_back(values.real("spacing") * place_in(values.text("pattern"), i, count));
   } else if (layout.members.size() < count) {
     report.problem(values.element(), "has " + std::to_string(layout.members.size()) +
-                                         " members, and <cohort:count> is " + std::to_string(count));
+                                         " members, but <cohort:count> is " + std::to_string(count));
     return std::nullopt;
   }
   return layout;

@@ -38,7 +38,8 @@ ParsedModelPtr read_model_text(const std::string& text, const std::shared_ptr<co
                                                    inputs->last_model_folders.end());
   World alone = read_or_input_error(file, [&] { return WorldReader(input, file, no_seed, folders).read_model_file(); });
   if (alone.models.size() > 1)
-    throw InputError({{file, 0, "", "the model has several root links, which are separate bodies; expected one"}});
+    throw InputError(
+        {{file, 0, "", "the model has several root links, which are separate bodies; expected one root link"}});
   return std::make_shared<const ParsedModel>(
       ParsedModel{text, alone.models.front(), std::move(alone.materials), std::move(alone.warnings)});
 }

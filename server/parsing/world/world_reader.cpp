@@ -310,7 +310,7 @@ void WorldReader::add_later(const LaterObject& object) {
   if (file == nullptr) return;
   const std::size_t model = shared_model(*file, file->root.Model()->Static());
   if (count_of_bodies(model) > 1)
-    return problem("the model has several root links, which are separate bodies; an event can add only one");
+    return problem("the model has several root links, which are separate bodies; an event can add only one body");
   if (object.is_model_only) {
     world_.spawnable_models.push_back({object.uri, model});
     return;

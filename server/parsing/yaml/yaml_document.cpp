@@ -96,7 +96,7 @@ void YamlBuilder::OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) {
 
 void YamlBuilder::OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                            const std::string& value) {
-  if (has_control_character(value)) throw Refused{mark.line + 1, "this text contains a control character"};
+  if (has_control_character(value)) throw Refused{mark.line + 1, "this string contains a control character"};
   const auto node = make(YamlNode::Kind::scalar, mark);
   node->text = value;
   node->is_plain = tag == "?";  // notation of yaml-cpp
@@ -153,27 +153,25 @@ struct Expectation {
 };
 constexpr Expectation expectations[] = {
     {"illegal map value",
-     "unexpected ':', or none in the line above. Expected one 'key: value' on a line, all keys indented alike, "
-     "and quotes around a text that has ': '"},
-    {"illegal map key", "unexpected '?'. Expected 'key: value', or quotes around a text that begins with '?'"},
+     "unexpected ':', or none in the line above. Expected one 'key: value' per line, all keys with the same "
+     "indentation, and quotes around a string that contains ': '"},
+    {"illegal map key", "unexpected '?'. Expected 'key: value', or quotes around a string that begins with '?'"},
     {"illegal block entry", "unexpected '- '. Expected each entry of a list on a line of its own"},
     {"end of map not found",
-     "wrong indentation, or a key without ':'. Expected 'key: value', indented as the key above"},
-    {"end of sequence not found", "wrong indentation. Expected '- ' indented as the entry above"},
+     "wrong indentation, or a key without ':'. Expected 'key: value', indented like the key above"},
+    {"end of sequence not found", "wrong indentation. Expected '- ' indented like the entry above"},
     {"end of map flow not found", "'{' is not closed. Expected ',' or '}'"},
     {"end of sequence flow not found", "'[' is not closed. Expected ',' or ']'"},
     {"illegal flow end", "']' or '}' without '[' or '{' before it"},
-    {"illegal EOF in scalar", "the quotes around a text are not closed"},
+    {"illegal EOF in scalar", "the quotes around a string are not closed"},
     {"illegal tab", "a tab in the indentation. Expected spaces"},
-    {"unknown token", "a text cannot begin with this character. Expected quotes around the text"},
-    {"alias not found after *", "a text cannot begin with '*'. Expected quotes around the text"},
-    {"anchor not found after &", "a text cannot begin with '&'. Expected quotes around the text"},
+    {"unknown token", "an unquoted string cannot begin with this character. Expected quotes around the string"},
+    {"alias not found after *", "an unquoted string cannot begin with '*'. Expected quotes around the string"},
+    {"anchor not found after &", "an unquoted string cannot begin with '&'. Expected quotes around the string"},
     {"the referenced anchor is not defined",
-     "no anchor '&' of this name comes before. Expected one, or quotes around "
-     "a text that begins with '*'"},
+     "no anchor '&' with this name precedes the alias. Expected one, or quotes around a string that begins with '*'"},
     {"unknown escape character",
-     "unknown escape after a backslash. Expected single quotes around a text with "
-     "backslashes"},
+     "unknown escape after a backslash. Expected single quotes around a string with backslashes"},
 };
 
 std::string in_plain_words(const YAML::Exception& error) {

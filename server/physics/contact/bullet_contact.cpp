@@ -160,7 +160,8 @@ void BulletContact::restore(const Pose& X_WA, const Pose& X_WB, SnapshotReader& 
   if (count < 0 || count > ContactPoints::most) throw SnapshotError("snapshot: a contact has too many points");
   state_->collide(X_WA, X_WB);  // creates the manifold
   btPersistentManifold* manifold = state_->manifold();
-  if (manifold == nullptr && count > 0) throw SnapshotError("snapshot: points of two solids without a contact");
+  if (manifold == nullptr && count > 0)
+    throw SnapshotError("snapshot: contact points of two solids that have no contact");
   if (manifold == nullptr) return;
   manifold->clearManifold();
   manifold->setNumContacts(count);

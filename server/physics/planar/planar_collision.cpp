@@ -46,14 +46,14 @@ PlanarCollision::Outline PlanarCollision::outline_of(const description::Shape& s
       const Eigen::Vector2d normal = normal_W.head<2>().normalized();
       outline = HalfPlane{normal, normal.dot(X_WC.position.head<2>())};
     } else if (normal_W.head<2>().norm() > level) {
-      throw std::invalid_argument("planar physics supports only level and upright planes");
+      throw std::invalid_argument("planar physics supports only horizontal and vertical planes");
     }
   } else if (const auto footprint = geometry::footprint_of(shape, X_WC)) {
     const auto* mesh = std::get_if<description::Mesh>(&shape);
     if (mesh == nullptr || mesh->convex) {
       outline = *footprint;
     } else if (footprint->highest - footprint->lowest > level) {
-      throw std::invalid_argument("planar physics supports only flat and convex meshes");
+      throw std::invalid_argument("planar physics supports only meshes that are flat or convex");
     }
   }
   return outline;

@@ -12,7 +12,7 @@ PlanarModel::PlanarModel(const description::Model& model)
   for (std::size_t s = 0; s < segments.size(); ++s)
     if (segments[s].parent < 0 &&
         (s > 0 || (segments[s].motion != Motion::free && segments[s].motion != Motion::anchored)))
-      throw std::invalid_argument("planar physics does not support moving joints to the world");
+      throw std::invalid_argument("planar physics does not support joints to the world that are not fixed");
   if (!model.fins.empty())
     throw std::invalid_argument("planar physics does not support fin '" + model.fins[0].name + "'");
   if (!model.drags.empty())
@@ -27,7 +27,7 @@ PlanarModel::PlanarModel(const description::Model& model)
     if (const std::string reason = description::reason_against_planar(device); !reason.empty())
       throw std::invalid_argument(reason);
     if (const description::TrackPair* const drive = description::tracks_of(device)) {
-      if (drive_) throw std::invalid_argument("planar physics supports only one treel drive for each robot");
+      if (drive_) throw std::invalid_argument("planar physics supports only one treel drive per robot");
       drive_ = drive;
     }
   }

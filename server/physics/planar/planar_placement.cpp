@@ -115,7 +115,7 @@ void PlanarWorld::check_placed(const description::Model& model, const Pose& X_WM
     throw std::invalid_argument("planar physics requires upright robots");
   const auto feels_wind = [](const description::Link& link) { return link.feels_wind; };
   if (description_.air.wind != Vector3d::Zero() && std::any_of(model.links.begin(), model.links.end(), feels_wind))
-    throw std::invalid_argument("planar physics does not support links with wind");
+    throw std::invalid_argument("planar physics does not support links with <enable_wind>");
 }
 
 bool PlanarWorld::needs_ground(const PlanarModel& model) const {
@@ -231,9 +231,9 @@ std::uint32_t PlanarWorld::ground_under(const Vector3d& origin_W) const {
   scene_.for_each_static_overlap({origin_W - depth * Vector3d::UnitZ(), origin_W},
                                  [&](std::uint32_t solid) { below.push_back(solid); });
   const auto hit = scene_.cast_ray_among(below, origin_W, -Vector3d::UnitZ(), depth);
-  if (!hit || hit->distance == 0.0) throw std::invalid_argument("planar physics requires ground under it");
+  if (!hit || hit->distance == 0.0) throw std::invalid_argument("planar physics requires ground under the model");
   if (hit->normal_W.head<2>().norm() > most_lean)
-    throw std::invalid_argument("planar physics requires level ground under it");
+    throw std::invalid_argument("planar physics requires level ground under the model");
   return hit->solid;
 }
 

@@ -86,7 +86,7 @@ void Control::begin(ControlledRun run) {
 }
 
 void Control::end(RunResult::End how) {
-  const std::string at = "the run has ended at tick " + std::to_string(run_->simulation.tick());
+  const std::string at = "the run ended at tick " + std::to_string(run_->simulation.tick());
   answer_steps(playback_.set(PlaybackState::playing), ResultCode::operation_failed, at);
   for (const Request& request : std::exchange(ledger_.waiting(), {}))
     if (!is_query(request)) answer(request, ResultCode::incorrect_state, at);  // queries are repeated by their clients
@@ -243,8 +243,7 @@ void Control::answer_steps(const std::vector<Playback::Steps>& steps, ResultCode
   for (const Playback::Steps& each : steps) {
     const Request request{.client = each.client, .number = each.number, .operation = wire::StepSimulation{}};
     const std::uint64_t tick = run_->simulation.tick();
-    answer(request, result,
-           each.until > tick ? text + ", " + ticks_text(each.until - tick) + " before the last step" : text);
+    answer(request, result, each.until > tick ? text + ", with " + ticks_text(each.until - tick) + " left" : text);
   }
 }
 

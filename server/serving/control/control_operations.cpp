@@ -18,7 +18,7 @@ constexpr std::uint32_t scope_default = 0;
 constexpr std::uint32_t scope_all = 255;
 
 std::string speed_text(double speed) {
-  return speed == 0.0 ? "as fast as possible" : std::to_string(speed) + " simulated seconds per second at most";
+  return speed == 0.0 ? "as fast as possible" : "at most " + std::to_string(speed) + " simulated seconds per second";
 }
 
 }  // namespace
@@ -155,8 +155,8 @@ void Control::carry_out(const Request& request, const wire::SaveSnapshot&) {
   }
   if (saved_->bytes->size() > wire::largest_data)
     return answer(request, ResultCode::operation_failed,
-                  "the snapshot has " + std::to_string(saved_->bytes->size()) + " bytes, and " +
-                      std::to_string(wire::largest_data) + " can be sent at most");
+                  "the snapshot has " + std::to_string(saved_->bytes->size()) +
+                      " bytes; the maximum that can be sent is " + std::to_string(wire::largest_data));
   tell(request, saved_->text);
   Reply reply = reply_to(request);
   reply.returned = wire::DataPart{saved_->bytes->size(), 0, {}};

@@ -186,7 +186,7 @@ TEST_F(AvrBridge, MistakesInOptionsAndFilesEndItBeforeItAttaches) {
   for (const auto& [arguments, text] :
        {std::pair(Arguments{"--image", garbage, "--pins", shipped_pins}, "neither an ELF file nor Intel HEX"),
         {{"--image", garbage + "-not", "--pins", shipped_pins}, "no such file"},
-        {{"--image", firmware("mega.elf"), "--pins", shipped_pins}, "is an image for an atmega2560"},
+        {{"--image", firmware("mega.elf"), "--pins", shipped_pins}, "the image is for an atmega2560"},
         {{"--image", firmware("avoid.hex"), "--benchmark", "1"}, "--mcu is required"},
         {{"--image", avoid, "--benchmark", "1"}, "--frequency is required"},
         {{"--image", avoid, "--pins", shipped_pins, "--mcu", "z80"}, "not for an z80"},

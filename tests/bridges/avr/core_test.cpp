@@ -185,7 +185,7 @@ TEST_F(AvrCore, ImagesThatAreNoneAreRefusedWithWhatWasExpected) {
   EXPECT_NE(error_of([&] { read_image(folder / "none"); }).find("no such file"), std::string::npos);
   EXPECT_NE(refused("").find("neither an ELF file nor Intel HEX"), std::string::npos);
   EXPECT_NE(refused("Hello").find("neither an ELF file nor Intel HEX"), std::string::npos);
-  EXPECT_NE(refused(":00000001FF\n").find("has no program"), std::string::npos);
+  EXPECT_NE(refused(":00000001FF\n").find("contains no program"), std::string::npos);
   EXPECT_NE(refused(":0100000000FF\n").find("image: the end-of-file record is missing"), std::string::npos);
   EXPECT_NE(refused(":0100000000FF\n:0100000000FE\n").find("image:2: wrong checksum"), std::string::npos);
   EXPECT_NE(refused(":01000000GG00\n").find("image:1: expected a hexadecimal digit"), std::string::npos);
@@ -199,7 +199,7 @@ TEST_F(AvrCore, ImagesThatAreNoneAreRefusedWithWhatWasExpected) {
             std::string::npos);
   EXPECT_NE(error_of([] {
               Core(read_image(firmware("mega.elf")), uno);
-            }).find("is an image for an atmega2560, not for an atmega328p"),
+            }).find("the image is for an atmega2560, not for an atmega328p"),
             std::string::npos);
   EXPECT_NE(error_of([] {
               Core(read_image(firmware("edges.hex")), {"atmega999", 16'000'000, 5.0});
@@ -256,7 +256,7 @@ TEST(AvrPins, MistakesAreToldWithFileAndLine) {
     return error_of([&] { read_pins(folder / "pins.yaml"); });
   };
   for (const auto& [wires, text] :
-       {std::pair("  - {motor: a/0/velocity, scale: 1}\n", "pins.yaml:3: a motor needs the pin 'forward'"),
+       {std::pair("  - {motor: a/0/velocity, scale: 1}\n", "pins.yaml:3: a motor requires 'forward'"),
         {"  - {motor: a/0/velocity, enable: D5}\n", "pins.yaml:3: 'scale' is missing"},
         {"  - {motor: a/0/velocity, scale: fast, enable: D5}\n", "pins.yaml:3: 'scale': expected a number"},
         {"  - {motor: a/0/velocity, scale: 1, enable: D99}\n", "pins.yaml:3: 'enable': 'D99' is not a pin"},
@@ -266,7 +266,7 @@ TEST(AvrPins, MistakesAreToldWithFileAndLine) {
         {"  - {led: led/0/color, motor: a, pin: D13}\n", "has both 'motor' and 'led'"},
         {"  - {analog: a/0/reading, pin: B1, scale: 1}\n", "'pin': expected an analog input"},
         {"  - {analog: a/0/reading, pin: A0, points: [[0, 1]]}\n", "expected two points or more"},
-        {"  - {analog: a/0/reading, pin: A0, points: [[1, 1], [0, 2]]}\n", "of the points ascending"},
+        {"  - {analog: a/0/reading, pin: A0, points: [[1, 1], [0, 2]]}\n", "in ascending order"},
         {"  - {encoder: a/0/position, a: D2, edges_per_turn: 0}\n", "'edges_per_turn': expected a number above 0"},
         {"  - {bumper: a/0/touching, pin: D2, pressed: down}\n", "'pressed': expected low or high"},
         {"  - {bumper: [\n", "pins.yaml:"},

@@ -363,7 +363,7 @@ TEST_F(KilobotBridge, MistakesInOptionsEndIt) {
   }
   const test::Ended other = test::run_to_end({program, "--board", "kilobot", "--image", firmware("mega.elf")});
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.err.find("is an image for an atmega2560, not for an atmega328p"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("the image is for an atmega2560, not for an atmega328p"), std::string::npos) << other.err;
 }
 
 TEST_F(KilobotBridge, ARobotOfAnotherModelIsRefused) {

@@ -83,7 +83,7 @@ TEST(SameHashOnReplayOf, ARunWithLateJoinsAndCrashes) {
   ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_2")) << server.output();
   control(domain, {"step", "100"});
   early.signal(SIGKILL);
-  ASSERT_TRUE(server.wait_for_output("with swarm/sbot_0 and 1 more is gone")) << server.output();
+  ASSERT_TRUE(server.wait_for_output("the controller of swarm/sbot_0 and 1 more, is gone")) << server.output();
   control(domain, {"step", "100"});
   Process again(FieldOfRobots::host(domain, "1"));
   ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_1")) << server.output();

@@ -73,7 +73,7 @@ TEST(StartLookup, ChecksTheNumberOfMatchingChannels) {
   const Start start = sbot_start();
   EXPECT_EQ(start.observations("proximity/*/reading", 15).size(), 15u);
   EXPECT_TRUE(contains(message_of<ChannelError>([&] { start.observations("proximity/*/reading", 8); }),
-                       "has 15 observation channels 'proximity/*/reading', expected 8"));
+                       "has 15 observation channels that match 'proximity/*/reading', expected 8"));
 }
 
 TEST(StartLookup, AMisspelledNameIsReportedWithTheNearestNames) {
@@ -178,7 +178,7 @@ TEST_F(ControllerHostTest, AFrameThatDoesNotMatchTheDescriptionsIsRefused) {
   EXPECT_TRUE(contains(message_of<ControllerFailure>([&] { answer(100, {2, 5}, {0}); }), "has 1 values"));
   EXPECT_TRUE(contains(message_of<ControllerFailure>([&] { answer(100, {4}, {0}); }), "robot 4"));
   descriptions.clear();
-  EXPECT_TRUE(contains(message_of<ControllerFailure>([&] { start(); }), "has no description"));
+  EXPECT_TRUE(contains(message_of<ControllerFailure>([&] { start(); }), "sent no description of"));
 }
 
 class PluginLoaderTest : public testing::Test {

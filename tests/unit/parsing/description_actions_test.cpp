@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
              "world/cohort:breakable_joint[hook]/cohort:first_link", "'box' has no link 'c'"},
         Flaw{ends("box", "floor", "\n<cohort:second_link>c</cohort:second_link>"), 6,
              "world/cohort:breakable_joint[hook]/cohort:second_link", "'floor' has no link 'c'"},
-        Flaw{ends("box", "box"), 5, "world/cohort:breakable_joint[hook]/cohort:second", "another object than 'box'"},
+        Flaw{ends("box", "box"), 5, "world/cohort:breakable_joint[hook]/cohort:second", "an object other than 'box'"},
         Flaw{ends("floor", "team/wall"), 3, "world/cohort:breakable_joint[hook]", "both are static"},
         Flaw{ends("box", "floor", "\n<cohort:breaking_force>0</cohort:breaking_force>"), 6,
              "world/cohort:breakable_joint[hook]/cohort:breaking_force", "> 0"},

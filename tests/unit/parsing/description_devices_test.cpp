@@ -54,7 +54,7 @@ TEST_F(Devices, RejectInvalidTechniques) {
   };
   expect_flaw("<cohort:technique>five_ray</cohort:technique>", "/cohort:technique", "did you mean 'five_rays'?");
   expect_flaw("<cohort:cone>3.2</cohort:cone>", "/cohort:cone", "less than half a turn");
-  expect_flaw("<cohort:technique>samples</cohort:technique>", "", "needs a file");
+  expect_flaw("<cohort:technique>samples</cohort:technique>", "", "requires a sample file");
   expect_flaw("<cohort:samples>s.csv</cohort:samples>", "/cohort:samples", "only the technique 'samples'");
 }
 
@@ -71,7 +71,7 @@ TEST_F(Devices, RejectInvalidSamples) {
   EXPECT_TRUE(problems_with("s.csv", "2").empty());
   const std::vector<Problem> three = problems_with("s.csv", "3");
   ASSERT_EQ(three.size(), 1u);
-  EXPECT_NE(three[0].message.find("has 2 readings at each place, but the device has 3"), std::string::npos);
+  EXPECT_NE(three[0].message.find("has 2 readings in each line, but the device has 3"), std::string::npos);
   const std::vector<Problem> none = problems_with("none.csv", "2");
   ASSERT_EQ(none.size(), 1u);
   EXPECT_EQ(none[0].line, 3);

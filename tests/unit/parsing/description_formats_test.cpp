@@ -313,7 +313,7 @@ INSTANTIATE_TEST_SUITE_P(
     Formats, FlawOfAFormat,
     ::testing::Values(
         Flaw{"<model name=\"m\"><link name=\"l\"><cohort:density>1</cohort:density></link></model>", 2,
-             "world/model[m]/link[l]", "needs a <collision> that has a volume"},
+             "world/model[m]/link[l]", "requires a <collision> with a volume"},
         Flaw{"<model name=\"m\"><link name=\"l\">\n<cohort:density>-1</cohort:density><inertial/></link></model>", 3,
              "world/model[m]/link[l]/cohort:density", "expected a number > 0"},
         Flaw{"<model name=\"m\"><link name=\"l\"><cohort:density>1</cohort:density>\n<inertial/><collision name=\"c\">"

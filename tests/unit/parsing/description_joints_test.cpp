@@ -272,7 +272,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{model(links("abc") + joint("j", "a", "c", "<xyz>0 0 1</xyz>", "ball") + mimic("", "j")), 4,
              in_mimic + "/cohort:joint", "has no single axis"},
         Flaw{model(links("abc") + joint("j", "a", "c") + joint("l", "a", "c") + mimic("", "l")), 4,
-             in_mimic + "/cohort:joint", "closes a loop"},
+             in_mimic + "/cohort:joint", "closes a kinematic loop"},
         Flaw{model(links("abc") + joint("i", "a", "b", "<xyz>0 0 1</xyz>", "prismatic") + joint("j", "a", "c") +
                    gearbox(1, "b", "c", "a")),
              3, "world/model[m]/joint[gears]",
@@ -291,7 +291,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{model(cart() + drive_with(key("left_wheel", "to_bb"))), 5, in_drive + "/cohort:left_wheel",
              "no joint 'to_bb'"},
         Flaw{model(cart() + drive_with(key("left_wheel", "to_e"))), 5, in_drive + "/cohort:left_wheel",
-             "is not between 'a' and a wheel"},
+             "does not connect 'a' to a wheel"},
         Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "prismatic") +
                    drive_with(key("right_wheel", "j"))),
              4, in_drive + "/cohort:right_wheel", "is not revolute"},
@@ -302,7 +302,7 @@ INSTANTIATE_TEST_SUITE_P(
              7, in_drive + "/cohort:left_wheel", "is already listed as the joint of a wheel"},
         Flaw{model(cart() + drive_with(key("left_wheel", "to_b")) + "<cohort:velocity_motor name=\"n\">\n" +
                    motor_of("to_b") + "</cohort:velocity_motor>"),
-             6, "world/model[m]/cohort:velocity_motor[n]/cohort:joint", "belongs to a wheel of a treel_drive"},
+             6, "world/model[m]/cohort:velocity_motor[n]/cohort:joint", "is already driven by a treel_drive"},
         Flaw{model(cart() + "<cohort:velocity_motor name=\"n\">" + motor_of("to_b") + "</cohort:velocity_motor>" +
                    drive_with(key("left_wheel", "to_b"))),
              5, in_drive + "/cohort:left_wheel", "already has a motor"}));

@@ -374,7 +374,7 @@ TEST_F(Plugins, ReportProblemsOfDetachableJointsWithPosition) {
   const std::string link = "<parent_link>b</parent_link>";
   expect(link + "<child_model>crate</child_model><child_link>z</child_link>", "/child_model",
          "'crate' has no link 'z'");
-  expect(link + "<child_model>m</child_model><child_link>a</child_link>", "/child_model", "another object than 'm'");
+  expect(link + "<child_model>m</child_model><child_link>a</child_link>", "/child_model", "an object other than 'm'");
   expect("<parent_link>z</parent_link><child_model>crate</child_model>", "/parent_link", "has no link 'z'");
   expect(link, "/child_model", "missing");
 }

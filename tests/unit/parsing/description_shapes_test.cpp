@@ -257,7 +257,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{still(mesh("none.obj")), 3, in_mesh, "there is no such file"},
         Flaw{still(mesh("robots")), 3, in_mesh, "this is a folder"},
         Flaw{still(mesh("model://bt/box.obj")), 3, in_mesh, "there is no 'bt/box.obj'"},
-        Flaw{still(mesh("https://somewhere/box.obj")), 3, in_mesh, "cannot be downloaded"},
+        Flaw{still(mesh("https://somewhere/box.obj")), 3, in_mesh, "Cohort does not download"},
         Flaw{still(mesh("box.step")), 3, in_mesh, "expected .stl, .obj or .dae"},
         Flaw{still(mesh("broken.dae")), 3, in_mesh, "cannot be read: "},
         Flaw{still(mesh("nan.stl")), 3, in_mesh, "a vertex is not finite"},
@@ -272,8 +272,8 @@ INSTANTIATE_TEST_SUITE_P(
              "expected a size > 0"},
         Flaw{still(height_image("none.png")), 3, in_heightmap, "there is no such file"},
         Flaw{still(height_image("not.png")), 3, in_heightmap, "expected a PNG image"},
-        Flaw{still(height_image("colours.png")), 3, in_heightmap, "expected a grey PNG image of 8 or 16 bits"},
-        Flaw{still(height_image("glass.png")), 3, in_heightmap, "expected a grey PNG image of 8 or 16 bits"},
+        Flaw{still(height_image("colours.png")), 3, in_heightmap, "expected a greyscale PNG image with 8 or 16 bits"},
+        Flaw{still(height_image("glass.png")), 3, in_heightmap, "expected a greyscale PNG image with 8 or 16 bits"},
         Flaw{still(height_image("dot.png")), 3, in_heightmap, "at least 2 by 2 pixels"}));
 
 // ---- Convex hulls ----

@@ -50,9 +50,10 @@ TEST_F(ForeignFiles, ReportEachUnknownNameOnce) {
       read_foreign("<model name=\"m\" odd=\"1\"><static>1</static>\n" +
                    collision("<sphere><radius>1</radius></sphere>\n<new_word>1</new_word>") + "<new_word/></model>");
   EXPECT_EQ(world.warnings.size(), 2u) << texts_of(world.warnings);
-  expect_warning(world, "world.sdf:2: world/model[m]: unknown attribute 'odd', which is ignored");
-  expect_warning(world,
-                 "world.sdf:4: world/model[m]/link[l]/collision[c]/geometry/new_word: unknown element <new_word>");
+  expect_warning(world, "world.sdf:2: world/model[m]: ignored the unknown attribute 'odd'");
+  expect_warning(
+      world,
+      "world.sdf:4: world/model[m]/link[l]/collision[c]/geometry/new_word: ignored the unknown element <new_word>");
   expect_warning(world, "2 times");
 }
 
@@ -60,8 +61,9 @@ TEST_F(ForeignFiles, ReportUnknownNamesOfOldVersionsWithLines) {
   const World world = read_foreign(
       "<model name=\"m\"><static>1</static>\n<link name=\"l\" visualise=\"1\">\n<velocity_dekay/></link></model>",
       "1.5");
-  expect_warning(world, "world.sdf:3: world/model[m]/link[l]: unknown attribute 'visualise'");
-  expect_warning(world, "world.sdf:4: world/model[m]/link[l]/velocity_dekay: unknown element <velocity_dekay>");
+  expect_warning(world, "world.sdf:3: world/model[m]/link[l]: ignored the unknown attribute 'visualise'");
+  expect_warning(world,
+                 "world.sdf:4: world/model[m]/link[l]/velocity_dekay: ignored the unknown element <velocity_dekay>");
   expect_warning(world, "did you mean 'velocity_decay'?");
 }
 

@@ -35,7 +35,8 @@ TEST_F(MendedFiles, FixARootWithoutMassAndGiveOtherLinksAGram) {
   ASSERT_EQ(model.links.size(), 3u);
   EXPECT_STREQ(model.why_fixed(), "is attached to the world by a joint");
   EXPECT_EQ(model.links[2].inertial.mass, 1e-3);
-  expect_warnings(world, {":2: model[m]/link[base]: a root link without mass", ":4: model[m]: links without mass: 'tip'"});
+  expect_warnings(world,
+                  {":2: model[m]/link[base]: a root link without mass", ":4: model[m]: links without mass: 'tip'"});
 }
 
 TEST_F(MendedFiles, IgnoreUnknownSensors) {
@@ -82,7 +83,7 @@ TEST_F(MendedFiles, TreatNegativeFrictionAsUnlimited) {
 TEST_F(MendedFiles, IgnoreInvalidPlugins) {
   const World world = read_file("plugins_with_flaws.sdf");
   EXPECT_FALSE(world.models[0].is_robot());
-  expect_warnings(world, {"link_name: missing: the link that it acts on; the plugin is ignored",
+  expect_warnings(world, {"link_name: missing: the link on which the plugin acts; the plugin is ignored",
                           "left_joint: the model has no joint 'nowhere'"});
 }
 

@@ -250,7 +250,7 @@ TEST(LimitedProcess, EndsAtTheLimitOfProcessorTime) {
     const std::atomic<bool> is_over = false;
     while (!is_over) continue;
   };
-  EXPECT_EQ(end_of({.processor_time = std::chrono::seconds(1)}, spin), "took longer than 1 s of processor time");
+  EXPECT_EQ(end_of({.processor_time = std::chrono::seconds(1)}, spin), "used more than 1 s of processor time");
 }
 
 TEST(LimitedProcess, EndsAtTheLimitOfWallTime) {

@@ -87,17 +87,18 @@ TEST(SampleFile, IsRejectedWithTheLineAndTheExpectedContent) {
 
 TEST(SampleFile, IsRejectedIfItIsNotAGrid) {
   const std::string first = header + "0.1,0,1,2\n0.1,1,1,2\n";
-  EXPECT_EQ(problem_of(first + "0.05,0,1,2\n"), "4: distance: expected at least 0.1, the distance of the line before");
+  EXPECT_EQ(problem_of(first + "0.05,0,1,2\n"),
+            "4: distance: expected at least 0.1, the distance in the previous line");
   EXPECT_EQ(problem_of(first + "0.1,0.5,1,2\n"), "4: angle: expected more than 1, as angles must increase");
   EXPECT_EQ(problem_of(first + "0.1,6.3,1,2\n"), "4: angle: expected an angle less than a full turn from the first");
   EXPECT_EQ(problem_of(first + "0.2,0,1,2\n0.2,1.5,1,2\n"),
-            "5: angle: expected 1; every distance must have the angles of the first");
+            "5: angle: expected 1; every distance must have the same angles as the first");
   EXPECT_EQ(problem_of(first + "0.2,0,1,2\n0.3,0,1,2\n"),
-            "5: angle: expected 1 at the previous distance; every distance must have the angles of the first");
+            "5: angle: expected 1 at the previous distance; every distance must have the same angles as the first");
   EXPECT_EQ(problem_of(first + "0.2,0,1,2\n0.2,1,1,2\n0.2,2,1,2\n"),
-            "6: angle: expected the next distance; every distance must have the angles of the first");
+            "6: angle: expected the next distance; every distance must have the same angles as the first");
   EXPECT_EQ(problem_of(first + "0.2,0,1,2\n"),
-            "4: angle: the file ends before the angle 1; every distance must have the angles of the first");
+            "4: angle: the file ends before the angle 1; every distance must have the same angles as the first");
 }
 
 // A reading that is linear in distance and angle over each cell is met everywhere.

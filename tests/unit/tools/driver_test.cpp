@@ -205,7 +205,7 @@ TEST_F(DriversTest, AResetIsSurvivedAndTheEndOfTheRunIsToldOnce) {
   server.report({.kind = wire::ReportKind::finished});
   EXPECT_TRUE(eventually([&] { return drive(1, {0.0, 0.0, 0.5, 0.5}).text == "the run is over"; }));
   EXPECT_EQ(drive(1, {0.0, 0.0, 0.5, 0.5}).text,
-            "this page does not drive 'team/cart': claim it by 'drive' without numbers");
+            "this page does not drive 'team/cart': claim it with 'drive' without numbers");
 }
 
 TEST_F(DriversTest, WhoIsSupersededIsToldByWhom) {
@@ -237,9 +237,9 @@ TEST_F(DriversTest, ARobotIsLetGoByReleaseByLeavingAndAtTheEnd) {
 
 TEST_F(DriversTest, SelectorsAndTooManyRobotsAreRefused) {
   for (const char* name : {"", "all", "3", "0..7", "team/*"})
-    EXPECT_NE(drive(1, {}, name).text.find("the whole name of one robot"), std::string::npos) << name;
+    EXPECT_NE(drive(1, {}, name).text.find("the full name of one robot"), std::string::npos) << name;
   for (std::size_t robot = 0; robot < Drivers::most; ++robot) ask(1, {}, "team/cart_" + std::to_string(robot));
-  EXPECT_EQ(drive(1, {}, "team/one_more").text, "one view drives at most 8 robots");
+  EXPECT_EQ(drive(1, {}, "team/one_more").text, "one view can drive at most 8 robots");
 }
 
 }  // namespace

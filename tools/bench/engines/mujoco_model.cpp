@@ -31,7 +31,7 @@ MujocoModel compile_mujoco(const std::string& text) {
 #else
   const bool is_taken = mj_addBufferVFS(files.get(), file, text.data(), size) == 0;
 #endif
-  if (!is_taken) throw std::runtime_error("MuJoCo rejects the model");
+  if (!is_taken) throw std::runtime_error("MuJoCo rejected the model");
   std::string message(1000, '\0');
   MujocoModel model(mj_loadXML(file, files.get(), message.data(), static_cast<int>(message.size())));
   mj_deleteVFS(files.get());

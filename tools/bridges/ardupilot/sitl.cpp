@@ -69,7 +69,7 @@ bool Sitl::is_answered(const ServoPacket& packet) const {
 void Sitl::heed(bridges::Conversation& sitl, const ServoPacket& packet) {
   const std::string count = std::to_string(packet.frame_count);
   if (!driven_ && std::abs(packet.frame_rate - steps_in_a_second_) > 0.5)
-    sitl.tell("asks for " + std::to_string(packet.frame_rate) + " steps per second (SIM_RATE_HZ), but the run has " +
+    sitl.tell("requests " + std::to_string(packet.frame_rate) + " steps per second (SIM_RATE_HZ), but the run has " +
               std::to_string(std::lround(steps_in_a_second_)));
   if (driven_ && packet.frame_count < frame_count_)
     sitl.tell("has restarted: frame " + count + " follows frame " + std::to_string(frame_count_));

@@ -62,7 +62,7 @@ Output output_in(const std::string& text) {
   if (dots == std::string::npos) throw refuse("has no range");
   const std::string_view all = text;
   const auto number = number_in<std::size_t>(all.substr(0, equals));
-  if (!number || *number < 1 || *number > most_outputs) throw refuse("the number of an output is from 1 to 32");
+  if (!number || *number < 1 || *number > most_outputs) throw refuse("the output number must be from 1 to 32");
   const auto low = number_in<double>(all.substr(colon + 1, dots - colon - 1));
   const auto high = number_in<double>(all.substr(dots + 2));
   if (!low || !high || !std::isfinite(*low) || !std::isfinite(*high))
@@ -76,8 +76,8 @@ std::vector<Output> outputs_of(const std::string& model, Numbering numbering) {
   if (found != shipped.end()) return found->second;
   std::string known;
   for (const auto& [name, outputs] : shipped) known += (known.empty() ? "" : ", ") + name;
-  throw std::runtime_error("no outputs are known for the model '" + model + "' (known: " + known +
-                           "): give each output as --output NUMBER=CHANNEL:LOW..HIGH");
+  throw std::runtime_error("the model '" + model + "' has no predefined outputs (models that have them: " + known +
+                           "): specify each output with --output NUMBER=CHANNEL:LOW..HIGH");
 }
 
 void OutputMap::start(const Start& start, const std::vector<Output>& outputs, Numbering numbering) {

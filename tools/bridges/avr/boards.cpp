@@ -43,14 +43,13 @@ Pin pin_of(const std::string& name, const std::string& mcu) {
     const auto pins = numbered(mcu, name[0] == 'A');
     const std::size_t number = std::stoul(name.substr(1));
     if (pins.empty())
-      throw std::runtime_error(
-          "'" + name +
-          "' is a pin of an Arduino, but this microcontroller is of none: expected a port and a bit, such as PB5");
+      throw std::runtime_error("'" + name +
+                               "' is an Arduino pin name, but no Arduino board has this microcontroller: expected a "
+                               "port and a bit, such as PB5");
     if (number < pins.size()) return {pins[number][0], pins[number][1] - '0'};
   }
-  throw std::runtime_error("'" + name +
-                           "' is not a pin: expected a port and a bit, such as PB5, or the name on an Arduino "
-                           "board, D13 or A0");
+  throw std::runtime_error(
+      "'" + name + "' is not a pin: expected a port and a bit, such as PB5, or an Arduino pin name, such as D13 or A0");
 }
 
 }  // namespace cohort::avr

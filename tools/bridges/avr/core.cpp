@@ -52,7 +52,7 @@ Core::Core(const Image& image, Chip chip) : chip_(std::move(chip)) {
     throw std::runtime_error("expected a frequency between 1 Hz and 40 MHz, not " + std::to_string(chip_.frequency) +
                              " Hz");
   if (!image.mcu.empty() && family_of(image.mcu) != family_of(chip_.mcu))
-    throw std::runtime_error(image.file + ": is an image for an " + image.mcu + ", not for an " + chip_.mcu);
+    throw std::runtime_error(image.file + ": the image is for an " + image.mcu + ", not for an " + chip_.mcu);
   static std::once_flag once;
   std::call_once(once, [] { avr_global_logger_set(&Core::log); });
   avr_ = avr_make_mcu_by_name(chip_.mcu.c_str());

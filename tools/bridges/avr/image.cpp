@@ -216,7 +216,7 @@ Image read_image(const std::filesystem::path& file) {
   const bool is_hex = !bytes.empty() && bytes[0] == ':';
   if (!is_elf && !is_hex) refuse(file, "is neither an ELF file nor Intel HEX");
   Image image = is_elf ? read_elf(file, bytes) : read_hex(file, bytes);
-  if (image.flash.empty()) refuse(file, "has no program: nothing in it is for the flash memory");
+  if (image.flash.empty()) refuse(file, "contains no program for the flash memory");
   return image;
 }
 

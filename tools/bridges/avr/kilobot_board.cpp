@@ -111,7 +111,8 @@ void KilobotBoard::start(const Start& start, Core& core) {
   ranges_ = start.observations("infrared/*/range");
   messages_ = start.observations("infrared/*/message", ranges_.size());
   if (color_.size != 3 || message_.size != 1)
-    throw std::runtime_error("expected the devices of the model 'kilobot', with a color and messages of one value");
+    throw std::runtime_error(
+        "expected the devices of the model 'kilobot', with a color of three values and messages of one value");
 
   Outputs& outputs = core.outputs();
   counter_clockwise_ = &outputs.watch({'B', 3});

@@ -35,8 +35,10 @@ avr::Chip chip_for(const Given& given, const avr::Pins& pins, const avr::Image& 
   avr::Chip chip{given.mcu, given.frequency, pins.supply};
   if (chip.mcu.empty()) chip.mcu = !pins.mcu.empty() ? pins.mcu : image.mcu;
   if (chip.frequency == 0) chip.frequency = pins.frequency.value_or(image.frequency.value_or(0));
-  if (chip.mcu.empty()) throw bridges::UsageError(image.file + " does not name its microcontroller: --mcu is required");
-  if (chip.frequency == 0) throw bridges::UsageError("--frequency is required: neither --pins nor the image gives it");
+  if (chip.mcu.empty())
+    throw bridges::UsageError(image.file + " does not specify its microcontroller: --mcu is required");
+  if (chip.frequency == 0)
+    throw bridges::UsageError("--frequency is required: neither --pins nor the image specifies it");
   return chip;
 }
 

@@ -19,7 +19,7 @@ class Keys {
  public:
   Keys(std::string file, std::string mcu, const YAML::Node& node, const std::string& what)
       : file_(std::move(file)), mcu_(std::move(mcu)), node_(node) {
-    if (!node_.IsMap()) refuse(node_, "expected " + what + " as keys with values");
+    if (!node_.IsMap()) refuse(node_, "expected " + what + " as a map of keys and values");
   }
 
   bool has(const std::string& key) const { return static_cast<bool>(node_[key]); }
@@ -47,7 +47,7 @@ class Keys {
     if (value <= 0.0) refuse(node_[key], "'" + key + "': expected a number above 0");
     return value;
   }
-  std::string text(const std::string& key) { return get<std::string>(key, "a text"); }
+  std::string text(const std::string& key) { return get<std::string>(key, "a string"); }
 
   /// Takes one of two words, and returns whether it is the first.
   bool is_first(const std::string& key, const std::string& first, const std::string& second, bool otherwise) {
@@ -89,7 +89,7 @@ class Keys {
       }
       const bool ascends = points.size() < 2 || points[points.size() - 2].x < points.back().x;
       if (!ascends || !std::isfinite(points.back().x) || !std::isfinite(points.back().y))
-        refuse(each, "'" + key + "': expected finite numbers, with the first numbers of the points ascending");
+        refuse(each, "'" + key + "': expected finite numbers, with X in ascending order");
     }
     if (points.size() < 2) refuse(list, "'" + key + "': expected two points or more");
     return Curve(std::move(points));
@@ -140,9 +140,9 @@ Motor read_motor(Keys& entry) {
   motor.direction = entry.optional_pin("direction");
   if (!motor.enable && !motor.forward)
     entry.refuse(entry.node(),
-                 "a motor needs the pin 'forward', optionally with 'backward', or 'enable' with 'direction'");
+                 "a motor requires 'forward', optionally with 'backward', or 'enable', optionally with 'direction'");
   if (motor.direction && (motor.forward || motor.backward))
-    entry.refuse(entry.node(), "a motor has either 'direction' or 'forward' and 'backward'");
+    entry.refuse(entry.node(), "expected either 'direction', or 'forward' and 'backward', not both");
   if (motor.backward && !motor.forward) entry.refuse(entry.node(), "a motor with 'backward' needs 'forward'");
   return motor;
 }
@@ -166,7 +166,8 @@ Led read_led(Keys& entry) {
 
 Switch read_switch(Keys& entry, const std::string& key) {
   Switch input{entry.value(key), entry.pin("pin")};
-  if (entry.has("above") && entry.has("below")) entry.refuse(entry.node(), "has both 'above' and 'below'");
+  if (entry.has("above") && entry.has("below"))
+    entry.refuse(entry.node(), "expected either 'above' or 'below', not both");
   input.is_on_above = !entry.has("below");
   input.threshold = entry.number(input.is_on_above ? "above" : "below", 0.5);
   input.is_low_when_on = entry.is_first("pressed", "low", "high", true);
@@ -184,7 +185,7 @@ Analog read_analog(Keys& entry, const std::string& mcu) {
   if (mcu == "atmega32u4" && !pin.starts_with("ADC")) {
     // A0 to A5 of the board, as its file of variants has them.
     constexpr std::array inputs{7, 6, 5, 4, 1, 0};
-    if (analog.input >= static_cast<int>(inputs.size())) entry.refuse(entry.node()["pin"], "'pin': A0 to A5 expected");
+    if (analog.input >= static_cast<int>(inputs.size())) entry.refuse(entry.node()["pin"], "'pin': expected A0 to A5");
     analog.input = inputs[static_cast<std::size_t>(analog.input)];
   }
   if (entry.has("points")) {
@@ -217,9 +218,9 @@ Wire read_wire(Keys& entry, const std::string& mcu) {
 
 YAML::Node load(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
-    throw std::runtime_error(file.string() + ": no such file: expected a file with the pins of a robot");
+    throw std::runtime_error(file.string() + ": no such file: expected a pin map");
   if (std::filesystem::file_size(file) > largest_pins_file)
-    throw std::runtime_error(file.string() + ": is larger than 1 MiB, the limit for files of pins");
+    throw std::runtime_error(file.string() + ": is larger than 1 MiB, the limit for pin maps");
   try {
     return YAML::LoadFile(file.string());
   } catch (const YAML::ParserException& error) {
@@ -242,7 +243,7 @@ double Curve::operator()(double x) const {
 Pins read_pins(const std::filesystem::path& file) {
   const YAML::Node document = load(file);
   Pins pins{file.string()};
-  Keys top(pins.file, "", document, "what is wired to a microcontroller");
+  Keys top(pins.file, "", document, "a pin map");
   if (top.has("mcu")) pins.mcu = top.text("mcu");
   if (top.has("frequency")) pins.frequency = top.get<std::uint32_t>("frequency", "a frequency [Hz]");
   if (top.has("supply")) pins.supply = top.positive("supply");

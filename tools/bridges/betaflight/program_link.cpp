@@ -27,7 +27,7 @@ bridges::Descriptor open_servo_socket(const std::string& address) {
   const sockaddr_in endpoint = bridges::endpoint_of(address, servo_port);
   bridges::Descriptor bound(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (::bind(bound.number(), reinterpret_cast<const sockaddr*>(&endpoint), sizeof endpoint) != 0)
-    throw std::runtime_error("cannot listen at " + place_text(endpoint) + ": " + bridges::text_of_error(errno));
+    throw std::runtime_error("cannot listen on " + place_text(endpoint) + ": " + bridges::text_of_error(errno));
   return bound;
 }
 

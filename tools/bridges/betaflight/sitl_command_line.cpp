@@ -33,7 +33,7 @@ void CommandLine::enter() {
   send("#");
   bool is_first = true;
   while (!find_prompt(asked_again_after)) {
-    if (Clock::now() > until) throw std::runtime_error("the command line does not answer '#'");
+    if (Clock::now() > until) throw std::runtime_error("Betaflight's CLI does not respond to '#'");
     send("#");
     is_first = false;
   }
@@ -50,7 +50,7 @@ void CommandLine::connect() {
   while (::connect(socket_, reinterpret_cast<const sockaddr*>(&endpoint), sizeof endpoint) != 0) {
     check_();
     if (Clock::now() > until)
-      throw std::runtime_error("the program does not listen at TCP port " + std::to_string(cli_port));
+      throw std::runtime_error("the program does not listen on TCP port " + std::to_string(cli_port));
     std::this_thread::sleep_for(polled_every);
   }
 }
@@ -59,19 +59,19 @@ void CommandLine::execute(const std::string& command) {
   send(command + "\n");
   const std::string reply = read_to_prompt(command);
   if (reply.find("###ERROR") != std::string::npos)
-    throw std::runtime_error("the command line refuses '" + command + "': " + reply);
+    throw std::runtime_error("Betaflight's CLI rejects '" + command + "': " + reply);
 }
 
 void CommandLine::save() { send("save\n"); }
 
 void CommandLine::send(const std::string& text) const {
   if (::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(text.size()))
-    throw std::runtime_error("the program has closed its command line");
+    throw std::runtime_error("Betaflight has closed its CLI");
 }
 
 std::string CommandLine::read_to_prompt(const std::string& of) {
   const auto reply = find_prompt(patience_);
-  if (!reply) throw std::runtime_error("the command line does not answer '" + of + "'");
+  if (!reply) throw std::runtime_error("Betaflight's CLI does not respond to '" + of + "'");
   return *reply;
 }
 
@@ -85,7 +85,7 @@ std::optional<std::string> CommandLine::find_prompt(std::chrono::milliseconds at
     std::array<char, 1024> bytes{};
     if (::poll(&waited, 1, static_cast<int>(polled_every.count())) > 0) {
       const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), 0);
-      if (count <= 0) throw std::runtime_error("the program has closed its command line");
+      if (count <= 0) throw std::runtime_error("Betaflight has closed its CLI");
       reply.append(bytes.data(), static_cast<std::size_t>(count));
     }
     if (reply.size() > most || Clock::now() > until) return std::nullopt;

@@ -64,8 +64,8 @@ Motors motors_in(std::span<const std::uint8_t> packet) {
     float value = 0.0F;
     std::memcpy(&value, packet.subspan(place_of_motor[motor] * sizeof value).data(), sizeof value);
     if (!(value >= -1.0F && value <= 1.0F))
-      throw std::runtime_error("motor " + std::to_string(motor + 1) + " is commanded " + std::to_string(value) +
-                               ", which is not from 0 to 1");
+      throw std::runtime_error("motor " + std::to_string(motor + 1) + " has the command " + std::to_string(value) +
+                               ", expected 0 to 1");
     motors[motor] = value;
   }
   return motors;

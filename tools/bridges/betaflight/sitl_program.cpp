@@ -105,7 +105,7 @@ HandOver receive(int from) {
 }
 
 std::string how_it_ended(int status) {
-  if (WIFSIGNALED(status)) return "was ended by the signal " + std::string(::strsignal(WTERMSIG(status)));
+  if (WIFSIGNALED(status)) return "was terminated by the signal " + std::string(::strsignal(WTERMSIG(status)));
   return "has ended with the exit code " + std::to_string(WEXITSTATUS(status));
 }
 
@@ -114,7 +114,7 @@ std::string how_it_ended(int status) {
 Network make_network() {
   std::array<int, 2> pair{};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair.data()) != 0)
-    throw std::runtime_error("cannot make a network for the program: " + bridges::text_of_error(errno));
+    throw std::runtime_error("cannot create a network namespace for the program: " + bridges::text_of_error(errno));
   const Descriptor ours(pair[0]);
   Descriptor theirs(pair[1]);
   const pid_t child = ::fork();
@@ -126,8 +126,9 @@ Network make_network() {
   const HandOver made = child < 0 ? HandOver{errno, {}} : receive(ours.number());
   if (child > 0) ::waitpid(child, nullptr, 0);
   if (made.error != 0)
-    throw std::runtime_error("cannot make a network for the program: " + bridges::text_of_error(made.error) +
-                             ". This system may not allow user namespaces; start the program yourself, without --run");
+    throw std::runtime_error(
+        "cannot create a network namespace for the program: " + bridges::text_of_error(made.error) +
+        ". This system may not allow user namespaces; start the program yourself, without --run");
   return {Descriptor(made.descriptors[0]), Descriptor(made.descriptors[1]), Descriptor(made.descriptors[2]),
           Descriptor(made.descriptors[3])};
 }

@@ -35,7 +35,7 @@ std::vector<std::string> single_robots(const std::string& list) {
     }
   }
   if (robots.empty()) throw UsageError("'--robots' is empty; expected at least one selector");
-  if (robots.size() > most_robots) throw UsageError("at most " + std::to_string(most_robots) + " robots");
+  if (robots.size() > most_robots) throw UsageError("expected at most " + std::to_string(most_robots) + " robots");
   return robots;
 }
 

@@ -89,7 +89,7 @@ bool Conversation::read_more() {
   try {
     const std::string peer = link_->is_connectionless() ? link_->peer() : "";
     const std::size_t count = link_->read(bytes);
-    if (link_->is_connectionless() && count > 0 && link_->peer() != peer) tell("speaks from " + link_->peer());
+    if (link_->is_connectionless() && count > 0 && link_->peer() != peer) tell("now sends from " + link_->peer());
     received_.insert(received_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
     return count > 0;
   } catch (const LinkLost& lost) {

@@ -21,7 +21,7 @@ std::vector<std::string> variables_of(const std::string& place) {
 
 std::string text_of(Silence silence) {
   switch (silence) {
-    case Silence::wait: return "the run waits for another one";
+    case Silence::wait: return "the run waits until a program connects again";
     case Silence::stand: return "the robot stands";
     case Silence::hold: return "the robot keeps its last command";
   }
@@ -37,7 +37,7 @@ RobotBridge::RobotBridge(Options options, Driver driver, Patience patience, std:
       stop_(stop),
       conversation_(std::move(driver.link), options_.who,
                     {[this] { return stop_ || client_->is_over(); }, [this](const std::string& text) { tell(text); }}) {
-  tell("the " + options_.who + " connects at " + conversation_.place());
+  tell("waiting for the " + options_.who + " at " + conversation_.place());
   options_.client.tell = [this](Severity, const std::string& text) { tell(text); };
 }
 

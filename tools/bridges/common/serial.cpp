@@ -103,7 +103,7 @@ class DeviceLink final : public SerialLink {
           "cannot open " + device + ": " + text_of_error(errno) +
           (errno == EACCES ? ". Add your user to the group of the device (see 'ls -l'), often dialout" : ""));
     if (::flock(line.number(), LOCK_EX | LOCK_NB) != 0)
-      throw std::runtime_error("cannot open " + device + ": another program has it open");
+      throw std::runtime_error("cannot open " + device + ": another program is using it");
     make_raw(line, device, speed);
     return line;
   }
@@ -127,7 +127,8 @@ class PtyLink final : public SerialLink {
     if (symlink_.empty()) return;
     std::error_code error;
     std::filesystem::create_symlink(name, symlink_, error);
-    if (error) throw std::runtime_error("cannot make the symbolic link " + symlink_.string() + ": " + error.message());
+    if (error)
+      throw std::runtime_error("cannot create the symbolic link " + symlink_.string() + ": " + error.message());
   }
   bool is_connectionless() const override { return true; }
   bool connect() override { return true; }
@@ -168,7 +169,7 @@ std::unique_ptr<Link> make_pty(const std::filesystem::path& symlink) {
                        ::ptsname_r(line.number(), name.data(), name.size()) == 0;
   Descriptor other_end;
   if (is_made) other_end = Descriptor(::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));
-  if (!other_end.is_open()) throw std::runtime_error("cannot make a pseudo-terminal: " + text_of_error(errno));
+  if (!other_end.is_open()) throw std::runtime_error("cannot create a pseudo-terminal: " + text_of_error(errno));
   make_raw(other_end, name.data(), std::nullopt);
   return std::make_unique<PtyLink>(std::move(line), std::move(other_end), name.data(), symlink);
 }

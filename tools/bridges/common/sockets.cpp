@@ -35,7 +35,7 @@ Descriptor bind_socket(int type, const std::string& address, std::uint16_t port)
                         (type != SOCK_STREAM || ::listen(bound.number(), 1) == 0);
   if (is_bound) return bound;
   const int error = errno;
-  throw std::runtime_error("cannot listen at " + text_of(endpoint) + ": " + text_of_error(error) +
+  throw std::runtime_error("cannot listen on " + text_of(endpoint) + ": " + text_of_error(error) +
                            (error == EACCES ? ". Ports below 1024 may be reserved for root: choose another port" : ""));
 }
 
@@ -72,7 +72,7 @@ class TcpLink final : public Link {
   std::size_t read(std::span<std::uint8_t> bytes) override {
     const ssize_t count = ::recv(connection_.number(), bytes.data(), bytes.size(), 0);
     if (count > 0) return static_cast<std::size_t>(count);
-    if (count == 0) throw LinkLost("has left");
+    if (count == 0) throw LinkLost("has disconnected");
     if (is_for_later(errno)) return 0;
     throw LinkLost("is lost: " + text_of_error(errno));
   }
@@ -81,7 +81,7 @@ class TcpLink final : public Link {
     const ssize_t count = ::send(connection_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (count >= 0) return static_cast<std::size_t>(count);
     if (is_for_later(errno)) return 0;
-    throw LinkLost("does not take its answer: " + text_of_error(errno));
+    throw LinkLost("does not accept the data that is sent to it: " + text_of_error(errno));
   }
 
   void hang_up() override { connection_ = Descriptor(); }

@@ -33,8 +33,7 @@ void Autopilot::start(const DrivenRobot& robot) {
   is_free_ = !robot.policy.waits;
   if (options_.is_hardware && !is_free_)
     throw std::runtime_error(
-        "hardware runs in real time and cannot follow a robot of a team in lockstep: give the team "
-        "'mode: free'");
+        "hardware runs in real time and cannot wait for a simulation in lockstep: set 'mode: free' for the team");
   period_ = static_cast<std::uint64_t>(std::llround(robot.start.seconds_per_step() * second));
   motion_.start(robot.start);
   magnetic_field_ = robot.start.observation("magnetometer/0/magnetic_field");
@@ -73,7 +72,7 @@ bool Autopilot::exchange_freely(bridges::Conversation& px4, const Observation& o
     heed(*controls);
     is_heard = true;
   }
-  if (is_heard && !std::exchange(drives_, true)) px4.tell("drives");
+  if (is_heard && !std::exchange(drives_, true)) px4.tell("drives the robot");
   if (is_heard) heard_at_ = Clock::now();
   const bool is_silent = !heard_at_ || Clock::now() - *heard_at_ > *patience_.at_most;
   if (heard_at_ && is_silent) {
@@ -128,7 +127,7 @@ bool Autopilot::boots_up(bridges::Conversation& px4) {
   const auto controls = next_controls(px4, Clock::now() + std::chrono::microseconds(period_));
   time_ += period_;
   if (!controls) return false;
-  px4.tell("drives, after " + std::to_string(time_ / 1000) + " ms of its clock");
+  px4.tell("drives the robot, " + std::to_string(time_ / 1000) + " ms after its clock has started");
   drives_ = true;
   driven_ = true;
   heed(*controls);

@@ -27,7 +27,7 @@ std::shared_ptr<const description::Experiment> experiment_of(const ClientOptions
   const messages::ExperimentFiles files = query_experiment([&](const wire::GetExperiment& question) {
     constexpr std::chrono::hours at_most{24};  // the server may not be running yet
     const std::optional<wire::Reply> reply = control.ask(question, at_most, stop_on_signals());
-    if (!reply) throw std::runtime_error("the server does not send its experiment");
+    if (!reply) throw std::runtime_error("the server did not send its experiment");
     if (!reply->is_done()) throw std::runtime_error(reply->error_message);
     return *reply;
   });

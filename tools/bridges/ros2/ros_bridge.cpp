@@ -89,15 +89,15 @@ void RosBridge::add_robot(const DrivenRobot& robot) {
   const auto& models = experiment_->world.models;
   const auto model = std::ranges::find(models, robot.start.model, &description::Model::name);
   if (model == models.end())
-    throw std::runtime_error("the experiment has no model '" + robot.start.model + "' of robot " + robot.start.name +
-                             " is");
+    throw std::runtime_error("the experiment has no model '" + robot.start.model + "', the model of robot " +
+                             robot.start.name);
   RosRobot::Options options;
   options.settings = experiment_->ros2.of_team(robot.start.team);
   options.settings.sync = options_.sync.value_or(options.settings.sync);
   if (!options_.command.empty()) options.settings.sync = RosSync::idle;
   if (options.settings.sync == RosSync::idle && options_.command.empty())
     throw std::runtime_error("robot " + robot.start.name +
-                             " has 'sync: idle', which needs --run COMMAND: the bridge has to start its nodes");
+                             " has 'sync: idle', which requires --run COMMAND: the bridge must start its nodes");
   if (options.settings.name_space.empty()) options.settings.name_space = absolute_name(robot.start.name);
   options.first_input = robot_of_input_.size();
   options.tell = [this, name = robot.start.name](const std::string& text) {
@@ -277,7 +277,7 @@ void RosBridge::tell_awaited(const RosRobot& robot, const Frame& frame) const {
   options_.tell("robot " + robot.name() + ": the run waits " +
                 (who.empty()
                      ? "for a node that publishes " + robot.command_topic()
-                     : "at tick " + std::to_string(frame.tick) + " for " + robot.command_topic() + " of " + who));
+                     : "at tick " + std::to_string(frame.tick) + " for " + robot.command_topic() + " from " + who));
 }
 
 // The first robot whose command is not there and is still waited for.

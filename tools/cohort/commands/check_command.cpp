@@ -53,7 +53,7 @@ int check(const std::filesystem::path& named, parsing::Xacro xacro, bool loads_c
         std::cout << "controllers were not loaded; '--load-controllers' also checks parameters and channels\n";
       if (const auto model = installed_model(named.string())) show(robot_sheet(*model, named.string(), xacro));
     }
-    std::cout << file.string() << ": no mistakes found\n";
+    std::cout << file.string() << ": no errors found\n";
     return exit_ok;
   } catch (const description::InputError&) {
     throw;

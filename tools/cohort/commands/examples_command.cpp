@@ -37,7 +37,8 @@ int list() {
 
 int copy_to(const fs::path& folder) {
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
-    throw std::invalid_argument("'" + folder.string() + "' exists: give a new folder, or an empty one");
+    throw std::invalid_argument("'" + folder.string() +
+                                "' exists and is not an empty folder: choose a new or empty folder");
   fs::create_directories(folder);
   fs::copy(installed_worlds_folder(), folder, fs::copy_options::recursive);
   std::printf("cohort run %s\n", (folder / "experiments/obstacle_avoidance.yaml").c_str());

@@ -169,7 +169,8 @@ int plot(const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
   check_picture_file(command.output);
   const bool draws_paths = command.what.empty() || command.what == std::vector<std::string>{paths_name};
   if (!draws_paths && std::ranges::find(command.what, paths_name) != command.what.end())
-    throw std::invalid_argument("--what: 'paths' is a picture of its own and cannot be combined with other quantities");
+    throw std::invalid_argument(
+        "--what: 'paths' makes a separate picture and cannot be combined with other quantities");
   check_writable("the picture", command.output);
   refuse_experiment(command.file, "--plot run.svg");
   const recording::Recording recording(command.file);

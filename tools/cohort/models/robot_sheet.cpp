@@ -163,7 +163,8 @@ std::string robot_sheet(const fs::path& file, const std::string& named, parsing:
   const description::World& world = experiment.world;
   if (parsing::kind_of_file(file) != parsing::FileKind::sdf || !parsing::holds_lone_model(file))
     throw std::invalid_argument(
-        fmt::format("{} holds no single model; 'cohort check {}' describes it", file.string(), as_shell_word(named)));
+        fmt::format("{} does not contain exactly one model; 'cohort check {}' describes the file", file.string(),
+                    as_shell_word(named)));
   const Simulation simulation(experiment, 1);
   std::string text;
   std::uint32_t robot = 0;

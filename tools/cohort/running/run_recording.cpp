@@ -39,7 +39,7 @@ void check_rosbag2_metadata(const std::filesystem::path& recording) {
     throw std::runtime_error(
         fmt::format("{} describes recordings other than {}; each rosbag2 bag requires its own folder",
                     metadata.string(), recording.filename().string()));
-  check_writable("the metadata of rosbag2", metadata);
+  check_writable("the rosbag2 metadata", metadata);
 }
 
 void write_rosbag2_metadata(const std::filesystem::path& recording) {
@@ -48,7 +48,7 @@ void write_rosbag2_metadata(const std::filesystem::path& recording) {
   if (!reader.is_complete())
     throw std::runtime_error(
         fmt::format("{}; 'cohort recover {}' makes it readable for rosbag2", reader.damage(), recording.string()));
-  write_file("the metadata of rosbag2", metadata_beside(recording),
+  write_file("the rosbag2 metadata", metadata_beside(recording),
              recording::rosbag2_metadata(reader, recording.filename().string()));
 }
 

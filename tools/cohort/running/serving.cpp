@@ -273,7 +273,7 @@ void Serving::let_look(const std::atomic<bool>& stop) {
   std::optional<std::chrono::steady_clock::time_point> say_at = std::chrono::steady_clock::now() + before_saying;
   for (; has_view_ && !stop; std::this_thread::sleep_for(interval)) {
     if (!say_at || std::chrono::steady_clock::now() < *say_at) continue;
-    log_.notice("the run has ended; the view remains until its pages are closed, or until Ctrl-C");
+    log_.notice("the run has ended; the view stays open until its pages are closed, or until Ctrl-C");
     say_at.reset();
   }
 }

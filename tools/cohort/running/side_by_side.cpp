@@ -50,7 +50,7 @@ class SummaryFolder {
     std::string pattern = (std::filesystem::temp_directory_path() / "cohort-seeds-XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr)
       throw std::runtime_error(
-          fmt::format("no folder can be made as {}: {}", pattern, std::generic_category().message(errno)));
+          fmt::format("cannot create the temporary folder {}: {}", pattern, std::generic_category().message(errno)));
     path_ = pattern;
   }
   SummaryFolder(const SummaryFolder&) = delete;
@@ -112,7 +112,7 @@ class SideBySide {
           ended(read_seed_row(each.run, outputs(each.run).summary));
         } else if (code == exit_ok) {
           code = each.death.empty() ? each.exit_code : exit_failed;
-          log_.error(fmt::format("run {} of {}, seed {}, has failed{}", each.run, count_, seed(each.run),
+          log_.error(fmt::format("run {} of {}, seed {}, failed{}", each.run, count_, seed(each.run),
                                  each.death.empty() ? "" : ": " + each.death));
         }
       }

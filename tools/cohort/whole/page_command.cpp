@@ -47,7 +47,7 @@ std::vector<std::uint32_t> chosen_robots(const recording::Replay& replay, const 
   const std::uint32_t count = replay.simulation().robot_count();
   if (count > most_robots_by_default) {
     log.notice(
-        fmt::format("the page has no observations and commands, because there are more than {} robots: "
+        fmt::format("the page contains no observations or commands, because there are more than {} robots: "
                     "'--robots' selects robots",
                     most_robots_by_default));
     return {};

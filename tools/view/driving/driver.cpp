@@ -106,7 +106,7 @@ void Driver::tell(Severity severity, const std::string& text) {
   leaves_ = true;
   if (severity == Severity::warning)
     told_ = options_.robots.front() + " could not be claimed (" + text +
-            "). Its present controller may be silent because the run is not advancing";
+            "). Its current controller may be silent because the run is not advancing";
 }
 
 void Driver::answer(const Answer& answer) {

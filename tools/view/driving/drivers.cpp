@@ -28,11 +28,11 @@ void Drivers::drive(const ViewRequest& request, std::function<void(const Answer&
     }
     if (found == driven_.end()) {
       if (!is_claim)
-        told = {false, "this page does not drive '" + request.name + "': claim it by 'drive' without numbers"};
+        told = {false, "this page does not drive '" + request.name + "': claim it with 'drive' without numbers"};
       else if (!is_name(request.name))
-        told = {false, "'drive' needs the whole name of one robot, such as explorers/sbot_7"};
+        told = {false, "'drive' requires the full name of one robot, such as explorers/sbot_7"};
       else if (driven_.size() + leaving_.size() >= most)
-        told = {false, "one view drives at most " + std::to_string(most) + " robots"};
+        told = {false, "one view can drive at most " + std::to_string(most) + " robots"};
       else
         return claim(request, std::move(answer));
     } else if (found->second.driver->has_ended()) {
@@ -85,7 +85,7 @@ Answer Drivers::release(const ViewRequest& request) {
   if (found == driven_.end() || found->second.visitor != request.visitor)
     return {false, "this page does not drive '" + request.name + "'"};
   release_at(found);
-  return {true, "releases " + request.name};
+  return {true, "released " + request.name};
 }
 
 void Drivers::leave(std::uint64_t visitor) {

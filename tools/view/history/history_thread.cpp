@@ -35,7 +35,7 @@ void HistoryThread::ask(const ViewRequest& asked, std::function<void(const Answe
     const auto of_visitor =
         std::ranges::count(pending_, asked.visitor, [](const Pending& each) { return each.request.visitor; });
     if (pending_.size() >= most_pending || of_visitor >= static_cast<std::ptrdiff_t>(most_of_a_visitor))
-      throw std::invalid_argument("too many histories are pending: ask for one after the other");
+      throw std::invalid_argument("too many histories are pending: request one at a time");
     pending_.push_back({std::move(request), answer});
   } catch (const std::invalid_argument& error) {
     return answer({false, error.what()});

@@ -47,7 +47,7 @@ Answer FollowedRun::run_again() const {
   if (!run_again_) return {false, "this view was not started by 'cohort run', which can repeat a run"};
   if (live_ && !live_->has_ended()) return {false, "the run has not ended yet"};
   run_again_();
-  return {true, "runs again"};
+  return {true, "the run is repeated"};
 }
 
 Answer FollowedRun::replay() {

@@ -9,7 +9,7 @@ wire::GetHistory LiveHistory::question() const { return {revision_}; }
 
 bool LiveHistory::take(const wire::Reply& reply, std::chrono::nanoseconds step) {
   const auto* const part = reply.get<wire::HistoryPart>();
-  if (part == nullptr) throw messages::CdrError("the reply has no history");
+  if (part == nullptr) throw messages::CdrError("the reply contains no history");
   const auto history = messages::decode<messages::RunHistory>(std::as_bytes(std::span(part->data)));
   keep_interval_ = history.keep_interval;
   first_kept_ = step * static_cast<std::int64_t>(history.first_kept_tick);

@@ -106,7 +106,8 @@ void LiveSource::show_what_arrives() {
       show(arrived);
     } catch (const messages::CdrError& error) {
       ViewStatus status = status_without_run();
-      status.note = std::string("the server's data cannot be read; its version may differ: ") + error.what();
+      status.note =
+          std::string("the server's data cannot be read; the server may have another version: ") + error.what();
       show_status(status);
     }
   }
@@ -184,7 +185,7 @@ void LiveSource::watch(const std::vector<std::uint32_t>& robots) {
 
 void LiveSource::ask(const ViewRequest& request, std::function<void(const Answer&)> answer) {
   if (request.operation == "history") return histories_.ask(request, std::move(answer));
-  if (!options_.may_control) return answer({false, "this view is read-only: start it by 'cohort view --control'"});
+  if (!options_.may_control) return answer({false, "this view is read-only: start it with 'cohort view --control'"});
   if (request.operation == "drive") return drive(request, std::move(answer));
   if (request.operation == "release") return answer(drivers_.release(request));
   {
@@ -200,7 +201,8 @@ void LiveSource::ask(const ViewRequest& request, std::function<void(const Answer
 
 void LiveSource::drive(const ViewRequest& request, std::function<void(const Answer&)> answer) {
   if (!options_.secure.empty() && options_.secure_drive.empty())
-    return answer({false, "driving this server needs an identity: start the view by 'cohort view --secure-drive DIR'"});
+    return answer(
+        {false, "driving this server requires an identity: start the view with 'cohort view --secure-drive DIR'"});
   if (!has_server_) return answer({false, no_server});
   drivers_.drive(request, std::move(answer));
 }

@@ -74,7 +74,7 @@ class RecordReader {
       const auto found = commanded_.find(commands.robots[i]);
       if (found == commanded_.end()) continue;
       if (commands.places[i] >= found->second.size())
-        throw messages::CdrError("a command is of a channel that its robot does not have");
+        throw messages::CdrError("a command is for a channel that its robot does not have");
       found->second[commands.places[i]] = commands.values[i];
     }
   }

@@ -38,8 +38,8 @@ ViewRequest read_request(const std::string& payload) {
       request.to = value.get<double>();
     } else {
       throw protocol::ProtocolError(
-          "a request has operation, name and text, which are strings, number, from and to, which are numbers, and "
-          "numbers and names, lists of at most 64");
+          "invalid request: expected operation, name and text as strings, number, from and to as numbers, and numbers "
+          "and names as lists of at most 64 elements");
     }
   }
   if (request.operation.empty()) throw protocol::ProtocolError("a request needs an operation");
@@ -158,7 +158,7 @@ void ClientSession::respond(const protocol::ServiceCall& call, const Answer& ans
   Json json{{"done", answer.is_done}, {"text", answer.text}};
   if (answer.history != nullptr) {
     if (histories_ == most_histories)
-      return respond(call, {false, "earlier histories have not been read: ask for one after the other"});
+      return respond(call, {false, "earlier histories have not been read: request one at a time"});
     json["series"] = json_of(*answer.history);
     json["reduced"] = answer.history->is_reduced;
     if (answer.history->next) json["next"] = *answer.history->next;

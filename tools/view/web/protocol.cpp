@@ -83,7 +83,7 @@ class BytesReader {
 
  private:
   std::span<const std::byte> take(std::size_t size) {
-    if (size > bytes_.size()) throw ProtocolError("a binary message is cut short");
+    if (size > bytes_.size()) throw ProtocolError("a binary message is truncated");
     const auto taken = bytes_.first(size);
     bytes_ = bytes_.subspan(size);
     return taken;
@@ -103,7 +103,7 @@ Json schema_of_json(const char* name) {
 FromClient parse_text(std::string_view text) {
   const Json message = Json::parse(text, nullptr, false);
   if (!message.is_object() || !message.contains("op") || !message["op"].is_string())
-    throw ProtocolError("a text message has to be a JSON object with op");
+    throw ProtocolError("a text message must be a JSON object with op");
   const auto operation = message["op"].get<std::string>();
   if (operation == "subscribe") return read_subscribe(message);
   if (operation == "unsubscribe") return read_unsubscribe(message);

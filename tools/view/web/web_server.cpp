@@ -234,7 +234,7 @@ class WebServer::State::Page : public std::enable_shared_from_this<Page> {
     if (!is_own_host(state_.admission, visitor.host))
       return send(request, http::status::forbidden, "this server accepts only browsers on its own machine");
     if (request.method() != http::verb::get && request.method() != http::verb::head)
-      return send(request, http::status::method_not_allowed, "only GET and HEAD");
+      return send(request, http::status::method_not_allowed, "only GET and HEAD are allowed");
     const auto found = state_.page.find(visitor.target.substr(0, visitor.target.find('?')));
     if (found == state_.page.end()) return send(request, http::status::not_found, "not found");
     send(request, http::status::ok, found->second.content, found->second.type);
@@ -267,7 +267,7 @@ class WebServer::State::Page : public std::enable_shared_from_this<Page> {
 
 void WebServer::State::listen() {
   const auto fail = [&](const error_code& error) {
-    throw std::runtime_error("cannot listen at " + options.address + ", port " + std::to_string(options.port) + ": " +
+    throw std::runtime_error("cannot listen on " + options.address + ", port " + std::to_string(options.port) + ": " +
                              error.message() + "; choose another port");
   };
   error_code error;

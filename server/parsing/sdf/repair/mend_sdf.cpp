@@ -115,7 +115,8 @@ void SdfMender::mend_masses(XmlNode& model, const std::string& path) {
   if (first != nullptr)
     tell_of(*first, path,
             "links without mass: " + weightless +
-                "; each gets the mass of its collisions at 1000 kg/m^3, or else of its visuals, or else 1 g");
+                "; their masses are computed from their collisions at 1000 kg/m^3, or else from their visuals, or else "
+                "set to 1 g");
   std::ranges::move(held, std::back_inserter(model.children));
 }
 
@@ -177,7 +178,8 @@ void SdfMender::mend_joint(XmlNode& joint, const std::string& path) {
     XmlNode* axis = child_of(joint, name);
     if (axis != nullptr && axis->child("xyz") != nullptr) continue;
     const bool is_second = name == std::string_view("axis2");
-    tell_of(joint, path, std::string("has no direction of its <") + name + ">; it is " + (is_second ? "y" : "z"));
+    tell_of(joint, path,
+            std::string("has no direction for <") + name + ">; the " + (is_second ? "y" : "z") + " axis is used");
     if (axis == nullptr) axis = &joint.children.emplace_back(element_at(joint, name));
     axis->children.push_back(element_at(joint, "xyz", is_second ? "0 1 0" : "0 0 1"));
   }
@@ -191,8 +193,7 @@ void SdfMender::mend_friction(XmlNode& friction, const std::string& path) {
     if (coefficient.name != "mu" && coefficient.name != "mu2") continue;
     const auto value = parse_real(coefficient.text);
     if (!value || !(*value < 0.0)) continue;
-    tell_of(coefficient, path + "/ode/" + coefficient.name,
-            "expected a coefficient >= 0; friction without limit is used");
+    tell_of(coefficient, path + "/ode/" + coefficient.name, "expected a coefficient >= 0; unlimited friction is used");
     coefficient.text = "1000";
   }
 }

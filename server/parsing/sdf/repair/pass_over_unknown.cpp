@@ -35,8 +35,7 @@ void UnknownInSdf::take_out_of(XmlNode& node, const ElementSchema& schema, const
   std::erase_if(node.attributes, [&](const auto& attribute) {
     if (has_any_prefix(attribute.first) || schema.knows_attribute(attribute.first)) return false;
     note(node, path,
-         "unknown attribute '" + attribute.first + "', which is ignored" +
-             meant_by(attribute.first, schema.attributes()));
+         "ignored the unknown attribute '" + attribute.first + "'" + meant_by(attribute.first, schema.attributes()));
     return true;
   });
   std::erase_if(node.children, [&](XmlNode& child) {
@@ -44,7 +43,7 @@ void UnknownInSdf::take_out_of(XmlNode& node, const ElementSchema& schema, const
     const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
     if (!schema.knows_child(child.name)) {
       note(child, child_path,
-           "unknown element <" + child.name + ">, which is ignored" + meant_by(child.name, schema.children()));
+           "ignored the unknown element <" + child.name + ">" + meant_by(child.name, schema.children()));
       return true;
     }
     if (const ElementSchema of_child = schema.child(child.name); !of_child.takes_anything())

@@ -105,7 +105,7 @@ void Converter::merge(const YamlNode& from, int line, const std::string& path, s
     for (Entry& entry : entries(from, path))
       if (seen.insert(entry.key).second) found.push_back(std::move(entry));
   } else {
-    problem(line, path, "expected a map to be merged in with '<<', not " + shown(from));
+    problem(line, path, "expected a map to merge with '<<', not " + shown(from));
   }
 }
 
@@ -140,7 +140,7 @@ void Converter::fill(XmlNode& node, const YamlNode& value, const ElementSchema& 
       if (is_list_of_scalars(value))
         node.text = joined(value);
       else
-        problem(value.line, path, "unexpected list in a list; expected values");
+        problem(value.line, path, "unexpected nested list; expected values");
   }
 }
 
@@ -229,8 +229,7 @@ void Converter::add_children(XmlNode& node, const Entry& entry, const ElementSch
   }
   for (const YamlPtr& item : value.items) {
     if (item->is_list() && !child.is_vector())
-      problem(item->line, extended(path, name),
-              "unexpected list in a list; expected the content of one <" + name + ">");
+      problem(item->line, extended(path, name), "unexpected nested list; expected the content of one <" + name + ">");
     else
       add_child(node, name, item->line, *item, child, path);
   }
@@ -255,7 +254,7 @@ void Converter::check_top(const XmlNode& sdf) {
   const std::string* const version = sdf.attribute("version");
   if (version != nullptr && *version != sdf::SDF::Version())
     problem(sdf.line, "sdf",
-            "expected the version " + sdf::SDF::Version() + ", the only one for YAML, not '" + *version + "'");
+            "expected version " + sdf::SDF::Version() + ", the only version supported in YAML, not '" + *version + "'");
 }
 
 XmlNode Converter::convert(const YamlNode& document) {
@@ -268,8 +267,7 @@ XmlNode Converter::convert(const YamlNode& document) {
       if (key->is_scalar() && key->text == "sdf") {
         sdf.line = key->line;
         content = value.get();
-        if (document.pairs.size() > 1)
-          problem(document.line, "", "no other key is allowed beside 'sdf:' at the top level");
+        if (document.pairs.size() > 1) problem(document.line, "", "'sdf:' must be the only key at the top level");
       }
   if (content->is_map())
     fill(sdf, *content, ElementSchema::root(), "");

@@ -96,11 +96,11 @@ void Checker::check(const XmlNode& robot) {
 void Checker::check_top(const XmlNode& node) {
   const std::string path = "robot/" + step(node);
   if (node.name.starts_with("xacro:")) {
-    problem(node, path, "this is a xacro file; expected the URDF that `xacro FILE` makes of it");
+    problem(node, path, "this is a xacro file; expected the URDF that `xacro FILE` generates from it");
   } else if (node.name == "link" || node.name == "joint") {
     const std::string* const name = node.attribute("name");
     if (name == nullptr || name->empty() || name->find("::") != std::string::npos)
-      problem(node, path, "expected an attribute name=\"NAME\", without '::' in it");
+      problem(node, path, "expected an attribute name=\"NAME\", with a NAME without '::'");
     else if (!(node.name == "link" ? links_ : joints_).emplace(*name, &node).second)
       problem(node, path, "another " + node.name + " has the name '" + *name + "'");
     node.name == "link" ? check_link(node, path) : check_joint(node, path);
@@ -203,7 +203,7 @@ void Checker::check_tree(const XmlNode& robot) {
     if (parent.contains(name)) continue;
     roots += (count++ == 0 ? "'" : ", '") + name + "'";
   }
-  if (count > 1) problem(robot, step(robot), "expected one link without a joint to a parent, not " + roots);
+  if (count > 1) problem(robot, step(robot), "expected one root link (a link without a parent joint), not " + roots);
   // Each ascent ends at a root or at a visited link; if it was visited in this ascent, there is a loop.
   std::set<std::string> met;
   for (const auto& [name, node] : links_) {
@@ -213,7 +213,8 @@ void Checker::check_tree(const XmlNode& robot) {
       now.insert(link);
       link = parent[link];
     }
-    if (now.contains(link)) problem(*links_[link], step(robot) + "/link[" + link + "]", "is part of a loop of joints");
+    if (now.contains(link))
+      problem(*links_[link], step(robot) + "/link[" + link + "]", "is in a loop of joints; expected a tree of links");
   }
 }
 

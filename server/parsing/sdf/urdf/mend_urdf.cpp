@@ -89,7 +89,7 @@ void UrdfMender::mend_numbers(XmlNode& node, const UrdfForm& form, const std::st
       mended += (mended.empty() ? "" : " ") + std::string(word);
     }
     if (what_is_wrong(mended, attribute)) continue;
-    notes_.warn(node, path, "expected numbers with spaces between them, not '" + value + "'; read as '" + mended + "'");
+    notes_.warn(node, path, "expected numbers separated by spaces, not '" + value + "'; read as '" + mended + "'");
     set_attribute(node, attribute.name, mended);
   }
 }
@@ -200,7 +200,7 @@ void UrdfMender::take_unknown(XmlNode& node, const std::string& path) {
       if (form.parent == node.name) known.emplace_back(form.name);
     const auto meant = nearest(child.name, known);
     notes_.pass_over(child, path + "/" + urdf_step(child),
-                     "unknown element <" + child.name + "> in a <" + node.name + ">, which is ignored" +
+                     "ignored the unknown element <" + child.name + "> in <" + node.name + ">" +
                          (meant ? "; did you mean '" + *meant + "'?" : ""));
     return true;
   });
@@ -216,7 +216,7 @@ void UrdfMender::take_unknown(XmlNode& node, const std::string& path) {
       if (std::ranges::find(known, attribute.first) != known.end()) return false;
       const auto meant = nearest(attribute.first, known);
       notes_.pass_over(child, child_path,
-                       "unknown attribute '" + attribute.first + "' of <" + child.name + ">, which is ignored" +
+                       "ignored the unknown attribute '" + attribute.first + "' of <" + child.name + ">" +
                            (meant ? "; did you mean '" + *meant + "'?" : ""));
       return true;
     });

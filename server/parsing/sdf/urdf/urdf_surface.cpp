@@ -46,12 +46,12 @@ std::optional<XmlNode> surface_of(const XmlNode& contact, const std::string& pat
     } else if (child.name == "damping") {
       set({"contact", "ode", "kd"});
     } else {
-      notes.pass_over(child, path + "/" + child.name,
-                      "unknown element <" + child.name + "> of a <contact>, which is ignored");
+      notes.pass_over(child, path + "/" + child.name, "ignored the unknown element <" + child.name + "> in <contact>");
       continue;
     }
     if (!is_number)
-      notes.pass_over(child, path + "/" + child.name, "expected value=\"NUMBER\", at least 0; it is ignored");
+      notes.pass_over(child, path + "/" + child.name,
+                      "expected value=\"NUMBER\", with a number >= 0; the element is ignored");
   }
   return surface.children.empty() ? std::nullopt : std::optional(std::move(surface));
 }

@@ -37,7 +37,7 @@ void decompress(ByteView bytes, std::span<std::byte> to) {
   const std::size_t size = ZSTD_decompress(to.data(), to.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(size) != 0) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(size));
   if (size != to.size())
-    throw std::runtime_error("it holds " + std::to_string(size) + " bytes, not " + std::to_string(to.size()));
+    throw std::runtime_error("it decompresses to " + std::to_string(size) + " bytes, not " + std::to_string(to.size()));
 }
 
 }  // namespace cohort::recording

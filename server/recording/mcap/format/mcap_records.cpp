@@ -23,7 +23,7 @@ ByteView bytes_of(std::string_view text) { return std::as_bytes(std::span(text))
 
 void add_size(Bytes& to, std::size_t size) {
   if (size > std::numeric_limits<std::uint32_t>::max())
-    throw std::length_error("a text or list has " + std::to_string(size) + " bytes; MCAP allows less than 4 GiB");
+    throw std::length_error("a string or list has " + std::to_string(size) + " bytes; MCAP allows less than 4 GiB");
   add(to, static_cast<std::uint32_t>(size));
 }
 

@@ -10,7 +10,7 @@ void Place::fail(const std::string& problem) const {
 
 ByteView Cursor::take(std::uint64_t size, const char* field) {
   if (size > bytes_.size())
-    place_->fail("'" + std::string(field) + "' takes " + std::to_string(size) + " bytes; its record has " +
+    place_->fail("'" + std::string(field) + "' has " + std::to_string(size) + " bytes, but its record has only " +
                  std::to_string(bytes_.size()) + " left");
   const ByteView taken = bytes_.first(static_cast<std::size_t>(size));
   bytes_ = bytes_.subspan(static_cast<std::size_t>(size));
@@ -134,7 +134,7 @@ ChunkHead read_chunk_head(ByteView content, std::uint64_t size, const Place& pla
   head.compressed_size = cursor.number<std::uint64_t>("records");
   const std::uint64_t before = content.size() - cursor.left();
   if (head.compressed_size > size - before)
-    place.fail("the chunk's records take " + std::to_string(head.compressed_size) + " bytes; its record has " +
+    place.fail("the chunk's content has " + std::to_string(head.compressed_size) + " bytes, but its record has only " +
                std::to_string(size - before) + " left");
   return head;
 }

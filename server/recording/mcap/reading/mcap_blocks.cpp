@@ -15,12 +15,12 @@ void check_sizes(const ChunkHead& head, const ReadLimits& limits, const Place& p
   if (!head.compression.empty() && head.compression != "zstd")
     place.fail("the chunk's compression is '" + head.compression + "', expected 'zstd' or '' (none)");
   if (head.uncompressed_size > limits.chunk_size)
-    place.fail("the chunk holds " + std::to_string(head.uncompressed_size) + " bytes; at most " +
-               std::to_string(limits.chunk_size) + " are read");
+    place.fail("the chunk has " + std::to_string(head.uncompressed_size) + " uncompressed bytes; the maximum is " +
+               std::to_string(limits.chunk_size));
   const bool is_possible = head.compression.empty() ? head.uncompressed_size == head.compressed_size
                                                     : is_possible_size(head.uncompressed_size, head.compressed_size);
   if (!is_possible)
-    place.fail("invalid chunk: " + std::to_string(head.compressed_size) + " bytes cannot hold " +
+    place.fail("invalid chunk: " + std::to_string(head.compressed_size) + " compressed bytes cannot expand to " +
                std::to_string(head.uncompressed_size) + " bytes");
 }
 
@@ -51,8 +51,8 @@ Bytes read_block(const FileBytes& file, const Block& block, const ReadLimits& li
   file.read(block.offset, std::span(first).first(size));
   const RecordHead record = read_record_head(ByteView(first).first(size), place);
   if (record.opcode != Opcode::chunk || record.size != block.length - record_head_size)
-    place.fail("expected a chunk of " + std::to_string(block.length) + " bytes, found a record of type " +
-               std::to_string(static_cast<int>(record.opcode)) + " of " + std::to_string(record.size));
+    place.fail("expected a chunk with " + std::to_string(block.length) + " bytes, found a record of type " +
+               std::to_string(static_cast<int>(record.opcode)) + " with " + std::to_string(record.size) + " bytes");
   const ByteView content = ByteView(first).first(size).subspan(record_head_size);
   const ChunkHead head = read_chunk_head(content, record.size, place);
   const std::uint64_t before = chunk_content_size(head) - head.compressed_size;
@@ -73,8 +73,8 @@ RecordView record_at(ByteView records, std::uint64_t offset, const Place& place)
   const ByteView rest = records.subspan(static_cast<std::size_t>(offset));
   const RecordHead head = read_record_head(rest, here);
   if (head.size > rest.size() - record_head_size)
-    here.fail("a record of " + std::to_string(head.size) + " bytes; there are " +
-              std::to_string(rest.size() - record_head_size) + " left");
+    here.fail("the record has " + std::to_string(head.size) + " bytes, but only " +
+              std::to_string(rest.size() - record_head_size) + " are left");
   return {head.opcode, offset, rest.subspan(record_head_size, static_cast<std::size_t>(head.size))};
 }
 

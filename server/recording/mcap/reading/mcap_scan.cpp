@@ -199,7 +199,7 @@ class Scanner {
   }
 
   void end_data(std::uint64_t offset, std::uint64_t size, const Place& place) {
-    if (size != 4) place.fail("the end of the data has " + std::to_string(size) + " bytes, expected 4");
+    if (size != 4) place.fail("the DataEnd record has " + std::to_string(size) + " bytes, expected 4");
     Cursor cursor(window_.get(offset + record_head_size, size), place);
     const auto crc = cursor.number<std::uint32_t>("data_section_crc");
     if (crc != 0 && scan_.damages.empty() && crc != file_.crc(0, offset))

@@ -103,7 +103,7 @@ void check_magic(const FileBytes& file) {
   const std::string found = bytes.empty() ? "it is empty"
                             : is_text     ? "it is a text file. If it is an experiment, 'cohort run " +
                                             file.path().filename().string() + " --record run.mcap' records it"
-                                      : "it has other first bytes";
+                                      : "it begins with other bytes";
   file.at(0).fail("this is not an MCAP file: it must begin with the bytes 89 4D 43 41 50 30 0D 0A, but " + found);
 }
 

@@ -120,7 +120,7 @@ void expect_something_to_keep(const FileBytes& file, const Scan& scan, bool is_i
   std::string found = "no message in the file can be read";
   if (has_rest)
     found += ", only " + count(contents.attachments.size(), "attachment") + " and " +
-             count(contents.metadata.size(), "record") + " of metadata, which can be written to another file with -o";
+             count(contents.metadata.size(), "record") + " of metadata, which '-o' writes to another file";
   file.at(scan.damages.front().offset)
       .fail(scan.damages.front().problem + "; " + found + "; the file has " + count(file.size(), "byte") +
             " and is not changed");
@@ -152,7 +152,7 @@ std::string Recovery::text() const {
                      count(kept.attachment_count, "attachment") + ", " + count(kept.metadata_count, "record") +
                      " of metadata\n";
   if (was_whole()) return text + "nothing was lost: the file is complete\n";
-  text += "lost " + count(lost_chunks, "damaged chunk") + " with " + count(lost_messages, "message") + " at least; " +
+  text += "lost " + count(lost_chunks, "damaged chunk") + " with at least " + count(lost_messages, "message") + "; " +
           count(lost_bytes, "byte") + " could not be read\n";
   constexpr std::size_t most = 20;
   for (std::size_t i = 0; i < std::min(most, damages.size()); ++i)

@@ -74,7 +74,7 @@ void McapWriter::add(Schema schema) {
 
 void McapWriter::add(Channel channel) {
   if (channel.schema != 0 && !schemas_.contains(channel.schema))
-    throw std::invalid_argument("channel " + channel.topic + " names schema " + std::to_string(channel.schema) +
+    throw std::invalid_argument("channel " + channel.topic + " refers to schema " + std::to_string(channel.schema) +
                                 ", which was not added");
   const auto [added, is_new] = channels_.emplace(channel.id, std::move(channel));
   if (!is_new) throw std::invalid_argument("channel " + std::to_string(added->first) + " already exists");

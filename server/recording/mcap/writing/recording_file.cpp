@@ -112,7 +112,7 @@ void RecordingFile::add_entry(const MessageHead& head, std::uint64_t size, bool 
 // Requires the lock.
 void RecordingFile::end(const std::string& why) {
   if (!error_.empty()) return;
-  error_ = store_->name() + " ends early: " + why + ". The messages recorded before are intact";
+  error_ = store_->name() + " ends early: " + why + ". The messages recorded until then are intact";
   is_closing_ = true;
   wake_.notify_one();
 }
@@ -337,13 +337,13 @@ void RecordingFile::give_up(const std::exception& reason) {
     if (rest.empty()) break;
   }
   const std::uint64_t count = writer_.statistics().message_count;
-  const std::string messages = std::to_string(count) + " messages recorded before";
+  const std::string messages = std::to_string(count) + " messages recorded until then";
   if (rest.empty())
-    rest = "The file has the " + messages + " and was closed";
+    rest = "The file contains the " + messages + " and was closed";
   else if (count > 0)
-    rest = "The file has the " + messages + " but is not closed; 'cohort recover' closes it" + keep_unclosed();
+    rest = "The file contains the " + messages + " but is not closed; 'cohort recover' closes it" + keep_unclosed();
   else
-    rest = "Nothing was recorded before; an existing file is unchanged";
+    rest = "Nothing was recorded; an existing file is unchanged";
   const std::lock_guard lock(mutex_);
   error_ = text + ". " + rest;
   queue_.clear();

@@ -29,7 +29,7 @@ std::string what_is_wrong_with(const wire::SetSimulationState& operation) {
 }
 std::string what_is_wrong_with(const wire::StepSimulation& operation) {
   if (operation.steps > 0 && operation.steps <= most_steps) return {};
-  return "expected at least 1 step, and at most 2^62, not " + std::to_string(operation.steps);
+  return "expected 1 to 2^62 steps, not " + std::to_string(operation.steps);
 }
 std::string what_is_wrong_with(const wire::AdvanceTime& operation) {
   if (operation.steps <= most_steps) return {};
@@ -63,7 +63,7 @@ std::string complaint_about(const One& operation) {
   std::string wrong;
   wire::for_each_name(operation, [&](const std::string& name) {
     if (name.size() > longest_name)
-      wrong = "a name of " + std::to_string(name.size()) + " bytes is longer than " + std::to_string(longest_name);
+      wrong = "a name has " + std::to_string(name.size()) + " bytes; the maximum is " + std::to_string(longest_name);
   });
   if constexpr (requires { what_is_wrong_with(operation); })
     if (wrong.empty()) wrong = what_is_wrong_with(operation);

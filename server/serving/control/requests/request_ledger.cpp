@@ -72,11 +72,13 @@ std::optional<RequestLedger::Part> RequestLedger::part(std::uint64_t client, std
 std::optional<std::string> RequestLedger::take_part(std::uint64_t client, std::uint64_t size, std::uint64_t offset,
                                                     std::span<const std::uint8_t> bytes, KeptForClient::Time now) {
   if (size > wire::largest_data)
-    return "data of " + std::to_string(size) + " bytes is more than " + std::to_string(wire::largest_data);
+    return "the data has " + std::to_string(size) + " bytes; the maximum is " + std::to_string(wire::largest_data);
   if (bytes.size() > wire::largest_part)
-    return "a part of " + std::to_string(bytes.size()) + " bytes is larger than " + std::to_string(wire::largest_part);
+    return "a part has " + std::to_string(bytes.size()) + " bytes; the maximum is " +
+           std::to_string(wire::largest_part);
   if (offset > size || bytes.size() > size - offset)
-    return "the part from " + std::to_string(offset) + " on exceeds the data's size of " + std::to_string(size);
+    return "the part at offset " + std::to_string(offset) + " exceeds the data's size of " + std::to_string(size) +
+           " bytes";
   if (offset == 0) {
     dropped_.erase({client, KeptForClient::Kind::upload});
     incoming_[client] = {.since = now, .size = size};
@@ -84,12 +86,13 @@ std::optional<std::string> RequestLedger::take_part(std::uint64_t client, std::u
   const auto holder = incoming_.find(client);
   if (const std::string why = why_dropped(client, KeptForClient::Kind::upload); !why.empty()) return why;
   if (holder == incoming_.end() || holder->second.size != size)
-    return "the part from " + std::to_string(offset) + " on has no preceding part: the first part has offset 0";
+    return "the part at offset " + std::to_string(offset) +
+           " belongs to no upload in progress: the first part must have offset 0";
   std::vector<std::byte>& data = holder->second.bytes;
   if (offset + bytes.size() <= data.size()) return std::nullopt;  // a repeated part
   if (offset != data.size())
-    return "the part from " + std::to_string(offset) + " on is out of order, expected the part from " +
-           std::to_string(data.size()) + " on";
+    return "the part at offset " + std::to_string(offset) + " is out of order, expected offset " +
+           std::to_string(data.size());
   const auto added = std::as_bytes(bytes);
   if (data.capacity() < data.size() + added.size())
     data.reserve(std::min<std::size_t>(size, 2 * (data.size() + added.size())));  // never more than its size

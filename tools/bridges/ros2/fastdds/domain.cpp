@@ -109,7 +109,7 @@ void Domain::announce(Announce announced) {
     qos.endpoint().history_memory_policy = rtps::DYNAMIC_RESERVE_MEMORY_MODE;
     qos.data_sharing().off();
     writer = publisher_->create_datawriter(make_topic(announced.topic, announced.type), qos);
-    if (writer == nullptr) throw std::runtime_error("no writer of '" + announced.topic + "'");
+    if (writer == nullptr) throw std::runtime_error("cannot create a writer for '" + announced.topic + "'");
   }
   writer->write(&announced.sample);
 }

@@ -35,7 +35,7 @@ class Helper {
   ~Helper() { output_.close(); }  // a thread of DDS may wait there for the bridge
 
   void operator()(OpenDomain& open) {
-    if (domain_) throw std::runtime_error("a domain is open already");
+    if (domain_) throw std::runtime_error("a domain is already open");
     domain_ = std::make_unique<Domain>(open);
     output_.send(DomainOpened{domain_->guid()});
   }

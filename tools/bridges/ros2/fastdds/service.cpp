@@ -36,7 +36,7 @@ Service::Service(Domain& domain, Output& output, const OfferService& offered)
   writer_qos.data_sharing().off();
   writer_qos.user_data().assign(offered.reply_user_data.begin(), offered.reply_user_data.end());
   writer_ = domain.publisher().create_datawriter(replies, writer_qos, this, dds::StatusMask::publication_matched());
-  if (writer_ == nullptr) throw std::runtime_error("no writer of '" + offered.reply_topic + "'");
+  if (writer_ == nullptr) throw std::runtime_error("cannot create a writer for '" + offered.reply_topic + "'");
 
   dds::DataReaderQos reader_qos = domain.subscriber().get_default_datareader_qos();
   reader_qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
@@ -46,14 +46,15 @@ Service::Service(Domain& domain, Output& output, const OfferService& offered)
   reader_qos.data_sharing().off();
   reader_qos.user_data().assign(offered.request_user_data.begin(), offered.request_user_data.end());
   reader_ = domain.subscriber().create_datareader(requests, reader_qos, this, dds::StatusMask::data_available());
-  if (reader_ == nullptr) throw std::runtime_error("no reader of '" + offered.request_topic + "'");
+  if (reader_ == nullptr) throw std::runtime_error("cannot create a reader for '" + offered.request_topic + "'");
   if (!offered.is_shared) return;
   // This one only counts.
   reader_qos.reliability().kind = dds::BEST_EFFORT_RELIABILITY_QOS;
   reader_qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   reader_qos.history().depth = 1;
   counted_reader_ = domain.subscriber().create_datareader(requests, reader_qos);
-  if (counted_reader_ == nullptr) throw std::runtime_error("no second reader of '" + offered.request_topic + "'");
+  if (counted_reader_ == nullptr)
+    throw std::runtime_error("cannot create a second reader for '" + offered.request_topic + "'");
 }
 
 Service::~Service() {

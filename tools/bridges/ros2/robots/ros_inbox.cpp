@@ -11,7 +11,7 @@
 namespace cohort::ros2 {
 
 RosInbox::RosInbox() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "cannot make an eventfd");
+  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "cannot create an eventfd");
 }
 
 RosInbox::~RosInbox() { ::close(descriptor_); }

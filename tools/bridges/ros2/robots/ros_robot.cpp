@@ -78,7 +78,7 @@ void RosRobot::tell_commanders() {
     return;
   const std::string now = commanders();
   if (now == told_commanders_) return;
-  options_.tell(now.empty() ? told_commanders_ + " has gone" : now + " commands it");
+  options_.tell(now.empty() ? told_commanders_ + " no longer commands it" : now + " commands it");
   told_commanders_ = now;
 }
 
@@ -104,7 +104,7 @@ void RosRobot::tell_mistakes() {
         std::chrono::steady_clock::now() < mistake.since + longest_wait)
       continue;
     mistake.is_told = true;
-    options_.tell(mistake.topic + " of " + (writer ? graph_.nodes_of(writer->participant) : "a node that has left") +
+    options_.tell(mistake.topic + " from " + (writer ? graph_.nodes_of(writer->participant) : "a node that has left") +
                   mistake.text);
   }
 }
@@ -135,8 +135,8 @@ void RosRobot::go_on_unanswered(std::uint64_t tick) {
   if (stands) command_ = neutral_;
   if (std::exchange(is_silent_, true)) return;
   const std::string who = commanders();
-  options_.tell("no " + command_topic() + (who.empty() ? "" : " of " + who) + " for tick " + std::to_string(tick) +
-                ": the robot " + (stands ? "stands" : "keeps its last command") + " until one comes");
+  options_.tell("no " + command_topic() + (who.empty() ? "" : " from " + who) + " for tick " + std::to_string(tick) +
+                ": the robot " + (stands ? "stands" : "keeps its last command") + " until a command arrives");
 }
 
 void RosRobot::answer(Command& command) {

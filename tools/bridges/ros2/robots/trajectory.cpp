@@ -16,8 +16,7 @@ void Trajectory::begin(const messages::ros::JointTrajectory& message, std::span<
     if (target == targets_.end()) {
       std::string known;
       for (const Target& each : targets_) known += (known.empty() ? "" : ", ") + each.joint;
-      throw std::invalid_argument("it has no joint '" + printable(joint) + "' that takes positions; there are " +
-                                  known);
+      throw std::invalid_argument("it has no position-controlled joint '" + printable(joint) + "'; there are " + known);
     }
     offsets.push_back(target->offset);
   }
@@ -31,7 +30,8 @@ void Trajectory::begin(const messages::ros::JointTrajectory& message, std::span<
                                   std::to_string(offsets.size()) + " joints");
     if (!std::ranges::all_of(point.positions, [](double each) { return std::isfinite(each); }))
       throw std::invalid_argument("a position is not finite");
-    if (time < points.back().time) throw std::invalid_argument("the times of its points do not ascend");
+    if (time < points.back().time)
+      throw std::invalid_argument("the times of its points must be non-negative and in ascending order");
     points.push_back({time, point.positions});
   }
   has_begun_ = message.header.stamp.sec != 0 || message.header.stamp.nanosec != 0;

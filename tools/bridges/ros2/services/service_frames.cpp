@@ -83,7 +83,7 @@ Frame decode(std::uint8_t kind, std::string_view fields) {
     each.visit(reader);
     if (!reader.bytes.empty())
       throw std::runtime_error("frame of kind " + std::to_string(kind) + ": " + std::to_string(reader.bytes.size()) +
-                               " bytes too many");
+                               " extra bytes");
     return each;
   }
 }

@@ -14,7 +14,7 @@ wire::Reply RunControl::ask(const wire::Operation& operation, std::chrono::milli
   else if (client_.server_is_gone())
     failed.error_message = "the server is gone";
   else
-    failed.error_message = "request not done within " + std::to_string(at_most.count() / 1000) + " s";
+    failed.error_message = "the request was not completed within " + std::to_string(at_most.count() / 1000) + " s";
   return failed;
 }
 

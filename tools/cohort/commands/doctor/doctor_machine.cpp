@@ -120,8 +120,8 @@ Finding check_clock(const fs::path& sys) {
     finding.health = Health::warning;
     finding.found += fmt::format(", the wall clock has just jumped by {:.3f} s", jump);
     finding.advice =
-        "Runs are not affected: they use the steady clock. Times in logs and certificates are: check the clock "
-        "synchronization.";
+        "Runs are not affected, because they use the steady clock. Times in logs and checks of certificates are "
+        "affected: check the clock synchronization.";
   }
   return finding;
 }

@@ -163,7 +163,7 @@ std::vector<Finding> check_interfaces(const std::string& address) {
     finding.health = Health::problem;
     finding.found =
         fmt::format("no active interface has the address {}; active interfaces: {}", address, finding.found);
-    finding.advice = "Give --network one of these addresses; 'ip address' also lists inactive interfaces.";
+    finding.advice = "Use one of these addresses for --network; 'ip address' also lists inactive interfaces.";
   } else if (address.starts_with("127.")) {
     finding.found += "; a server on " + address + " can be reached from this machine only";
     if (outward > 0) finding.found += ", a server on another address from the network of that address";
@@ -254,7 +254,7 @@ Finding check_server(const DoctorCommand& command, const std::optional<wire::Ide
             fmt::format("at {}, {} uses UDP port {}, but refuses the connection", where, holder, port),
             identity ? "The certificates come from different authorities, a certificate has expired, or the server "
                        "runs without --secure."
-                     : "The server runs with --secure: give --secure DIR/clients/NAME."};
+                     : "The server runs with --secure: use --secure DIR/clients/NAME."};
   return {
       "server", bad, fmt::format("at {}, no server answers on UDP port {}", where, port),
       is_expected

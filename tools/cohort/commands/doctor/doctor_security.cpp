@@ -29,7 +29,7 @@ Finding check_identity(const wire::Identity& identity) {
   if (now >= validity.end) return {"security", Health::problem, who + ": expired at " + date_of(validity.end), again};
   if (now < validity.begin)
     return {"security", Health::problem,
-            fmt::format("{}: valid only from {}; the time is {}", who, date_of(validity.begin), date_of(now)),
+            fmt::format("{}: valid only from {}; the time now is {}", who, date_of(validity.begin), date_of(now)),
             "The clock of this machine, or of the machine that made the certificate, is wrong."};
   const fs::perms others = fs::perms::group_all | fs::perms::others_all;
   if ((fs::status(identity.folder / wire::key_file).permissions() & others) != fs::perms::none)

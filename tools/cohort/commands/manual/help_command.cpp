@@ -49,7 +49,7 @@ int help(const HelpCommand& command, Log& log) {
   }
   const std::vector<std::string> robots = installed_robots();
   const std::optional<std::string> near = nearest_topic(topic);
-  std::string hint = "; 'cohort help' lists them";
+  std::string hint = "; 'cohort help' lists the topics";
   if (near) hint = "; did you mean '" + *near + "'?";
   if (std::ranges::count(robots, topic) > 0) hint = "; 'cohort help robot " + topic + "' describes the robot";
   log.error("there is no topic '" + topic + "'" + hint);

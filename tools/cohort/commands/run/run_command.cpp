@@ -366,7 +366,7 @@ int run(RunCommand command, Log& log, const std::atomic<bool>& stop, std::vector
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   execv("/proc/self/exe", arguments.data());
-  throw std::system_error(errno, std::generic_category(), "cannot run again");
+  throw std::system_error(errno, std::generic_category(), "cannot restart the program");
 }
 
 Subcommand running(CommandLine line, const std::shared_ptr<RunCommand>& command, const LogFlags& flags) {

@@ -10,7 +10,10 @@ export function download(content: Blob, name: string): void {
 export function screenshot(canvas: HTMLCanvasElement, draw: () => void): Promise<Blob> {
   draw(); // the picture is there until the browser composes the page
   return new Promise((resolve, reject) =>
-    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))), "image/png"),
+    canvas.toBlob(
+      (blob) => (blob ? resolve(blob) : reject(new Error("the browser cannot create a picture"))),
+      "image/png",
+    ),
   );
 }
 

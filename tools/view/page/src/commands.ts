@@ -227,7 +227,9 @@ export class Commands {
         "defines another name for a command; without arguments lists the aliases",
         change("aliases", "alias NAME COMMAND"),
       ),
-      command("unalias NAME", "forgets it", forget("aliases", "unalias NAME"), () => Object.keys(this.profile.aliases)),
+      command("unalias NAME", "removes an alias", forget("aliases", "unalias NAME"), () =>
+        Object.keys(this.profile.aliases),
+      ),
       command(
         "script [NAME COMMANDS]",
         "saves a script of commands separated by ';'",

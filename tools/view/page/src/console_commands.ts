@@ -61,8 +61,8 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
     return found ?? now;
   };
   return [
-    plain("play", "goes on"),
-    plain("pause", "stands still"),
+    plain("play", "resumes the run or the recording"),
+    plain("pause", "pauses the run or the recording"),
     plain("again", "repeats a run that 'cohort run --view --control' started, once it has ended"),
     plain("replay", "shows the recording of a run that has ended"),
     command(
@@ -71,7 +71,7 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
       ([ticks]) =>
         ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }),
     ),
-    command("seek SECONDS", "goes to a time of a recording, or back in a run whose server keeps snapshots", ([time]) =>
+    command("seek SECONDS", "jumps to a time of a recording, or back in a run whose server keeps snapshots", ([time]) =>
       ask(connection, { operation: "seek", number: numberOf(time, "seconds") }),
     ),
     command(
@@ -120,7 +120,7 @@ function cameraCommands({ viewer, plots, panels }: Parts): Command[] {
       },
       names,
     ),
-    command("deselect", "chooses nothing", () => viewer.select(undefined)),
+    command("deselect", "clears the selection", () => viewer.select(undefined)),
     command(
       "viewpoint [save NAME | NAME]",
       "saves or recalls a viewpoint; without arguments lists them",

@@ -48,7 +48,7 @@ function glowTexture(): CanvasTexture {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 128;
   const context = canvas.getContext("2d");
-  if (!context) throw new Error("this browser has no canvas to draw on");
+  if (!context) throw new Error("this browser cannot draw on a canvas");
   const gradient = context.createRadialGradient(64, 64, 0, 64, 64, 64);
   gradient.addColorStop(0, "rgba(255,255,255,1)");
   gradient.addColorStop(0.12, "rgba(255,255,255,0.9)");

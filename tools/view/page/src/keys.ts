@@ -1,7 +1,7 @@
 import type { Commands } from "./commands";
 
 const mouse: readonly (readonly [string, string])[] = [
-  ["drag", "turns the camera; the right button shifts it, the wheel zooms"],
+  ["drag", "turns the camera; the right button pans, the wheel zooms"],
   ["click", "selects; a double click follows"],
   ["Shift + drag", "moves an object of a server that may be controlled"],
 ];

@@ -30,7 +30,7 @@ export class RecordedFrames {
 
   static async read(blocks: readonly HTMLElement[]): Promise<RecordedFrames> {
     const table = await readTable(blocks);
-    if (table.version !== 1) throw new Error(`data of version ${table.version}, which this page cannot read`);
+    if (table.version !== 1) throw new Error(`this page cannot read data of version ${table.version}`);
     return new RecordedFrames(blocks, table);
   }
 

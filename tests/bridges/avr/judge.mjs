@@ -1,7 +1,7 @@
 // Runs an image in Intel HEX on avr8js, and writes the outputs of its pins and its serial interface as JSON. Edges of
 // port B are [cycle, levels]; bytes are [cycle, byte]. Arguments: the file, atmega328p or atmega2560, number of cycles.
 
-import {readFileSync} from "node:fs";
+import { readFileSync } from "node:fs";
 import {
   AVRIOPort,
   AVRTimer,
@@ -29,11 +29,11 @@ const cpu = new CPU(new Uint16Array(program.buffer), mcu === "atmega2560" ? 8192
 const port = new AVRIOPort(cpu, portBConfig);
 // The interrupt vectors that the image uses are elsewhere on an ATmega2560.
 const vectors =
-  mcu === "atmega2560" ? [{ovfInterrupt: 0x2e}, {compAInterrupt: 0x22}, {compAInterrupt: 0x1a}] : [{}, {}, {}];
+  mcu === "atmega2560" ? [{ ovfInterrupt: 0x2e }, { compAInterrupt: 0x22 }, { compAInterrupt: 0x1a }] : [{}, {}, {}];
 for (const [i, config] of [timer0Config, timer1Config, timer2Config].entries())
-  new AVRTimer(cpu, {...config, ...vectors[i]});
+  new AVRTimer(cpu, { ...config, ...vectors[i] });
 const serial = new AVRUSART(cpu, usart0Config, 16e6);
-const found = {edges: [], bytes: []};
+const found = { edges: [], bytes: [] };
 port.addListener((levels) => found.edges.push([cpu.cycles, levels]));
 serial.onByteTransmit = (byte) => found.bytes.push([cpu.cycles, byte]);
 while (cpu.cycles < Number(cycles)) {

@@ -25,6 +25,7 @@ export class Cameras {
   /** Returns true while the camera must stand still, such as while the user aims. */
   isHeld: () => boolean = () => false;
   private followed: number | undefined;
+  private group: readonly number[] = []; // followed too
   private readonly at = new Vector3();
   private readonly before = new Vector3();
   private readonly turn = new Quaternion();
@@ -66,10 +67,12 @@ export class Cameras {
     return this.mode === "follow" || this.mode === "eye" ? this.followed : undefined;
   }
 
-  choose(mode: CameraMode, entity?: number): void {
+  /** `group`: entities whose middle is followed; by default `entity` alone. */
+  choose(mode: CameraMode, entity?: number, group: readonly number[] = []): void {
     const before = this.mode;
     this.mode = mode;
     this.followed = entity;
+    this.group = group;
     this.isFirst = true;
     this.controls.enabled = mode !== "eye";
     this.controls.enableRotate = mode !== "top";
@@ -142,11 +145,23 @@ export class Cameras {
       this.target.copy(this.at);
       return;
     }
+    this.takeMiddle(poses);
     if (!this.isFirst) this.camera.position.add(this.at).sub(this.before);
     else this.camera.position.add(this.at).sub(this.target);
     this.target.copy(this.at);
     this.before.copy(this.at);
     this.isFirst = false;
+  }
+
+  private takeMiddle(poses: Poses): void {
+    const present = this.group.filter((each) => !poses.absent.has(each));
+    if (present.length < 2) return;
+    const [each, sum] = [new Vector3(), new Vector3()];
+    for (const entity of present) {
+      poses.read(poses.placeOf(entity), each, this.turn);
+      sum.add(each);
+    }
+    this.at.copy(sum.divideScalar(present.length));
   }
 
   private fly(elapsed: number): void {

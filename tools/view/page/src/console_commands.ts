@@ -99,8 +99,8 @@ function cameraCommands({ viewer, plots, panels }: Parts): Command[] {
       help,
       ([name]) => {
         const entity = entityOf(name);
-        viewer.select(entity);
-        viewer.cameras.choose(mode, entity);
+        if (name !== undefined || mode === "eye") viewer.select(entity);
+        viewer.cameras.choose(mode, entity, mode === "follow" ? [...viewer.selection] : []);
       },
       names,
     );

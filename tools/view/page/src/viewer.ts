@@ -182,7 +182,7 @@ export class Viewer {
   }
 
   follow(): void {
-    if (this.selected !== undefined) this.cameras.choose("follow", this.selected);
+    if (this.selected !== undefined) this.cameras.choose("follow", this.selected, [...this.selection]);
   }
 
   /** Hides all that can move but the selection. */

@@ -395,9 +395,19 @@ async function handlesObjects(page) {
   await run(page, "select bar_1");
   assert.equal(await page.locator("#light").isVisible(), false);
   assert.equal(await page.locator("#drive").isVisible(), false);
+  // A removal hides the object at once, and the server removes it later, unless the user undoes it.
+  const isHidden = () => page.evaluate(() => window.cohort.viewer.hidden.has(window.cohort.viewer.find("bar_1")));
+  const isGone = () =>
+    page.evaluate(() => window.cohort.viewer.poses.frame.absent.includes(window.cohort.viewer.find("bar_1")));
   await page.locator("#remove").click();
-  await until(page, () => window.cohort.viewer.poses.absent.has(window.cohort.viewer.find("bar_1")));
+  assert.equal(await isHidden(), true);
+  await page.locator("#undo-button").click();
+  assert.equal(await isHidden(), false);
+  assert.equal(await page.locator("#inspected").textContent(), "bar_1");
+  assert.equal(await isGone(), false);
+  await page.locator("#remove").click();
   await until(page, () => document.getElementById("inspector").hidden);
+  await until(page, () => window.cohort.viewer.poses.frame?.absent.includes(window.cohort.viewer.find("bar_1")));
 }
 
 // Nothing of it is offered where it cannot be done.

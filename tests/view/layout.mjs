@@ -155,6 +155,17 @@ async function showsTheWorldAsATree(page) {
   const four = ["sbot_0", "sbot_1", "sbot_2", "sbot_3"].map((name) => `explorers/${name}`);
   assert.deepEqual(await selected(page), four);
 
+  // The camera follows the middle of them.
+  await run(page, "follow");
+  const beside = await page.evaluate(() => {
+    const { viewer } = window.cohort;
+    viewer.draw(performance.now() + 1000);
+    const places = [...viewer.selection].map((entity) => viewer.poseOf(entity).position);
+    const mean = [0, 1].map((axis) => places.reduce((sum, place) => sum + place[axis], 0) / places.length);
+    return Math.hypot(viewer.cameras.target.x - mean[0], viewer.cameras.target.y - mean[1]);
+  });
+  assert.ok(beside < 1e-3, `the camera looks ${beside} m beside the middle`);
+
   // Hidden robots are not drawn, also after a step.
   await page.locator("#isolate").click();
   const shown = () =>

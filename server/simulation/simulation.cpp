@@ -255,7 +255,8 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   std::uint64_t version = 0;
   reader.read(version);
   if (std::ranges::find(versions_of_snapshots(), version, hash_name) == versions_of_snapshots().end())
-    throw SnapshotError("version " COHORT_VERSION " cannot read snapshots of the version that made this one");
+    throw SnapshotError("the snapshot was saved by a version of Cohort whose snapshots version " COHORT_VERSION
+                        " cannot read");
   reader.expect_count(seed_, "as its seed");
   reader.expect_count(static_cast<std::size_t>(experiment_->world.step.count()), "ns as its time step");
   reader.read(tick_);

@@ -178,8 +178,8 @@ class Client {
 
 /// Attaches to a server, calls the controllers of `plugin` until the run ends, and returns the reason for the end. Logs
 /// every reason other than `finished`. Waits until there is a server. Blocks; controllers run on the calling thread
-/// unless `inline_step` is set. Set `stop` to interrupt it, also from a signal handler. Throws std::runtime_error if
-/// the server's address or the identity cannot be used.
+/// unless `inline_step` is set. Setting `stop` interrupts the client; this is allowed in a signal handler. Throws
+/// std::runtime_error if the server's address or the identity cannot be used.
 ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop);
 
 /// Installs signal handlers and returns a flag that they set on SIGINT, SIGTERM and SIGHUP (a closed terminal; not

@@ -96,8 +96,8 @@ CohortObservationChannel cohort_find_observation(const CohortStart* start, const
 CohortCommandChannel cohort_find_command(const CohortStart* start, const char* name);
 
 /* Finds all channels whose names match `pattern`, in the order of their values. Writes the first `capacity` handles
- * to `channels` and returns the number of matches. `*` matches any characters except `/`. It is an error if there is
- * no match; the result is then 0. */
+ * to `channels` and returns the number of matches. `*` matches any characters except `/`. No match is an error; the
+ * result is then 0. */
 size_t cohort_find_observations(const CohortStart* start, const char* pattern, CohortObservationChannel* channels,
                                 size_t capacity);
 size_t cohort_find_commands(const CohortStart* start, const char* pattern, CohortCommandChannel* channels,

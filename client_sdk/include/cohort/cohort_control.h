@@ -75,7 +75,7 @@ typedef enum CohortSimulationState {
 
 CohortSimulationState cohort_control_state(const CohortControl* control); /* state of the run after the request */
 uint32_t cohort_control_run(const CohortControl* control);  /* number of the run; increases after a reset or restore */
-uint64_t cohort_control_tick(const CohortControl* control); /* tick boundary of its execution */
+uint64_t cohort_control_tick(const CohortControl* control); /* tick boundary at which the request was executed */
 int64_t cohort_control_time_ns(const CohortControl* control);     /* simulated time since tick 0 [ns] */
 const char* cohort_control_message(const CohortControl* control); /* human-readable description of the result */
 
@@ -83,7 +83,7 @@ const char* cohort_control_message(const CohortControl* control); /* human-reada
 
 int cohort_control_ask_state(CohortControl* control); /* updates the results of the functions above */
 int cohort_control_play(CohortControl* control);      /* resumes the run; does nothing if it is playing */
-int cohort_control_pause(CohortControl* control);     /* pauses it at the next boundary; does nothing if paused */
+int cohort_control_pause(CohortControl* control);     /* pauses the run at the next boundary; does nothing if paused */
 int cohort_control_stop(CohortControl* control);      /* restarts the run from the beginning, paused */
 int cohort_control_quit(CohortControl* control);      /* ends the run and the server */
 int cohort_control_step(CohortControl* control, uint64_t steps); /* advances a paused run; returns when done */
@@ -93,7 +93,7 @@ int cohort_control_reset_seed(CohortControl* control, uint64_t seed);
 int cohort_control_back(CohortControl* control, int64_t time_ns);
 int cohort_control_set_speed(CohortControl* control, double speed); /* limits the real-time factor; 0: no limit */
 
-/* Queries the status of the run. The functions below return parts of this status until the next query. */
+/* Queries the status of the run. The functions below return parts of the last status that was queried. */
 int cohort_control_ask_status(CohortControl* control);
 const char* cohort_control_experiment(const CohortControl* control);
 uint64_t cohort_control_seed(const CohortControl* control);

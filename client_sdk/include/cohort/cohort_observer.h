@@ -63,8 +63,8 @@ CohortObserverEnd cohort_observer_ended(const CohortObserver* observer);
 /* Queries all robots of the run; waits for at most `milliseconds`. Do not call this at each tick. Returns the number
  * of robots, or -1. */
 int64_t cohort_observer_ask_robots(CohortObserver* observer, int milliseconds);
-/* Returns the scoped name of a robot, in the order of ids, or NULL beyond the last. Writes the id to `*robot` unless
- * `robot` is NULL. The two functions below return the model and the team of the same robot. */
+/* Returns the scoped name of the robot at `index`, in ascending order of ids, or NULL if there is none. Writes the id
+ * to `*robot` unless `robot` is NULL. The two functions below return the model and the team of the same robot. */
 const char* cohort_observer_robot(const CohortObserver* observer, size_t index, uint32_t* robot);
 const char* cohort_observer_model(const CohortObserver* observer, size_t index);
 const char* cohort_observer_team(const CohortObserver* observer, size_t index);

@@ -137,7 +137,7 @@ quantity is due. A cell is empty if its quantity is not due or its object is not
 - `heading`: direction of the root link's x axis in the xy plane.
 - `velocity`: velocity of the root link's origin.
 - `count`: number of selected objects that are in the world.
-- `quarantined`: number of selected objects that have broken or left the world.
+- `quarantined`: number of selected objects that have an invalid state or have left the world.
 - `joint_force`: forces of a [breakable joint](physics.md#cohortbreakable_joint-name-in-world) on its first and
   its second link over the last step, x, y, z of each in the world frame.
 - `joint_torque`: torques of the joint about its origin, in the same format. Forces and torques are 0 from the

@@ -59,8 +59,9 @@ constexpr ExtensionKey team[] = {
      "`true` if the run waits for a controller to attach, at the start and after one is lost; default `false` with "
      "`mode: free`"},
     {"on_lost", choice, "", "go_on",
-     "response when a new process replaces a lost controller: continue without its state (`go_on`), or return to the "
-     "last snapshot, with the results of an undisturbed run (`rewind`, with `--keep-snapshots`)",
+     "response when a new process replaces a lost controller. `go_on`: continue without the state of the lost "
+     "controller. `rewind`: return to the last snapshot, so that the results are those of an undisturbed run; requires "
+     "`--keep-snapshots`",
      false, losses},
     {"restart", choice, "", "on_failure",
      "response when a controller process of `cohort run` exits: restart it up to three times (`on_failure`), or end "
@@ -235,8 +236,8 @@ constexpr Extension table[] = {
     {"inside", "stop", false, "The condition that all of the objects are inside a rectangle.", inside, "stop"},
     {"beyond", "stop", false, "The condition that one of the objects is beyond a line.", beyond, "stop"},
     {"at_rest", "stop", false, "The condition that all of the objects are at rest.", at_rest, "stop"},
-    {"quarantined", "stop", false, "The condition that one of the objects has broken or left the world.", quarantined,
-     "stop"},
+    {"quarantined", "stop", false, "The condition that one of the objects has an invalid state or has left the world.",
+     quarantined, "stop"},
     {"print", "experiment", false, "A quantity that is printed for objects at regular intervals.", print, "print"},
     {"history", "experiment", false, "Objects whose most recent poses are kept.", history, "history"},
     {"record", "experiment", false, "Contents of a recording in addition to the data that a replay requires.", record,

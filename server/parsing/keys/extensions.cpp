@@ -93,7 +93,8 @@ constexpr ExtensionKey physics[] = {
      "z coordinate below which a body counts as having left the world; no limit if absent"},
     {"sleeping", flag, "", "true",
      "`true` if bodies that have been at rest for a while are not simulated until something wakes them"},
-    {"strict", flag, "", "false", "`true` if a body that breaks or leaves the world ends the run"},
+    {"strict", flag, "", "false",
+     "`true` to end the run when the state of a body becomes invalid or the body leaves the world"},
 };
 
 constexpr ExtensionKey climate[] = {

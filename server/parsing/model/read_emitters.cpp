@@ -36,7 +36,7 @@ Light read_light_values(const sdf::Light& sdf_light, const SdfReport& report) {
     const bool is_valid = light.constant >= 0.0 && light.linear >= 0.0 && light.quadratic >= 0.0 &&
                           light.constant + light.linear + light.quadratic > 0.0 && light.range >= 0.0;
     if (!is_valid && report.flaw(attenuation, "expected numbers >= 0, and one of the three factors > 0",
-                                 "the intensity is divided by the distance"))
+                                 "these values are ignored: the intensity falls with 1/distance, up to 10 m"))
       light.constant = 0.0, light.linear = 1.0, light.quadratic = 0.0, light.range = 10.0;
   }
   if (light.intensity < 0.0 || !std::isfinite(light.intensity))

@@ -35,8 +35,10 @@ void run_benchmark(const Image& image, unsigned robots, bool overhead, double se
     air.exchange();
   }
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-  std::printf("%s on %u Kilobots: %.4g s in %.3g s on one thread, %.3g Kilobots in real time\n", image.file.c_str(),
-              robots, seconds, took, robots * seconds / took);
+  std::printf(
+      "%s on %u Kilobots: simulated %.4g s in %.3g s of wall time on one thread; up to %.3g Kilobots run in real "
+      "time\n",
+      image.file.c_str(), robots, seconds, took, robots * seconds / took);
   for (const Member& member : members)
     if (member.core->fault()) std::printf("a microcontroller has crashed: %s\n", member.core->fault()->c_str());
 }

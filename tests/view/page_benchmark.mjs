@@ -87,7 +87,7 @@ async function measure(address, page) {
       const { renderer } = viewer.stage;
       if (viewer.stage.quality) viewer.stage.quality.isHeld = true;
       renderer.setPixelRatio(1);
-      renderer.setSize(1440, 900, false); // the same number of pixels whatever panels there are
+      renderer.setSize(1440, 900, false); // the same number of pixels beside any panels
       const gl = renderer.getContext();
       const pixel = new Uint8Array(4);
       const times = [];

@@ -307,12 +307,12 @@ const openPlots = (page) =>
     if (!document.getElementById("plots").checkVisibility()) document.querySelector('[data-tab="plotting"]')?.click();
   });
 
-/** The plotted line of a value, in the page. */
+/** The plotted line of a value of a recording of 4 s, once all of it is there. */
 const lineOf = (page, name) =>
   until(
     page,
     (each) => {
-      const found = window.cohort.plots.lines().find((line) => line.name === each && line.curve.times.length > 0);
+      const found = window.cohort.plots.lines().find((line) => line.name === each && line.curve.times.at(-1) === 4);
       return found && { unit: found.unit, times: found.curve.times, values: found.curve.values };
     },
     name,

@@ -155,6 +155,7 @@ Answer RecordedValues::read(const HistoryRequest& request, const HistoryThread::
   HistoryRequest clamped = request;
   clamped.from = std::max(clamped.from, recording_.worlds().front().log_time);
   clamped.to = std::max(clamped.from, std::min(clamped.to, end_));
+  if (!may_have(request)) return {false, "no robot has such a channel"};
   if (are_recorded(request)) return read_records(clamped, is_cancelled);
   return is_as_coarse_as_sweep(clamped) ? sweep(clamped, is_cancelled) : replay(clamped, is_cancelled);
 }
@@ -182,6 +183,17 @@ void RecordedValues::read_rosters() {
   } catch (const std::exception&) {
     rosters_.clear();
   }
+}
+
+// False if no robot has any of the values, so that no replay looks for them.
+bool RecordedValues::may_have(const HistoryRequest& request) const {
+  return rosters_.empty() || std::ranges::any_of(request.robots, [&](std::uint32_t robot) {
+           const auto known = values_.find(robot);
+           return known != values_.end() && (known->second.size() > most_swept ||
+                                             std::ranges::any_of(request.names, [&](const std::string& name) {
+                                               return std::ranges::find(known->second, name) != known->second.end();
+                                             }));
+         });
 }
 
 bool RecordedValues::are_recorded(const HistoryRequest& request) const {

@@ -35,6 +35,7 @@ class RecordedValues {
   using Nanoseconds = std::chrono::nanoseconds;
 
   void read_rosters();
+  bool may_have(const HistoryRequest& request) const;
   bool are_recorded(const HistoryRequest& request) const;
   Answer read_records(const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled) const;
   bool is_as_coarse_as_sweep(const HistoryRequest& request) const;

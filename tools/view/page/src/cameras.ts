@@ -11,9 +11,10 @@ export interface Viewpoint {
 
 const eyeHeight = 0.05; // [m] above the root link's origin
 const flySpeed = 1.5; // [m/s]
+const longestFlight = 0.1; // [s] between two pictures
 const fromAbove = new Vector3(0, 1e-3, -1);
 const heading = 0.35; // [rad] of the first view, to the left of the y axis
-const elevations = [16, 25]; // [degrees] of the first view, of what is tall and of what is flat
+const elevations = [15, 22]; // [degrees] of the first view, of what is tall and of what is flat
 const hasReducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
 
 /** Where people look from. */
@@ -115,7 +116,7 @@ export class Cameras {
 
   advance(poses: Poses | undefined, elapsed: number): void {
     if (poses?.frame && this.followedEntity !== undefined) this.move(poses, this.followedEntity);
-    if (this.mode === "fly") this.fly(elapsed);
+    if (this.mode === "fly") this.fly(Math.min(longestFlight, elapsed));
     this.letGo();
     if (this.grabbed === undefined && !this.isHeld())
       this.keeper.follow({ position: this.camera.position, target: this.target }, elapsed, !hasReducedMotion.matches);

@@ -46,7 +46,7 @@ const looks = {
 };
 const fillWithoutReflections = 1.25; // ratio to the fill with them
 const sunDirection = new Vector3(-0.45, -0.35, 1).normalize();
-const shadowReach = 3; // [m]; around what the camera looks at, at the least
+const shadowReach = 1; // [m]; around what the camera looks at, at the least
 const shadowTexels = 2048;
 const mostPixelRatio = 2;
 
@@ -189,7 +189,7 @@ export class Stage {
       this.isShadowStale = true;
     }
     const texel = (2 * camera.right) / shadowTexels;
-    this.sun.shadow.normalBias = texel;
+    this.sun.shadow.normalBias = 0.7 * texel;
     const centre = isAll && this.surroundings ? this.surroundings.center : target;
     const across = new Vector3(0, 0, 1).cross(sunDirection).normalize();
     const along = sunDirection.clone().cross(across);

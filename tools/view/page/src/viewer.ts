@@ -305,7 +305,7 @@ export class Viewer {
   }
 
   draw(now: number): void {
-    const elapsed = Math.min(0.1, Math.max(0, now - this.lastDrawn) / 1000);
+    const elapsed = Math.min(1, Math.max(0, now - this.lastDrawn) / 1000);
     this.lastDrawn = now;
     const { poses, stage } = this;
     const clock = performance.now();

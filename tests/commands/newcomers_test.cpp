@@ -162,7 +162,7 @@ TEST(ControlByHand, SaysWhyAModelOfSeveralFilesCannotBeSpawnedAndWhichModelsCan)
   write_file(folder / "empty.sdf",
              "<sdf version='1.9'><world name='empty'><include><uri>model://ground_plane</uri>"
              "</include></world></sdf>");
-  write_file(folder / "empty.yaml", "world: empty.sdf\nduration: 1e6\n");
+  write_file(folder / "empty.yaml", "world: empty.sdf\nduration: 1e6\nteams: []\n");
   const ReservedDomain domain;
   Process server({cohort_program(), "serve", folder / "empty.yaml", "--paused", "--domain", domain.text()});
   control(domain, {"spawn", "post", "--name", "y", "--pose", "1 0 0"});

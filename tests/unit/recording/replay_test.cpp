@@ -23,7 +23,7 @@ TEST(Replay, StartsAtASnapshotOfVersion010) {
   using namespace std::chrono_literals;
   const Recording recording(COHORT_SOURCE_DIR "/tests/data/recordings/version_0_1_0.mcap");
   EXPECT_EQ(recording.facts().at("version"), "0.1.0");
-  ASSERT_EQ(recording.snapshots().size(), 1U);
+  ASSERT_EQ(recording.snapshots().size(), 2U);
   Replay replay(recording, 1);
   ASSERT_TRUE(replay.seek(600ms));
   EXPECT_EQ(replay.recorded().log_time, 600ms);

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <regex>
 #include <stdexcept>
@@ -13,14 +15,15 @@
 #include <vector>
 
 #include "tools/cohort/cli/installed_files.hpp"
-#include "tools/cohort/commands/ctl/ctl_options.hpp"
 
 namespace cohort::tool {
 namespace {
 
 std::string text_of_file(const std::filesystem::path& file) {
-  const std::vector<char> text = read_file(file);
-  return {text.begin(), text.end()};
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in.is_open() || in.bad()) throw std::runtime_error("cannot read " + file.string());
+  return text;
 }
 
 // Returns the first file to which the text of a model refers; empty if there is none.
@@ -47,13 +50,13 @@ void spawn_file(Control& control, Spawn what, const std::filesystem::path& file,
     control.spawn(what);
   } catch (const ControlError& error) {
     const std::string other_file = first_file_in(what.text);
-    if (other_file.empty() || std::string_view(error.what()).find("the text of the model") == std::string_view::npos)
-      throw;
+    const std::string_view why = error.what();
+    if (other_file.empty() || why.find("the text of the model") == why.npos || why.find("uri") == why.npos) throw;
     throw ControlError(
-        fmt::format("'{}' cannot be spawned here: it refers to '{}', which is not a file of the server's world. "
-                    "{}Models of one file that are installed with Cohort can be spawned: {} ({})",
-                    model, other_file, why_not_named.empty() ? "" : "By name, " + why_not_named + ". ",
-                    fmt::join(installed_models_of_one_file(), ", "), error.what()),
+        fmt::format("'{}' cannot be spawned here: it refers to '{}', which is not a file of the server's world{}. "
+                    "Models of one file that are installed with Cohort can be spawned: {}",
+                    model, other_file, why_not_named.empty() ? "" : ", and " + why_not_named,
+                    fmt::join(installed_models_of_one_file(), ", ")),
         error.result);
   }
 }

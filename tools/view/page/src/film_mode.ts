@@ -50,7 +50,8 @@ export class FilmMode {
     const [width, height] = [`${look.width}px`, `${look.height}px`];
     Object.assign(canvas.style, { position: "fixed", left: "0", top: "0", width, height });
     Object.assign(this.picture, { width: look.width, height: look.height });
-    viewer.stage.quality.isHeld = true;
+    viewer.isExact = true;
+    Object.assign(viewer.stage.quality, { level: 0, isHeld: true }); // the finest, before a theme is chosen
     viewer.stage.renderer.setPixelRatio(1);
     viewer.stage.resize(look.width, look.height);
     viewer.wear(look.theme);

@@ -49,6 +49,8 @@ export class Viewer {
   hidden: ReadonlySet<number> = new Set();
   signals: SceneSignals | undefined;
   framesDrawn = 0;
+  /** Finds in each picture where everything is, however long that takes, such as for a film. */
+  isExact = false;
   /** Is called when the page itself switches a layer. */
   onLayers: () => void = () => undefined;
 
@@ -375,7 +377,7 @@ export class Viewer {
     const begin = performance.now();
     const { aspect } = this.stage.camera;
     const isDue = this.areBoundsStale || aspect !== this.lastAspect;
-    if (!isDue || begin < this.nextBounds || !this.bounds || !this.poses?.frame) return;
+    if (!isDue || (!this.isExact && begin < this.nextBounds) || !this.bounds || !this.poses?.frame) return;
     this.areBoundsStale = false;
     this.lastAspect = aspect;
     const boxes = this.bounds.boxes();

@@ -465,16 +465,21 @@ async function plots(page, file) {
 }
 
 async function plotsServer(page) {
-  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 150);
+  const first = await tick(page);
+  await until(page, (each) => Number(window.cohort.viewer.poses.frame?.tick) > each + 100, first);
   await run(page, "select sbot_3");
   await openPlots(page);
   await run(page, "plot treel/left/position");
-  // From before it was selected, and on.
-  await until(page, () => {
-    const [line] = window.cohort.plots.lines().filter(({ name }) => name === "treel/left/position");
-    const times = line?.curve.times ?? [];
-    return times.length > 20 && times[0] < 1.2 && times.at(-1) > 2;
-  });
+  // From a second before it was selected, and on. Ticks are of 10 ms.
+  await until(
+    page,
+    (begin) => {
+      const [line] = window.cohort.plots.lines().filter(({ name }) => name === "treel/left/position");
+      const times = line?.curve.times ?? [];
+      return times.length > 5 && times[0] <= begin && times.at(-1) > begin + 1;
+    },
+    first / 100,
+  );
   const before = await page.evaluate(() => window.cohort.plots.lines()[0].curve.times.at(-1));
   await until(page, (time) => window.cohort.plots.lines()[0].curve.times.at(-1) > time + 0.5, before);
   assert.equal(

@@ -324,7 +324,7 @@ INSTANTIATE_TEST_SUITE_P(
              "did you mean 'sine'?"},
         Flaw{heightmap("<cohort:kind>sine</cohort:kind><cohort:spacing>1e-6</cohort:spacing>"), 3,
              "world/model[m]/link[l]/collision[c]/geometry/heightmap/cohort:terrain/cohort:spacing",
-             "at most 4097 heights"}));
+             "at most 4097 height samples"}));
 
 // ---- Ground from functions ----
 

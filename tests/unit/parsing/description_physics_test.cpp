@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{torsional("\n<coefficient>-1</coefficient>"), 3, in_collision + "/surface/friction/torsional/coefficient",
              "cannot have the value '-1'"},
         Flaw{made_of(" "), 3, in_collision + "/cohort:material", "expected a name"},
-        Flaw{made_of("<cohort:name>x</cohort:name>"), 3, in_collision + "/cohort:material/cohort:name", "holds a name"},
+        Flaw{made_of("<cohort:name>x</cohort:name>"), 3, in_collision + "/cohort:material/cohort:name", "must contain a name"},
         Flaw{made_of("a</cohort:material>\n<cohort:material>b"), 4, in_collision + "/cohort:material", "given twice"},
         Flaw{static_model_sdf(collision(ball, "\n<cohort:materiel>a</cohort:materiel>")), 3,
              in_collision + "/cohort:materiel", "did you mean 'cohort:material'?"},

@@ -137,7 +137,7 @@ TEST_F(Plugins, ReportProblemsWithPosition) {
   expect_flaw(drive(wheels) + plugin("gz-sim-joint-controller-system", "<joint_name>l</joint_name>"), "/joint_name",
               "already has a motor");
   expect_flaw(plugin("gz-sim-lift-drag-system", "<link_name>z</link_name>"), "/link_name", "has no link 'z'");
-  expect_flaw(plugin("gz-sim-lift-drag-system", "<link_name>a</link_name><upward>1 0 0</upward>"), "", "different");
+  expect_flaw(plugin("gz-sim-lift-drag-system", "<link_name>a</link_name><upward>1 0 0</upward>"), "", "not parallel");
   expect_flaw(plugin("gz-sim-hydrodynamics-system", "<link_name>a</link_name><xU>5</xU>"), "/xU", "at most 0");
   expect_flaw(plugin("gz-sim-linearbatteryplugin-system", "<capacity>1</capacity>"), "/voltage", "missing");
   expect_flaw(plugin("gz-sim-multicopter-motor-model-system",

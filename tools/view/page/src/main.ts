@@ -80,6 +80,7 @@ const connection: Connection = connect(
       const gone = new Set(frame.absent);
       const robots = viewer.robotEntities().filter((entity) => !gone.has(entity)).length;
       element("robots").textContent = String(robots);
+      phaseCard.refresh();
     },
     "/cohort/signals": (signals, size) => {
       bytes += size;

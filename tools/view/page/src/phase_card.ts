@@ -108,6 +108,11 @@ export class PhaseCard {
     this.show();
   }
 
+  /** The numbers of the last state have changed. */
+  refresh(): void {
+    if (!this.panel.hidden) this.show();
+  }
+
   private show(): void {
     const card = cardOf(this.status, this.isConnected);
     if (card?.title !== this.closed) this.closed = "";

@@ -381,8 +381,8 @@ TEST_F(KilobotBridge, SaysHowManyRunInRealTime) {
   const test::Ended ended =
       test::run_to_end({program, "--board", "kilobot", "--image", firmware("kilobot.elf"), "--benchmark", "0.3"});
   EXPECT_EQ(ended.exit_code, 0) << ended.err;
-  EXPECT_NE(ended.out.find("kilobot.elf on 8 Kilobots: 0.3 s"), std::string::npos) << ended.out;
-  EXPECT_NE(ended.out.find("Kilobots in real time"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("kilobot.elf on 8 Kilobots: simulated 0.3 s"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("Kilobots run in real time"), std::string::npos) << ended.out;
 }
 
 }  // namespace

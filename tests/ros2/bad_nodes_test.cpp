@@ -64,7 +64,7 @@ TEST(Ros2BadNodes, ARunWaitsForAStoppedNode) {
   BridgedNodes run(turtlebot(""));
   run.start();
   const auto node = run.start_node(jazzy(), "commander.py", stopping_commander);
-  EXPECT_TRUE(run.says("robot turtlebot3: the run waits at tick 80 for /cmd_vel of "));
+  EXPECT_TRUE(run.says("robot turtlebot3: the run waits at tick 80 for /cmd_vel from "));
   node->signal(SIGCONT);
   EXPECT_EQ(run.hash(), hash);
 }

@@ -90,7 +90,7 @@ TEST(Ros2BadNodes, ANodeReplacesAKilledOne) {
   BridgedNodes run(turtlebot(""));
   run.start();
   auto node = run.start_node(jazzy(), "commander.py", stopping_commander);
-  EXPECT_TRUE(run.says("the run waits at tick 80 for /cmd_vel of "));
+  EXPECT_TRUE(run.says("the run waits at tick 80 for /cmd_vel from "));
   node->signal(SIGKILL);
   node = run.start_node(kilted(), "commander.py", good_commander);
   EXPECT_EQ(run.hash(), hash);

@@ -208,7 +208,7 @@ async function drawsAsItCan(page) {
         return {
           ratio: viewer.stage.renderer.getPixelRatio(),
           shadows: viewer.layers.has("shadows"),
-          isPressed: button.classList.contains("on"),
+          isPressed: button.getAttribute("aria-pressed") === "true",
         };
       },
       [interval, count],

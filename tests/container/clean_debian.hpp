@@ -25,9 +25,10 @@ class CleanDebian {
   Ended run(const std::string& script) const { return run_for_long(command(script), environment); }
   /// Returns the command that runs the script in there, with these variables.
   std::vector<std::string> command(const std::string& script) const {
-    return {
-        "unshare",    "--mount", "/bin/sh", "-ec", R"(mount -t proc proc "$0/proc"; exec chroot "$0" /bin/sh -ec "$1")",
-        root_.path(), script};
+    return {"unshare", "--mount", "/bin/sh", "-ec",
+            // `ip netns exec` requires a root that is a mount point.
+            R"(mount --bind "$0" "$0"; mount -t proc proc "$0/proc"; exec chroot "$0" /bin/sh -ec "$1")", root_.path(),
+            script};
   }
   static inline const Process::Environment environment = {
       {"DEBIAN_FRONTEND", "noninteractive"}, {"LC_ALL", "C"}, {"COHORT_PLUGIN_PATH", ""}};

@@ -198,8 +198,8 @@ bool ConnectedProgram::has_ended() const {
          (waitid(P_PID, static_cast<id_t>(pid_), &end, WEXITED | WNOHANG | WNOWAIT) == 0 && end.si_pid == pid_);
 }
 
-// Kills the rest of the process group before its id can be reused. Waits until all of it has ended, so that files of the
-// group can be deleted.
+// Kills the rest of the process group before its id can be reused. Waits until all of it has ended, so that files of
+// the group can be deleted.
 void ConnectedProgram::reap() {
   if (pid_ <= 0) return;
   kill(-pid_, SIGKILL);

@@ -77,7 +77,9 @@ def test_an_exception_ends_the_run_with_its_line():
         def step(self, observations, commands):
             raise LookupError("no such thing")
 
-    with pytest.raises(RuntimeError, match="the team controller 'Fails' failed in step at tick 0.*in step: LookupError"):
+    with pytest.raises(
+        RuntimeError, match="the team controller 'Fails' failed in step at tick 0.*in step: LookupError"
+    ):
         cohort.run("obstacle_avoidance", Fails, duration=1)
 
 

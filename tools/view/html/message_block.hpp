@@ -18,7 +18,7 @@ namespace cohort::view {
 ///
 /// Poses change steadily, so their rows of differences are long runs of similar small numbers, which deflate makes
 /// small. The noise of sensors makes differences larger than values. Unpacking restores the bytes of each message
-/// (tools/view/page/src/packed.ts).
+/// (tools/view/page/src/data/packed.ts).
 class MessageBlock {
  public:
   void add(Topic topic, const recording::Bytes& data);

@@ -1,4 +1,4 @@
-import { defaultSteering, readSteer } from "./steering";
+import { defaultSteering, readSteer } from "./hands/steering";
 
 /** Commands of the console. */
 export interface Command {

@@ -1,14 +1,14 @@
-import type { CameraMode, Viewpoint } from "./cameras";
 import { download, Film, screenshot } from "./capture";
 import { type Command, type Commands, command } from "./commands";
-import type { Connection, ViewRequest } from "./connection";
-import type { ConsolePanel } from "./console";
+import type { Connection, ViewRequest } from "./data/connection";
+import { fixed } from "./data/numbers";
 import { element } from "./element";
-import { keyRows } from "./keys";
-import { fixed } from "./numbers";
-import type { Panels } from "./panels";
-import type { Plots } from "./plots";
-import type { TimeBar } from "./time_bar";
+import type { ConsolePanel } from "./panels/console";
+import { keyRows } from "./panels/keys";
+import type { Panels } from "./panels/panels";
+import type { TimeBar } from "./panels/time_bar";
+import type { CameraMode, Viewpoint } from "./picture/cameras";
+import type { Plots } from "./plots/plots";
 import type { Layer, Viewer } from "./viewer";
 
 const viewpointsKey = "cohort.view.viewpoints";

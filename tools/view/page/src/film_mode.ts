@@ -1,9 +1,9 @@
 import { Box3, Sphere, Vector3 } from "three";
-import type { Viewpoint } from "./cameras";
-import type { Connection } from "./connection";
+import type { Connection } from "./data/connection";
+import type { Topic } from "./data/messages";
 import { element } from "./element";
-import type { Topic } from "./messages";
-import { clockText } from "./time_bar";
+import { clockText } from "./panels/time_bar";
+import type { Viewpoint } from "./picture/cameras";
 import type { Layer, Viewer } from "./viewer";
 
 interface FilmLook {

@@ -1,16 +1,4 @@
 import { Plane, Quaternion, Raycaster, Sphere, Vector2, Vector3 } from "three";
-import { Bounds } from "./bounds";
-import { Cameras } from "./cameras";
-import { ContactShadows } from "./contact_shadows";
-import { element } from "./element";
-import { unionOf } from "./framing";
-import { Gizmo } from "./gizmo";
-import { Glow } from "./glow";
-import { GroupPanel } from "./group";
-import { Inspector } from "./inspector";
-import { Instances } from "./instances";
-import { Labels } from "./labels";
-import { type LegendEntry, legendOf, showLegend } from "./legend";
 import {
   none,
   type Scene,
@@ -20,14 +8,26 @@ import {
   type SceneRobot,
   type SceneSignals,
   seconds,
-} from "./messages";
-import { fixed } from "./numbers";
-import { Contacts, Rays, Trails } from "./overlays";
-import { Poses } from "./poses";
-import { levels } from "./quality";
-import { Outline, pick } from "./selection";
-import { Sound } from "./sound";
-import { Stage } from "./stage";
+} from "./data/messages";
+import { fixed } from "./data/numbers";
+import { element } from "./element";
+import { GroupPanel } from "./panels/group";
+import { Inspector } from "./panels/inspector";
+import { Bounds } from "./picture/bounds";
+import { Cameras } from "./picture/cameras";
+import { ContactShadows } from "./picture/contact_shadows";
+import { unionOf } from "./picture/framing";
+import { Gizmo } from "./picture/gizmo";
+import { Glow } from "./picture/glow";
+import { Instances } from "./picture/instances";
+import { Labels } from "./picture/labels";
+import { type LegendEntry, legendOf, showLegend } from "./picture/legend";
+import { Contacts, Rays, Trails } from "./picture/overlays";
+import { Poses } from "./picture/poses";
+import { levels } from "./picture/quality";
+import { Outline, pick } from "./picture/selection";
+import { Sound } from "./picture/sound";
+import { Stage } from "./picture/stage";
 
 export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sound" | "collisions";
 

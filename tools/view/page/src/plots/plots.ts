@@ -1,11 +1,11 @@
 import "./plots.css";
-import { download } from "./capture";
-import { commandedPrefix, type Value, valuesMeant, valuesOfRobot } from "./channels";
-import type { Answer, ViewRequest } from "./connection";
-import { element } from "./element";
+import { download } from "../capture";
+import { commandedPrefix, type Value, valuesMeant, valuesOfRobot } from "../data/channels";
+import type { Answer, ViewRequest } from "../data/connection";
+import { none, type Scene, type SceneRobot, seconds, type ViewStatus } from "../data/messages";
+import { fixed } from "../data/numbers";
+import { element } from "../element";
 import { Histories, keyOf, shownCurve } from "./histories";
-import { none, type Scene, type SceneRobot, seconds, type ViewStatus } from "./messages";
-import { fixed } from "./numbers";
 import { type Line, make, PlotChart } from "./plot_chart";
 import { csvOf, svgOf } from "./plot_export";
 

@@ -1,5 +1,5 @@
 import { Group, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
-import { type Scene, ShapeRole } from "./messages";
+import { type Scene, ShapeRole } from "../data/messages";
 import { linkGeometry, matrixOf } from "./shapes";
 
 /** Where an object would stand: its model, seen through. */

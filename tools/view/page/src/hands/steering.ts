@@ -1,5 +1,5 @@
-import { firstValue, valueNames } from "./channels";
-import type { SceneChannel } from "./messages";
+import { firstValue, valueNames } from "../data/channels";
+import type { SceneChannel } from "../data/messages";
 
 // Plain functions that turn held keys and a game pad into a robot's command.
 

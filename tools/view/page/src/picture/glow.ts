@@ -15,7 +15,7 @@ import {
   SpriteMaterial,
   Vector3,
 } from "three";
-import type { SceneEmitter, SceneSignals } from "./messages";
+import type { SceneEmitter, SceneSignals } from "../data/messages";
 import { overlayColors } from "./overlays";
 import type { Poses } from "./poses";
 

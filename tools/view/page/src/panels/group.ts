@@ -1,9 +1,9 @@
 import { Quaternion, Vector3 } from "three";
-import { valuesOfRobot } from "./channels";
-import { element } from "./element";
-import { none, type SceneModel, type SceneRobot } from "./messages";
-import { fixed } from "./numbers";
-import type { Poses } from "./poses";
+import { valuesOfRobot } from "../data/channels";
+import { none, type SceneModel, type SceneRobot } from "../data/messages";
+import { fixed } from "../data/numbers";
+import { element } from "../element";
+import type { Poses } from "../picture/poses";
 
 const drawInterval = 150; // [ms]
 const mostRows = 200;

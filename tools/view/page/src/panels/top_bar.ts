@@ -1,5 +1,5 @@
-import { element } from "./element";
-import { seconds, type ViewStatus } from "./messages";
+import { seconds, type ViewStatus } from "../data/messages";
+import { element } from "../element";
 import { clockText } from "./time_bar";
 
 const endings: Record<string, string> = {

@@ -1,5 +1,5 @@
-import { element } from "./element";
-import type { Viewer } from "./viewer";
+import { element } from "../element";
+import type { Viewer } from "../viewer";
 
 const graceTime = 5000; // [ms]
 

@@ -1,8 +1,8 @@
-import { firstValue, type Value, valuesOfRobot } from "./channels";
-import { element } from "./element";
-import { none, type SceneEntity, type SceneModel, type SceneRobot } from "./messages";
-import { numberText } from "./numbers";
-import { rayLength } from "./overlays";
+import { firstValue, type Value, valuesOfRobot } from "../data/channels";
+import { none, type SceneEntity, type SceneModel, type SceneRobot } from "../data/messages";
+import { numberText } from "../data/numbers";
+import { element } from "../element";
+import { rayLength } from "../picture/overlays";
 
 const dialRadius = 54;
 const drawInterval = 100; // [ms]; nobody reads faster

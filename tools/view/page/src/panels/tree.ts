@@ -1,6 +1,6 @@
-import { element } from "./element";
+import { element } from "../element";
+import type { Viewer } from "../viewer";
 import { type Row, rowsOf } from "./tree_rows";
-import type { Viewer } from "./viewer";
 
 const rowHeight = 22; // [px]; also in tree.css
 const searched = 150; // [ms] after the last letter

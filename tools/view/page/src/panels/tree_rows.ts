@@ -1,4 +1,4 @@
-import { none, type Scene, type SceneModel } from "./messages";
+import { none, type Scene, type SceneModel } from "../data/messages";
 
 /** A row of the tree: a group of entities, an entity, or a part of one. */
 export interface Row {

@@ -1,5 +1,5 @@
-import { commandedPrefix } from "./channels";
-import type { Answer, ViewRequest } from "./connection";
+import { commandedPrefix } from "../data/channels";
+import type { Answer, ViewRequest } from "../data/connection";
 import { between, type Curve, firstAt, joined, reduced } from "./curve";
 
 const mostPoints = 4000; // in a series

@@ -12,7 +12,7 @@ import {
   Vector3,
 } from "three";
 import { mergeGeometries, toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
-import { type Scene, type SceneMesh, type SceneShape, ShapeKind } from "./messages";
+import { type Scene, type SceneMesh, type SceneShape, ShapeKind } from "../data/messages";
 
 /** Segments of what is round: fewer where there are many of it. */
 const segmentsOf = (instances: number): number => (instances <= 500 ? 28 : instances <= 3000 ? 16 : 10);

@@ -1,4 +1,4 @@
-import { element } from "./element";
+import { element } from "../element";
 
 export type Panel = "left" | "right" | "dock";
 export type DockTab = "plotting" | "events" | "console";

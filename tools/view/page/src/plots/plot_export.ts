@@ -1,6 +1,6 @@
-import { commandedPrefix } from "./channels";
+import { commandedPrefix } from "../data/channels";
+import { numberText } from "../data/numbers";
 import { between } from "./curve";
-import { numberText } from "./numbers";
 import { colorOf, dashOf, type Line, rangeAround, unitsOf } from "./plot_chart";
 
 /** A table of RFC 4180: a row for each time in the range, a column for each line, empty where it has no value. */

@@ -1,5 +1,5 @@
-import type { Commands } from "./commands";
-import { element } from "./element";
+import type { Commands } from "../commands";
+import { element } from "../element";
 import type { Panels } from "./panels";
 
 const historyKey = "cohort.view.history";

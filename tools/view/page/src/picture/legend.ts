@@ -1,5 +1,5 @@
 import type { Color } from "three";
-import { none, type Scene } from "./messages";
+import { none, type Scene } from "../data/messages";
 import { overlayColors } from "./overlays";
 import { drawnColor, teamColors } from "./teams";
 

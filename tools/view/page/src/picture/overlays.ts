@@ -10,8 +10,8 @@ import {
   Quaternion,
   Vector3,
 } from "three";
-import { firstValue } from "./channels";
-import type { SceneContacts, SceneRobot, SceneSensor } from "./messages";
+import { firstValue } from "../data/channels";
+import type { SceneContacts, SceneRobot, SceneSensor } from "../data/messages";
 import type { Poses } from "./poses";
 
 const metresPerNewton = 0.02;

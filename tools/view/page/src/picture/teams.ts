@@ -1,5 +1,5 @@
 import { Color, SRGBColorSpace } from "three";
-import { none, type Scene, type SceneModel, type SceneShape, ShapeKind, ShapeRole } from "./messages";
+import { none, type Scene, type SceneModel, type SceneShape, ShapeKind, ShapeRole } from "../data/messages";
 
 /** The colours of Okabe and Ito, which colour-blind people can tell apart; those that differ most come first. */
 const palette = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442"];

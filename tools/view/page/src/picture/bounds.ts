@@ -1,7 +1,7 @@
 import { Box3, Matrix4, Quaternion, Vector3 } from "three";
+import { none } from "../data/messages";
 import { growBy, unionOf } from "./framing";
 import type { Instances } from "./instances";
-import { none } from "./messages";
 import type { Poses } from "./poses";
 
 const mostOfStatic = 4; // a world that is larger than this ratio to what moves in it is not shown as a whole

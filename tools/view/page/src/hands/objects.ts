@@ -1,13 +1,13 @@
 import { Quaternion, Vector3 } from "three";
-import { type Command, command } from "./commands";
-import type { Connection, ViewRequest } from "./connection";
-import type { ConsolePanel } from "./console";
-import { element } from "./element";
-import { Ghost, originOf, standingHeight } from "./ghost";
-import { none, type Scene, ShapeKind } from "./messages";
-import type { Panels } from "./panels";
+import { type Command, command } from "../commands";
+import type { Connection, ViewRequest } from "../data/connection";
+import { none, type Scene, ShapeKind } from "../data/messages";
+import { element } from "../element";
+import type { ConsolePanel } from "../panels/console";
+import type { Panels } from "../panels/panels";
+import { Ghost, originOf, standingHeight } from "../picture/ghost";
+import type { Viewer } from "../viewer";
 import { Removal } from "./removal";
-import type { Viewer } from "./viewer";
 
 interface Dragged {
   name: string;

@@ -1,5 +1,5 @@
-import { element } from "./element";
-import type { ViewStatus } from "./messages";
+import type { ViewStatus } from "../data/messages";
+import { element } from "../element";
 import { clockText } from "./time_bar";
 
 interface Card {

@@ -19,8 +19,8 @@ import {
   Vector3,
   WebGLRenderer,
 } from "three";
+import { type Scene, ShapeKind } from "../data/messages";
 import { Ground } from "./ground";
-import { type Scene, ShapeKind } from "./messages";
 import { levels, Quality } from "./quality";
 import { Sky } from "./sky";
 

@@ -1,11 +1,11 @@
-import { valueNames } from "./channels";
-import { type Command, type Commands, command } from "./commands";
-import type { Connection } from "./connection";
-import type { ConsolePanel } from "./console";
-import { element } from "./element";
-import { none, type SceneChannel } from "./messages";
+import { type Command, type Commands, command } from "../commands";
+import { valueNames } from "../data/channels";
+import type { Connection } from "../data/connection";
+import { none, type SceneChannel } from "../data/messages";
+import { element } from "../element";
+import type { ConsolePanel } from "../panels/console";
+import type { Viewer } from "../viewer";
 import { commandOf, neutralOf, padOf, readSteer, type Steer, sliderEnds, steerOfPad, wheelsOf } from "./steering";
-import type { Viewer } from "./viewer";
 
 const interval = 50; // [ms] from one request to the next at the least
 const longestSilence = 200; // [ms]; the view lets a robot stand that it hears nothing of for half a second

@@ -1,5 +1,5 @@
 import { type Camera, Quaternion, Vector3 } from "three";
-import type { SceneSignals } from "./messages";
+import type { SceneSignals } from "../data/messages";
 import type { Poses } from "./poses";
 
 const mostVoices = 24;

@@ -1,7 +1,7 @@
 import uPlot from "uplot";
-import { commandedPrefix } from "./channels";
+import { commandedPrefix } from "../data/channels";
+import { numberText, unitAfter } from "../data/numbers";
 import { type Curve, valueAt } from "./curve";
-import { numberText, unitAfter } from "./numbers";
 
 // Colours of Okabe and Ito, which colour-blind people tell apart, on light and on dark. Dashes tell further ones apart.
 const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a8a8a"];

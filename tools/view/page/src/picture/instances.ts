@@ -12,7 +12,7 @@ import {
   RGBADepthPacking,
   type Sphere,
 } from "three";
-import { none, type SceneShape, ShapeRole } from "./messages";
+import { none, type SceneShape, ShapeRole } from "../data/messages";
 import type { Poses } from "./poses";
 import { linkGeometry } from "./shapes";
 import { dominantColor, teamColors, teamShare } from "./teams";

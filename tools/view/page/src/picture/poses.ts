@@ -1,5 +1,5 @@
 import type { Quaternion, Vector3 } from "three";
-import type { Scene, SceneFrame } from "./messages";
+import type { Scene, SceneFrame } from "../data/messages";
 
 const full = 32767;
 const farAway = 1e9; // [m]; where nothing is drawn

@@ -1,4 +1,4 @@
-import type { Commands } from "./commands";
+import type { Commands } from "../commands";
 
 const mouse: readonly (readonly [string, string])[] = [
   ["drag", "turns the camera; the right button pans, the wheel zooms"],

@@ -1,5 +1,5 @@
-import { element } from "./element";
-import { seconds, type ViewEvent, type ViewStatus } from "./messages";
+import { seconds, type ViewEvent, type ViewStatus } from "../data/messages";
+import { element } from "../element";
 
 export interface Playback {
   play(): void;

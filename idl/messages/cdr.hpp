@@ -59,6 +59,13 @@ concept RosMessage = requires {
   T::fields;
 };
 
+/// A message to which later versions have added fields at its end: `least_fields` is the number of fields in the first
+/// version. A message without the others is decoded with their default values. Only for a message that is not nested.
+template <class T>
+concept GrownMessage = RosMessage<T> && requires {
+  T::least_fields;
+};
+
 static_assert(std::endian::native == std::endian::little);
 
 /// ROS gives a message without fields one byte, because IDL has no empty structs.
@@ -197,7 +204,13 @@ class CdrReader {
   template <RosMessage Message>
   void read([[maybe_unused]] Message& message) {
     if constexpr (has_no_fields<Message>) take(1, 1);
-    std::apply([&](const auto&... fields) { (read(message.*fields.member), ...); }, Message::fields);
+    [[maybe_unused]] std::size_t count = 0;
+    const auto read_field = [&](const auto& field) {
+      if constexpr (GrownMessage<Message>)
+        if (count++ >= Message::least_fields && left() == 0) return;
+      read(message.*field.member);
+    };
+    std::apply([&](const auto&... fields) { (read_field(fields), ...); }, Message::fields);
   }
   template <class Value>
   Value get() {

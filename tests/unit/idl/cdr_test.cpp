@@ -49,6 +49,29 @@ TEST(Cdr, AMessageWithoutFieldsIsOneByte) {
   EXPECT_THROW(decode<ros::Empty>(bytes_of_hex("00010000")), CdrError);
 }
 
+struct Grown {
+  std::uint32_t first = 0;
+  std::string second{"default"};
+  std::vector<double> third{1.0};
+  static constexpr const char* type = "test_msgs/msg/Grown";
+  static constexpr std::size_t least_fields = 1;
+  static constexpr auto fields =
+      std::tuple(field("first", &Grown::first), field("second", &Grown::second), field("third", &Grown::third));
+};
+
+TEST(Cdr, AnEarlierVersionOfAGrownMessageHasDefaultValues) {
+  const Grown first = decode<Grown>(bytes_of_hex("00010000 07000000"));
+  EXPECT_EQ(first.first, 7U);
+  EXPECT_EQ(first.second, "default");
+  EXPECT_EQ(first.third, std::vector<double>{1.0});
+  const Grown second = decode<Grown>(bytes_of_hex("00010000 07000000 02000000 6100"));
+  EXPECT_EQ(second.second, "a");
+  EXPECT_EQ(second.third, std::vector<double>{1.0});
+  EXPECT_TRUE(decode<Grown>(bytes_of_hex("00010000 07000000 02000000 6100 0000 00000000")).third.empty());
+  EXPECT_THROW(decode<Grown>(bytes_of_hex("00010000")), CdrError);
+  EXPECT_THROW(decode<Grown>(bytes_of_hex("00010000 07000000 02000000 61")), CdrError);
+}
+
 TEST(Cdr, BytesAndCharactersAreNotAligned) {
   CdrWriter writer;
   writer.add('a');

@@ -137,6 +137,38 @@ struct SceneEmitter {
                  field("range", &SceneEmitter::range));
 };
 
+/// An image that is shown on shapes.
+struct SceneTexture {
+  std::vector<std::uint8_t> image;  ///< content of a PNG or JPEG file
+  static constexpr const char* type = "cohort_msgs/msg/SceneTexture";
+  static constexpr auto fields = std::tuple(field("image", &SceneTexture::image));
+};
+
+/// The texture coordinates and textures of a mesh.
+struct SceneMeshTexture {
+  std::uint32_t mesh = 0;          ///< index into Scene::meshes
+  std::vector<float> coordinates;  ///< u and v of each corner of each triangle; v is 0 at the lower edge of an image
+  /// Index into Scene::textures for each triangle, or `none`; empty if there are none. It applies to shapes that have
+  /// the colours of the mesh.
+  std::vector<std::uint32_t> textures;
+  static constexpr const char* type = "cohort_msgs/msg/SceneMeshTexture";
+  static constexpr auto fields =
+      std::tuple(field("mesh", &SceneMeshTexture::mesh), field("coordinates", &SceneMeshTexture::coordinates),
+                 field("textures", &SceneMeshTexture::textures));
+};
+
+/// The texture of a whole shape, which is shown instead of its colour.
+struct SceneShapeTexture {
+  std::uint32_t model = 0;
+  std::uint32_t link = 0;     ///< index into the links of the model
+  std::uint32_t shape = 0;    ///< index into the shapes of the link
+  std::uint32_t texture = 0;  ///< index into Scene::textures
+  static constexpr const char* type = "cohort_msgs/msg/SceneShapeTexture";
+  static constexpr auto fields =
+      std::tuple(field("model", &SceneShapeTexture::model), field("link", &SceneShapeTexture::link),
+                 field("shape", &SceneShapeTexture::shape), field("texture", &SceneShapeTexture::texture));
+};
+
 /// The contents of a world. A new one is sent for each world, when objects are added, and at the end of the last run;
 /// the last one is empty.
 struct Scene {
@@ -151,12 +183,17 @@ struct Scene {
   std::vector<SceneEmitter> leds;
   std::string end{};       ///< end of the run as in recordings, such as `finished`; empty while it runs
   std::string end_text{};  ///< reason, for people; may be empty
+  std::vector<SceneTexture> textures{};
+  std::vector<SceneMeshTexture> mesh_textures{};
+  std::vector<SceneShapeTexture> shape_textures{};
   static constexpr const char* type = "cohort_msgs/msg/Scene";
+  static constexpr std::size_t least_fields = 11;  ///< those of 0.1, up to `end_text`
   static constexpr auto fields =
       std::tuple(field("revision", &Scene::revision), field("world", &Scene::world), field("step_ns", &Scene::step_ns),
                  field("meshes", &Scene::meshes), field("models", &Scene::models), field("entities", &Scene::entities),
                  field("lamps", &Scene::lamps), field("tones", &Scene::tones), field("leds", &Scene::leds),
-                 field("end", &Scene::end), field("end_text", &Scene::end_text));
+                 field("end", &Scene::end), field("end_text", &Scene::end_text), field("textures", &Scene::textures),
+                 field("mesh_textures", &Scene::mesh_textures), field("shape_textures", &Scene::shape_textures));
 };
 
 /// The poses at a boundary. Links are sorted by model, then by link of the model, then by entity of that model, so that

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -61,7 +62,8 @@ struct Visual {
   Pose X_LV;
   Shape shape;
   Eigen::Vector4d color;   ///< red, green, blue and opacity, from 0 to 1
-  bool has_color = false;  ///< the colour is given; otherwise a mesh has the colours of its file, if any
+  bool has_color = false;  ///< the colour is given; otherwise a mesh has the colours and textures of its file, if any
+  std::shared_ptr<const Image> texture{};  ///< shown instead of the colour; null if there is none
 };
 
 struct Inertial {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/core/pose.hpp"
+#include "server/description/texture_image.hpp"
 
 /// Shapes of collisions, in the frame C of the collision. SI units.
 namespace cohort::description {
@@ -40,6 +41,17 @@ struct Plane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
 };
 
+/// The textures of a mesh, for display only.
+struct MeshTextures {
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  /// Texture coordinates of the corners of each triangle: u to the right and v upwards, 0 to 1 across an image. Empty
+  /// if the file has none.
+  std::vector<std::array<std::array<float, 2>, 3>> coordinates{};
+  std::vector<std::uint32_t> of_triangles{};           ///< index into `images`, or `none`; empty if there are no images
+  std::vector<std::shared_ptr<const Image>> images{};  ///< null: it is not shown
+};
+
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;                ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices, counter-clockwise seen from outside
@@ -47,6 +59,7 @@ struct TriangleMesh {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();      ///< factors applied to the coordinates of the file
   /// Red, green and blue of each triangle, for display only; none if the file has no materials.
   std::vector<std::array<std::uint8_t, 3>> colors{};
+  MeshTextures textures{};  ///< if there are images, there are colours
 };
 /// A mesh. If `convex`, the convex hull of its vertices is solid, as in all moving models. Otherwise its triangles are
 /// used: a closed surface encloses a solid, and an open surface is a two-sided skin.

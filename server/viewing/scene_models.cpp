@@ -4,6 +4,8 @@
 #include <map>
 #include <optional>
 
+#include "server/viewing/scene_textures.hpp"
+
 namespace cohort::viewing {
 namespace {
 
@@ -132,6 +134,13 @@ messages::SceneLink link_of(const description::Link& from, ShapeWriter& writer) 
   return link;
 }
 
+// The visuals are the first shapes of each link.
+void add_textures(const description::Model& from, std::uint32_t model, TextureWriter& writer) {
+  for (std::uint32_t link = 0; link < from.links.size(); ++link)
+    for (std::uint32_t shape = 0; shape < from.links[link].visuals.size(); ++shape)
+      writer.add(from.links[link].visuals[shape], model, link, shape);
+}
+
 // Adds a ray from a point in S along a direction in S.
 void add_ray(messages::SceneSensor& sensor, const Pose& X_LS, const Eigen::Vector3d& p_S,
              const Eigen::Vector3d& direction_S) {
@@ -229,6 +238,7 @@ std::vector<messages::SceneChannel> channels_of(const std::vector<Channel>& from
 void add_models(const Simulation& simulation, messages::Scene& scene) {
   const description::World& world = simulation.description();
   ShapeWriter writer(scene.meshes);
+  TextureWriter textures(scene);
   scene.models.reserve(world.models.size());
   for (const description::Model& from : world.models) {
     messages::SceneModel& model = scene.models.emplace_back();
@@ -236,6 +246,7 @@ void add_models(const Simulation& simulation, messages::Scene& scene) {
     model.is_static = from.is_static;
     model.links.reserve(from.links.size());
     for (const description::Link& link : from.links) model.links.push_back(link_of(link, writer));
+    add_textures(from, static_cast<std::uint32_t>(scene.models.size() - 1), textures);
     model.sensors = sensors_of(from);
   }
   for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {

@@ -2,6 +2,7 @@
 #include "server/viewing/check_scene.hpp"
 #include "server/viewing/scene_maker.hpp"
 #include "tests/fuzz/edits.hpp"
+#include "tests/support/images.hpp"
 
 namespace {
 
@@ -18,7 +19,13 @@ Encoded encoded() {
   Simulation simulation(experiment, 1);
   simulation.step();
   const viewing::SceneMaker maker(simulation, 1);
-  return {messages::encode(maker.scene()), messages::encode(maker.frame(1, 2)), messages::encode(maker.signals()),
+  messages::Scene scene = maker.scene();
+  const std::string image = test::png_of(2, 2);
+  scene.textures.push_back({{image.begin(), image.end()}});
+  scene.meshes.push_back({{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}});
+  scene.mesh_textures.push_back({static_cast<std::uint32_t>(scene.meshes.size() - 1), {0, 0, 1, 0, 0, 1}, {0}});
+  scene.shape_textures.push_back({0, 0, 0, 0});
+  return {messages::encode(scene), messages::encode(maker.frame(1, 2)), messages::encode(maker.signals()),
           messages::encode(maker.contacts()), messages::encode(maker.robot(0))};
 }
 

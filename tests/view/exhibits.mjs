@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { atTick, coloursIn, drawn, look, patience, pixelsAt, run, runScenario, setShadows, until } from "./in_page.mjs";
+import { drawsTextures } from "./textures.mjs";
 
 const near = (found, wanted, by, what) =>
   assert.ok(Math.abs(found - wanted) <= by, `${what} is ${found}, not ${wanted}`);
@@ -377,4 +378,5 @@ await runScenario({
   draws_overlays: drawsOverlays,
   draws_shapes: drawsShapes,
   draws_hills: drawsHills,
+  draws_textures: drawsTextures,
 });

@@ -35,6 +35,10 @@ TEST_F(WhatThePageShows, LooksAgainAsItWasLeft) { show_exhibits("keeps_looks"); 
 TEST_F(WhatThePageShows, HasNamesTrailsContactsGripsAndRaysWhereTheyAre) { show_exhibits("draws_overlays"); }
 TEST_F(WhatThePageShows, CastsShadowsAndHasTheColoursOfMeshes) { show_exhibits("draws_shapes"); }
 
+TEST_F(WhatThePageShows, HasTheTexturesOfVisualsAndMeshes) {
+  show(COHORT_SOURCE_DIR "/tests/view/exhibits/textures.yaml", "0.1", "draws_textures");
+}
+
 TEST_F(WhatThePageShows, HasHillsAsHighAsTheirGround) {
   const std::string hills = COHORT_SOURCE_DIR "/worlds/experiments/rough_terrain.yaml";
   const description::Experiment experiment = parsing::read_experiment(hills);

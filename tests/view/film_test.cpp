@@ -196,6 +196,33 @@ TEST_F(Films, KeepWhatIsFollowedInTheMiddle) {
   EXPECT_FALSE(is_orange(middle_of("away.png")));
 }
 
+// It takes a while to decode an image of this size.
+TEST_F(Films, ShowTexturesFromTheFirstPictureOn) {
+  fs::remove(scratch / "run.mcap");
+  const Ended image = run_to_end({"/usr/bin/env", "ffmpeg", "-v", "error", "-f", "lavfi", "-i",
+                                  "color=yellow:size=6000x6000", "-frames:v", "1", scratch / "yellow.png"});
+  ASSERT_EQ(image.exit_code, 0) << image.err;
+  write_file(scratch / "world.yaml", R"(world:
+  name: w
+  model:
+    name: crate
+    static: true
+    link:
+      name: body
+      visual:
+        name: box
+        geometry: {box: {size: [1, 1, 1]}}
+        material: {diffuse: [0, 0, 1, 1], pbr: {metal: {albedo_map: yellow.png}}}
+)");
+  run_experiment(scratch / "world.yaml",
+                 {"--controllers", "inprocess", "--duration", "0.1", "--record", scratch / "run.mcap"});
+  write_file(scratch / "camera.yaml", "path: [{time: 0, position: [0, -3, 0.1], target: [0, -0.5, 0]}]\n");
+  make("run.png", {"--camera", scratch / "camera.yaml"});
+  const auto [red, green, blue] = middle_of("run.png");
+  EXPECT_GT(red, 2 * blue) << green;
+  EXPECT_GT(green, 2 * blue);
+}
+
 TEST_F(Films, EndOnRequestAndLeaveNothing) {
   for (const char* output : {"run.mp4", "run.gif"}) {
     Process film(command(output, {"--speed", "0.01"}), environment());

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { atTick, drawCoarsely, expectRobots, run, runScenario, until } from "./in_page.mjs";
+import { drawsTextures } from "./textures.mjs";
 
 const asked = []; // addresses
 const complaints = []; // in the browser's console
@@ -154,4 +155,18 @@ async function changesScene(page) {
   expectNoRequests();
 }
 
-await runScenario({ plays, equals_view: equalsView, is_harmless: isHarmless, changes_scene: changesScene }, cutOff);
+async function containsTextures(page) {
+  await drawsTextures(page);
+  expectNoRequests();
+}
+
+await runScenario(
+  {
+    plays,
+    equals_view: equalsView,
+    is_harmless: isHarmless,
+    changes_scene: changesScene,
+    contains_textures: containsTextures,
+  },
+  cutOff,
+);

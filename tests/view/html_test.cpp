@@ -103,6 +103,14 @@ TEST_F(AnHtmlFile, ShowsObjectsThatWereAddedDuringTheRun) {
   run_script("html.mjs", {"changes_scene", address_of(scratch / "run.html")});
 }
 
+TEST_F(AnHtmlFile, ContainsTheTextures) {
+  run_experiment(COHORT_SOURCE_DIR "/tests/view/exhibits/textures.yaml",
+                 {"--controllers", "inprocess", "--duration", "0.1", "--record", scratch / "run.mcap"});
+  write_page_or_fail(scratch / "run.mcap", scratch / "run.html");
+  std::filesystem::remove(scratch / "run.mcap");
+  run_script("html.mjs", {"contains_textures", address_of(scratch / "run.html")});
+}
+
 class PageCommand : public ::testing::Test {
  protected:
   void SetUp() override {

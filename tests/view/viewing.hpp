@@ -17,7 +17,7 @@ class Viewing : public ::testing::Test {
  protected:
   void SetUp() override {
     for (const char* script : {"in_page.mjs", "browser.mjs", "exhibits.mjs", "hands.mjs", "guest.mjs", "html.mjs",
-                               "layout.mjs", "client.mjs"})
+                               "layout.mjs", "textures.mjs", "client.mjs"})
       if (const auto why_not = scripts.prepare(script)) GTEST_SKIP() << *why_not;
   }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr png_uint_32 most_pixels = 8193;  // along an edge
 
-struct Image {
+struct PngImage {
   std::string_view unread;  // rest of the file
   png_uint_32 width = 0;
   png_uint_32 height = 0;
@@ -27,19 +27,19 @@ struct Image {
 
 // libpng leaves its calls by longjmp, so these functions must have no objects with destructors.
 extern "C" void keep_error(png_structp png, png_const_charp message) {
-  static_cast<Image*>(png_get_error_ptr(png))->error = message;
+  static_cast<PngImage*>(png_get_error_ptr(png))->error = message;
   png_longjmp(png, 1);
 }
 extern "C" void ignore_warning(png_structp, png_const_charp) {}
 extern "C" void take_bytes(png_structp png, png_bytep bytes, std::size_t count) {
-  std::string_view& unread = static_cast<Image*>(png_get_io_ptr(png))->unread;
+  std::string_view& unread = static_cast<PngImage*>(png_get_io_ptr(png))->unread;
   if (count > unread.size()) png_error(png, "the file is truncated");
   std::memcpy(bytes, unread.data(), count);
   unread.remove_prefix(count);
 }
 
 // Returns false if libpng fails; `image` then has its message.
-bool read_header(png_structp png, png_infop info, Image& image) {
+bool read_header(png_structp png, png_infop info, PngImage& image) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_user_limits(png, most_pixels, most_pixels);
   png_set_read_fn(png, &image, &take_bytes);
@@ -51,19 +51,19 @@ bool read_header(png_structp png, png_infop info, Image& image) {
   return true;
 }
 
-bool read_pixels(png_structp png, Image& image) {
+bool read_pixels(png_structp png, PngImage& image) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_read_image(png, image.rows.data());
   png_read_end(png, nullptr);
   return true;
 }
 
-Image read_png(InputFiles& input, const std::filesystem::path& path) {
+PngImage read_png(InputFiles& input, const std::filesystem::path& path) {
   const auto fail = [&](const std::string& why) -> void {
     throw std::runtime_error("'" + path.string() + "' cannot be read as a height map: " + why);
   };
   if (const auto reason = input.why_unreadable(path)) fail(*reason);
-  Image image;
+  PngImage image;
   image.unread = input.read(path);
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &image, &keep_error, &ignore_warning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
@@ -85,7 +85,7 @@ Image read_png(InputFiles& input, const std::filesystem::path& path) {
 }  // namespace
 
 HeightGrid read_height_image(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& size) {
-  const Image image = read_png(input, file);
+  const PngImage image = read_png(input, file);
   HeightGrid grid;
   grid.columns = image.width;
   grid.rows = image.height;

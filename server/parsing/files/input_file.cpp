@@ -135,6 +135,15 @@ const std::string& InputFiles::read(const fs::path& file) {
   return files_.emplace(key, std::move(bytes)).first->second;
 }
 
+std::uintmax_t InputFiles::size(const fs::path& file) const {
+  const std::string key = key_of(file);
+  if (const std::string* const known = find(key)) return known->size();
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(key, error);
+  if (error) throw std::runtime_error("the file cannot be read: " + error.message());
+  return size;
+}
+
 bool InputFiles::is_file(const fs::path& file) const {
   const std::string key = key_of(file);
   std::error_code none;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -49,6 +50,8 @@ class InputFiles {
   /// Returns the content, whose address does not change during the lifetime of this. Throws std::runtime_error with the
   /// reason if it cannot be read.
   const std::string& read(const std::filesystem::path& file);
+  /// Returns the number of bytes of a file that can be read.
+  std::uintmax_t size(const std::filesystem::path& file) const;
   bool is_file(const std::filesystem::path& file) const;
   bool is_folder(const std::filesystem::path& folder);
 

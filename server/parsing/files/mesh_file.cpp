@@ -28,15 +28,15 @@ struct Garbled : std::runtime_error {
   Garbled() : std::runtime_error("sent invalid mesh data") {}
 };
 
-void send_text(ChildStream& stream, const std::string& text) {
-  const std::uint64_t size = std::min<std::uint64_t>(text.size(), longest_text);
+void send_text(ChildStream& stream, const std::string& text, std::uint64_t longest = longest_text) {
+  const std::uint64_t size = std::min<std::uint64_t>(text.size(), longest);
   stream.send(size);
   stream.send(text.data(), size);
 }
 
-std::string receive_text(ChildStream& stream) {
+std::string receive_text(ChildStream& stream, std::uint64_t longest = longest_text) {
   const auto size = stream.receive<std::uint64_t>();
-  if (size > longest_text) throw Garbled();
+  if (size > longest) throw Garbled();
   std::string text(size, '\0');
   stream.receive(text.data(), size);
   return text;
@@ -96,11 +96,18 @@ class SourcesOfParent : public MeshSources {
 void import_and_send(ChildStream& stream, MeshSources& sources, const std::filesystem::path& file,
                      const Eigen::Vector3d& scale) {
   try {
-    const TriangleMesh mesh = import_mesh(sources, file, scale);
+    const ImportedMesh mesh = import_mesh(sources, file, scale);
     stream.send(Message::mesh);
     send_items(stream, mesh.vertices);
     send_items(stream, mesh.triangles);
     send_items(stream, mesh.colors);
+    send_items(stream, mesh.textures.coordinates);
+    send_items(stream, mesh.textures.of_triangles);
+    stream.send(std::uint64_t{mesh.images.size()});
+    for (const MeshImage& image : mesh.images) {
+      send_text(stream, image.name);
+      send_text(stream, image.bytes, most_image_bytes);
+    }
   } catch (const std::runtime_error& error) {
     stream.send(Message::error);
     send_text(stream, error.what());
@@ -113,13 +120,32 @@ void check_format(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  for (const char* const known : {".stl", ".obj", ".dae"})
+  for (const char* const known : {".stl", ".obj", ".dae", ".glb", ".gltf"})
     if (extension == known) return;
-  throw std::runtime_error("'" + file.string() + "' has an unsupported format; expected .stl, .obj or .dae");
+  throw std::runtime_error("'" + file.string() +
+                           "' has an unsupported format; expected .stl, .obj, .dae, .glb or .gltf");
 }
 
-TriangleMesh receive_mesh(ChildStream& stream) {
-  TriangleMesh mesh;
+// Receives the end of a mesh.
+void receive_textures(ChildStream& stream, ImportedMesh& mesh) {
+  MeshTextures& textures = mesh.textures;
+  textures.coordinates = receive_items<std::array<std::array<float, 2>, 3>>(stream);
+  textures.of_triangles = receive_items<std::uint32_t>(stream);
+  const auto images = stream.receive<std::uint64_t>();
+  if (images > mesh.triangles.size()) throw Garbled();  // each is on a triangle
+  for (std::uint64_t i = 0; i < images; ++i) {
+    std::string name = receive_text(stream);
+    mesh.images.push_back({std::move(name), receive_text(stream, most_image_bytes)});
+  }
+  const auto has_image = [&](std::uint32_t image) { return image == MeshTextures::none || image < images; };
+  const auto has_size = [&](std::size_t size) { return size == 0 || size == mesh.triangles.size(); };
+  if (!has_size(textures.coordinates.size()) || !has_size(textures.of_triangles.size()) ||
+      !std::ranges::all_of(textures.of_triangles, has_image))
+    throw Garbled();
+}
+
+ImportedMesh receive_mesh(ChildStream& stream) {
+  ImportedMesh mesh;
   mesh.vertices = receive_items<Eigen::Vector3d>(stream);
   mesh.triangles = receive_items<std::array<std::uint32_t, 3>>(stream);
   mesh.colors = receive_items<std::array<std::uint8_t, 3>>(stream);
@@ -131,6 +157,7 @@ TriangleMesh receive_mesh(ChildStream& stream) {
       !std::ranges::all_of(mesh.triangles, has_vertices) ||
       (!mesh.colors.empty() && mesh.colors.size() != mesh.triangles.size()))
     throw Garbled();
+  receive_textures(stream, mesh);
   return mesh;
 }
 
@@ -142,7 +169,7 @@ void send_content(ChildStream& stream, InputFiles& input, const std::string& fil
 }
 
 // Answers the importer until it sends the mesh or an error.
-TriangleMesh answer_until_mesh(ChildStream& stream, InputFiles& input) {
+ImportedMesh answer_until_mesh(ChildStream& stream, InputFiles& input) {
   while (true) {
     switch (stream.receive<Message>()) {
       case Message::asks_whether_file: stream.send(input.is_file(receive_text(stream))); break;
@@ -162,7 +189,7 @@ const std::string& content_of(InputFiles& input, const std::filesystem::path& fi
 
 }  // namespace
 
-TriangleMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale) {
+ImportedMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale) {
   check_format(file);
   const std::string& content = content_of(input, file);
   LimitedChild importer({}, [&](ChildStream& stream) {

@@ -5,6 +5,7 @@
 
 #include "server/description/shape.hpp"
 #include "server/parsing/files/input_file.hpp"
+#include "server/parsing/files/mesh_import.hpp"
 
 namespace cohort::parsing {
 
@@ -13,10 +14,10 @@ struct ImporterFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads all triangles of an STL, OBJ or COLLADA file. Coordinates are those of the file, in metres, multiplied by
-/// `scale`; the unit of a COLLADA file is applied, its up-axis is not. Vertices at the same position are merged.
+/// Reads all triangles of an STL, OBJ, COLLADA or glTF file. Coordinates are those of the file, in metres, multiplied
+/// by `scale`; the unit of a COLLADA file is applied, its up-axis is not. Vertices at the same position are merged.
 /// Colours are those of materials (of an OBJ in its .mtl), if any. The importer is a separate process (LimitedChild).
 /// Throws std::runtime_error with the problem of the file, or ImporterFailed.
-TriangleMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale);
+ImportedMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale);
 
 }  // namespace cohort::parsing

@@ -10,6 +10,7 @@
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -81,8 +82,15 @@ std::uint8_t byte_of(float part) {
   return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(static_cast<double>(part), 0.0, 1.0)));
 }
 
+// Returns a linear part of a colour as sRGB (IEC 61966-2-1).
+float encoded(float linear) {
+  constexpr float end_of_line = 0.0031308f;
+  if (linear <= end_of_line) return 12.92f * linear;
+  return 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
 // Returns the material colour of a part; nothing if the file has none. (assimp adds a material to such a part.)
-std::optional<Color> color_of(const aiScene& scene, const aiMesh& part) {
+std::optional<Color> color_of(const aiScene& scene, const aiMesh& part, bool is_linear) {
   if (part.mMaterialIndex >= scene.mNumMaterials) return std::nullopt;
   const aiMaterial& material = *scene.mMaterials[part.mMaterialIndex];
   aiString name;
@@ -90,14 +98,67 @@ std::optional<Color> color_of(const aiScene& scene, const aiMesh& part) {
     return std::nullopt;
   aiColor3D color;
   if (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != aiReturn_SUCCESS) return std::nullopt;
+  if (is_linear) color = {encoded(color.r), encoded(color.g), encoded(color.b)};
   return Color{byte_of(color.r), byte_of(color.g), byte_of(color.b)};
 }
+
+struct TextureOfPart {
+  std::uint32_t image = MeshTextures::none;
+  unsigned channel = 0;  // index of its texture coordinates
+};
+
+bool has_coordinates(const aiMesh& part, unsigned channel) {
+  return channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && part.mTextureCoords[channel] != nullptr;
+}
+
+// The images that the materials of a file name.
+class Images {
+ public:
+  explicit Images(const aiScene& scene) : scene_(scene) {}
+
+  TextureOfPart texture_of(const aiMesh& part) {
+    if (part.mMaterialIndex >= scene_.mNumMaterials) return {};
+    aiString name;
+    TextureOfPart texture;
+    if (scene_.mMaterials[part.mMaterialIndex]->GetTexture(aiTextureType_DIFFUSE, 0, &name, nullptr,
+                                                           &texture.channel) != aiReturn_SUCCESS ||
+        name.length == 0)
+      return {};
+    if (!has_coordinates(part, texture.channel)) texture.channel = 0;
+    if (has_coordinates(part, texture.channel)) texture.image = index_of(name);
+    return texture;
+  }
+
+  std::vector<MeshImage> take() { return std::move(images_); }
+
+ private:
+  std::uint32_t index_of(const aiString& name) {
+    const auto [entry, is_new] = indices_.emplace(name.C_Str(), static_cast<std::uint32_t>(images_.size()));
+    if (!is_new) return entry->second;
+    const aiTexture* const embedded = scene_.GetEmbeddedTexture(name.C_Str());
+    images_.push_back(embedded == nullptr ? MeshImage{name.C_Str(), {}} : MeshImage{{}, content_of(*embedded)});
+    return entry->second;
+  }
+
+  // A texture without a height is a file. Others are pixels, which no supported format has.
+  static std::string content_of(const aiTexture& texture) {
+    if (texture.mHeight != 0 || texture.pcData == nullptr || texture.mWidth > most_image_bytes) return {};
+    return {reinterpret_cast<const char*>(texture.pcData), texture.mWidth};
+  }
+
+  const aiScene& scene_;
+  std::vector<MeshImage> images_;
+  std::map<std::string, std::uint32_t> indices_;
+};
 
 // Adds triangles to a mesh and merges equal vertices, which formats such as STL repeat for each triangle.
 class MeshBuilder {
  public:
-  void add(const aiMesh& part, const Eigen::Matrix4d& transform, const std::optional<Color>& color) {
-    has_colors_ = has_colors_ || color;
+  void add(const aiMesh& part, const Eigen::Matrix4d& transform, const std::optional<Color>& color,
+           const TextureOfPart& texture) {
+    has_textures_ = has_textures_ || texture.image != MeshTextures::none;
+    has_colors_ = has_colors_ || has_textures_ || color;
+    has_coordinates_ = has_coordinates_ || has_coordinates(part, texture.channel);
     std::vector<std::uint32_t> places(part.mNumVertices);
     for (unsigned i = 0; i < part.mNumVertices; ++i) {
       const aiVector3D& v = part.mVertices[i];
@@ -108,24 +169,38 @@ class MeshBuilder {
       const aiFace& face = part.mFaces[i];
       if (face.mNumIndices != 3) continue;  // a point or a line
       std::array<std::uint32_t, 3> triangle{};
+      std::array<std::array<float, 2>, 3> coordinates{};
       for (unsigned corner = 0; corner < 3; ++corner) {
         if (face.mIndices[corner] >= part.mNumVertices)
           throw std::runtime_error("a triangle refers to a vertex that does not exist");
         triangle[corner] = places[face.mIndices[corner]];
+        coordinates[corner] = coordinates_of(part, texture.channel, face.mIndices[corner]);
       }
-      if (mirrors) std::swap(triangle[1], triangle[2]);
+      if (mirrors) {
+        std::swap(triangle[1], triangle[2]);
+        std::swap(coordinates[1], coordinates[2]);
+      }
       if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
       mesh_.triangles.push_back(triangle);
       mesh_.colors.push_back(color.value_or(plain));
+      mesh_.textures.coordinates.push_back(coordinates);
+      mesh_.textures.of_triangles.push_back(texture.image);
     }
   }
 
   TriangleMesh take() {
     if (!has_colors_) mesh_.colors.clear();
+    if (!has_coordinates_) mesh_.textures.coordinates.clear();
+    if (!has_textures_) mesh_.textures.of_triangles.clear();
     return std::move(mesh_);
   }
 
  private:
+  static std::array<float, 2> coordinates_of(const aiMesh& part, unsigned channel, unsigned vertex) {
+    if (!has_coordinates(part, channel)) return {};
+    const aiVector3D& place = part.mTextureCoords[channel][vertex];
+    return std::isfinite(place.x) && std::isfinite(place.y) ? std::array{place.x, place.y} : std::array<float, 2>{};
+  }
   std::uint32_t place_of(const Eigen::Vector3d& vertex) {
     if (!vertex.allFinite()) throw std::runtime_error("a vertex is not finite");
     const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
@@ -138,12 +213,20 @@ class MeshBuilder {
 
   TriangleMesh mesh_;
   bool has_colors_ = false;
+  bool has_coordinates_ = false;
+  bool has_textures_ = false;
   std::map<std::array<double, 3>, std::uint32_t> places_;
 };
 
+// Colours in glTF files are linear.
+bool is_gltf_file(const std::filesystem::path& file) {
+  const std::string extension = file.extension();
+  return extension.size() > 2 && std::tolower(static_cast<unsigned char>(extension[1])) == 'g';
+}
+
 }  // namespace
 
-TriangleMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale) {
+ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale) {
   Assimp::Importer importer;
   importer.SetIOHandler(new AssimpFiles(sources));  // which it owns
   // Otherwise assimp would rotate a file whose z axis points upwards.
@@ -152,7 +235,9 @@ TriangleMesh import_mesh(MeshSources& sources, const std::filesystem::path& file
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw std::runtime_error("'" + file.string() + "' cannot be read: " + importer.GetErrorString());
 
+  const bool is_gltf = is_gltf_file(file);
   MeshBuilder builder;
+  Images images(*scene);
   struct Placed {
     const aiNode* node;
     Eigen::Matrix4d transform;
@@ -167,14 +252,14 @@ TriangleMesh import_mesh(MeshSources& sources, const std::filesystem::path& file
       const Eigen::Matrix4d transform = parent * matrix_of(node->mTransformation);
       for (unsigned i = 0; i < node->mNumMeshes; ++i) {
         const aiMesh& part = *scene->mMeshes[node->mMeshes[i]];
-        builder.add(part, transform, color_of(*scene, part));
+        builder.add(part, transform, color_of(*scene, part, is_gltf), images.texture_of(part));
       }
       for (unsigned i = node->mNumChildren; i-- > 0;) waiting.push_back({node->mChildren[i], transform});
     }
   } catch (const std::runtime_error& error) {
     throw std::runtime_error("'" + file.string() + "' is invalid: " + error.what());
   }
-  TriangleMesh mesh = builder.take();
+  ImportedMesh mesh{builder.take(), images.take()};
   if (mesh.triangles.empty()) throw std::runtime_error("'" + file.string() + "' has no triangles");
   return mesh;
 }

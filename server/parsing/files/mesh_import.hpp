@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "server/description/shape.hpp"
 #include "server/parsing/parsing.hpp"
@@ -18,7 +19,18 @@ class MeshSources {
   virtual const std::string* read(const std::string& file) = 0;
 };
 
+/// An image that a mesh has as a texture.
+struct MeshImage {
+  std::string name;   ///< its file, as the mesh names it; empty if it is embedded
+  std::string bytes;  ///< content, if it is embedded and not larger than the limit for images
+};
+
+/// A mesh whose textures have no images yet: they are those of `images`, in the same order.
+struct ImportedMesh : TriangleMesh {
+  std::vector<MeshImage> images{};
+};
+
 /// Does the same as read_mesh in this process: a malicious file can crash Assimp, or make it exhaust the memory.
-TriangleMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale);
+ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale);
 
 }  // namespace cohort::parsing

@@ -286,6 +286,18 @@ double read_opacity(const sdf::Visual& visual) {
   return std::clamp(opacity - read_part(visual.Transparency()), 0.0, 1.0);
 }
 
+// Returns the image of the albedo map; null if there is none, or it cannot be shown.
+std::shared_ptr<const Image> read_texture(const sdf::Visual& visual, const ModelReading& reading) {
+  const sdf::ElementPtr map = find(visual.Element(), {"material", "pbr", "metal", "albedo_map"});
+  if (!is_written(map)) return nullptr;
+  try {
+    return reading.shape_files.images().image(map);
+  } catch (const std::runtime_error& error) {
+    reading.report.warning(map, texture_not_shown(error));
+    return nullptr;
+  }
+}
+
 void read_visuals(const sdf::Link& sdf_link, const ModelReading& reading, Link& link) {
   if (sdf_link.VisualCount() > 0) link.color = read_color(*sdf_link.VisualByIndex(0));
   link.visuals.reserve(sdf_link.VisualCount());
@@ -295,8 +307,8 @@ void read_visuals(const sdf::Link& sdf_link, const ModelReading& reading, Link& 
     if (!shape) continue;
     Eigen::Vector4d color;
     color << read_color(visual), read_opacity(visual);
-    link.visuals.push_back(
-        {visual.Name(), resolved_pose(visual, reading), *std::move(shape), color, has_color(visual)});
+    link.visuals.push_back({visual.Name(), resolved_pose(visual, reading), *std::move(shape), color, has_color(visual),
+                            read_texture(visual, reading)});
   }
 }
 

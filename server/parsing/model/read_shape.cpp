@@ -66,7 +66,10 @@ std::optional<Shape> read_visual_mesh(const sdf::Mesh& mesh, const ModelReading&
   const sdf::ElementPtr uri = find(mesh.Element(), {"uri"});
   if (!uri || !scale.allFinite() || (scale.array() == 0.0).any()) return std::nullopt;
   try {
-    return Mesh{reading.shape_files.mesh(uri, scale, false), false};
+    Mesh shape{reading.shape_files.mesh(uri, scale, false), false};
+    for (const std::string& warning : reading.shape_files.warnings_of(*shape.triangles))
+      reading.report.warning_once(uri, warning);
+    return shape;
   } catch (const ImporterFailed& error) {
     reading.report.stop(uri, error.what());
   } catch (const std::runtime_error&) {

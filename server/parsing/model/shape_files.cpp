@@ -50,14 +50,38 @@ TriangleMesh hull_of(const TriangleMesh& mesh, const std::filesystem::path& file
 std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const sdf::ElementPtr& uri, const Eigen::Vector3d& scale,
                                                      bool convex) {
   const std::filesystem::path file = files_.find_file(uri);
-  std::shared_ptr<const TriangleMesh>& mesh = meshes_[{file, scale.x(), scale.y(), scale.z(), convex}];
-  if (mesh) return mesh;
-  TriangleMesh read = read_mesh(files_.input(), file, scale);
-  if (convex) read = hull_of(read, file, files_.is_foreign(uri));
-  read.file = file;
-  read.scale = scale;
-  mesh = std::make_shared<const TriangleMesh>(std::move(read));
-  return mesh;
+  ReadMesh& mesh = meshes_[{file, scale.x(), scale.y(), scale.z(), convex}];
+  if (mesh.triangles) return mesh.triangles;
+  ImportedMesh read = read_mesh(files_.input(), file, scale);
+  TriangleMesh triangles =
+      convex ? hull_of(read, file, files_.is_foreign(uri)) : TriangleMesh(std::move(static_cast<TriangleMesh&>(read)));
+  triangles.file = file;
+  triangles.scale = scale;
+  if (!convex) mesh.warnings = add_images(read.images, triangles);
+  mesh.triangles = std::make_shared<const TriangleMesh>(std::move(triangles));
+  return mesh.triangles;
+}
+
+const std::vector<std::string>& ShapeFiles::warnings_of(const TriangleMesh& mesh) const {
+  return meshes_.at({mesh.file, mesh.scale.x(), mesh.scale.y(), mesh.scale.z(), false}).warnings;
+}
+
+// Returns warnings for images that cannot be shown.
+std::vector<std::string> ShapeFiles::add_images(std::vector<MeshImage>& images, TriangleMesh& mesh) {
+  std::vector<std::string> warnings;
+  mesh.textures.images.reserve(images.size());
+  for (MeshImage& image : images) {
+    std::shared_ptr<const Image>& added = mesh.textures.images.emplace_back();
+    try {
+      if (image.name.empty() && image.bytes.empty())
+        throw std::runtime_error("expected an embedded PNG or JPEG image of at most 8 MiB");
+      added = image.name.empty() ? images_.embedded_image(std::move(image.bytes))
+                                 : images_.image_of_mesh(std::move(image.name), mesh.file);
+    } catch (const std::runtime_error& error) {
+      warnings.push_back(texture_not_shown(error));
+    }
+  }
+  return warnings;
 }
 
 std::shared_ptr<const HeightGrid> ShapeFiles::height_grid(const sdf::ElementPtr& uri, const Eigen::Vector3d& size) {

@@ -4,23 +4,38 @@
 #include <map>
 #include <memory>
 #include <sdf/Element.hh>
+#include <stdexcept>
+#include <string>
 #include <tuple>
+#include <vector>
 
 #include "server/description/shape.hpp"
+#include "server/parsing/files/mesh_import.hpp"
 #include "server/parsing/files/sample_file.hpp"
+#include "server/parsing/model/image_files.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
 
 namespace cohort::parsing {
+
+/// Returns the warning for a texture that cannot be shown.
+inline std::string texture_not_shown(const std::runtime_error& error) {
+  return std::string("the texture is not shown: ") + error.what();
+}
 
 /// The shapes and samples that a world has in separate files. Each is read once, and shared by all that name it.
 class ShapeFiles {
  public:
   /// `files` must outlive this.
-  explicit ShapeFiles(const SdfFiles& files) : files_(files) {}
+  explicit ShapeFiles(const SdfFiles& files) : files_(files), images_(files) {}
+
+  ImageFiles& images() { return images_; }
 
   /// Returns the mesh that `uri` names, or its convex hull; in a file from another source, a flat hull gets a thickness
   /// of 1 mm. Throws std::runtime_error with the problem.
   std::shared_ptr<const TriangleMesh> mesh(const sdf::ElementPtr& uri, const Eigen::Vector3d& scale, bool convex);
+
+  /// Returns warnings for textures of a mesh from the function above, if it is not a convex hull.
+  const std::vector<std::string>& warnings_of(const TriangleMesh& mesh) const;
 
   /// Returns the height map of the image that `uri` names. Throws std::runtime_error with the problem.
   std::shared_ptr<const HeightGrid> height_grid(const sdf::ElementPtr& uri, const Eigen::Vector3d& size);
@@ -30,10 +45,16 @@ class ShapeFiles {
   std::shared_ptr<const Samples> samples(const sdf::ElementPtr& uri);
 
  private:
+  struct ReadMesh {
+    std::shared_ptr<const TriangleMesh> triangles;
+    std::vector<std::string> warnings;
+  };
+  std::vector<std::string> add_images(std::vector<MeshImage>& images, TriangleMesh& mesh);
+
   const SdfFiles& files_;
+  ImageFiles images_;
   /// Meshes by file, scale and whether convex.
-  std::map<std::tuple<std::filesystem::path, double, double, double, bool>, std::shared_ptr<const TriangleMesh>>
-      meshes_;
+  std::map<std::tuple<std::filesystem::path, double, double, double, bool>, ReadMesh> meshes_;
   /// Height maps by file and size.
   std::map<std::tuple<std::filesystem::path, double, double, double>, std::shared_ptr<const HeightGrid>> grids_;
   std::map<std::filesystem::path, std::shared_ptr<const Samples>> samples_;

@@ -52,6 +52,10 @@ class SdfFiles {
   /// Returns the file that the URI in `element` names, such as a mesh; a path is relative to the file of the element.
   /// Throws std::runtime_error if there is none.
   std::filesystem::path find_file(const sdf::ElementPtr& element) const;
+  /// Does the same for a URI in another file, such as a mesh; a path is relative to `folder`.
+  std::filesystem::path find_file(const std::string& uri, const std::filesystem::path& folder) const {
+    return search_.find_file(uri, folder);
+  }
 
   Location locate(const sdf::ElementPtr& element) const;
   /// Returns whether the element is in a file that was not written for Cohort.

@@ -258,7 +258,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{still(mesh("robots")), 3, in_mesh, "this is a folder"},
         Flaw{still(mesh("model://bt/box.obj")), 3, in_mesh, "there is no 'bt/box.obj'"},
         Flaw{still(mesh("https://somewhere/box.obj")), 3, in_mesh, "Cohort does not download"},
-        Flaw{still(mesh("box.step")), 3, in_mesh, "expected .stl, .obj or .dae"},
+        Flaw{still(mesh("box.step")), 3, in_mesh, "expected .stl, .obj, .dae, .glb or .gltf"},
         Flaw{still(mesh("broken.dae")), 3, in_mesh, "cannot be read: "},
         Flaw{still(mesh("nan.stl")), 3, in_mesh, "a vertex is not finite"},
         Flaw{still(mesh("no_triangle.obj")), 3, in_mesh, "has no triangles"},

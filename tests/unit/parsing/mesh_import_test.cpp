@@ -19,6 +19,7 @@
 
 #include "server/parsing/files/limited_child.hpp"
 #include "server/parsing/files/mesh_file.hpp"
+#include "tests/support/images.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
 // Tests that this process survives any mesh file.
@@ -164,18 +165,24 @@ TEST_F(MeshImport, EqualsAnImportInThisProcess) {
   write("a.dae", with_shared_nodes(5));
   write("a.obj", "mtllib a.mtl\nv 0.1 0 -0\nv 1 0.3 0\nv 0 1 0\nv 0 0 1\nusemtl m\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
   write("a.mtl", "newmtl m\nKd 0.6 0 1\n");
+  write("a.glb", test::glb_of(R"({"bufferView":3,"mimeType":"image/png"})", test::png_of(2, 2)));
   const std::filesystem::path files = source / "tests/data/files";
   const Eigen::Vector3d scale(0.1, -0.3, 7.0);
-  for (const auto& file : {folder_ / "a.dae", folder_ / "a.obj", files / "tetrahedron.obj", files / "tetrahedron.stl",
-                           files / "triangle.dae"}) {
+  for (const auto& file : {folder_ / "a.dae", folder_ / "a.obj", folder_ / "a.glb", files / "tetrahedron.obj",
+                           files / "tetrahedron.stl", files / "triangle.dae"}) {
     parsing::InputFiles input;
     input.trust(file);
     SourcesOnDisk sources;
-    const TriangleMesh there = parsing::read_mesh(input, file, scale);
-    const TriangleMesh here = parsing::import_mesh(sources, file, scale);
+    const parsing::ImportedMesh there = parsing::read_mesh(input, file, scale);
+    const parsing::ImportedMesh here = parsing::import_mesh(sources, file, scale);
     EXPECT_TRUE(has_same_bits(there.vertices, here.vertices)) << file;
     EXPECT_TRUE(has_same_bits(there.triangles, here.triangles)) << file;
     EXPECT_TRUE(has_same_bits(there.colors, here.colors)) << file;
+    EXPECT_TRUE(has_same_bits(there.textures.coordinates, here.textures.coordinates)) << file;
+    EXPECT_EQ(there.textures.of_triangles, here.textures.of_triangles) << file;
+    ASSERT_EQ(there.images.size(), here.images.size()) << file;
+    EXPECT_EQ(there.images.size(), file.extension() == ".glb" ? 1u : 0u);
+    for (std::size_t i = 0; i < here.images.size(); ++i) EXPECT_EQ(there.images[i].bytes, here.images[i].bytes);
     EXPECT_TRUE(file.filename() != "a.obj" || !there.colors.empty()) << "its colours are those of the .mtl";
   }
 }
@@ -208,10 +215,11 @@ TEST_F(MeshImport, SurvivesAnyFile) {
       {"/a.stl",
        "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
        "endfacet\nendsolid s\n"},
+      {"/a.glb", test::glb_of(R"({"bufferView":3,"mimeType":"image/png"})", test::png_of(2, 2))},
       {"/a.stl", std::string(80, ' ') + std::string("\1\0\0\0", 4) + std::string(50, '\0')}};
   std::mt19937_64 random(1);
   std::size_t refused = 0;
-  constexpr std::size_t count = 400;
+  constexpr std::size_t count = 480;
   for (std::size_t i = 0; i < count; ++i) {
     auto [name, text] = files[i % files.size()];
     for (std::size_t change = random() % 4; change < 4; ++change) {

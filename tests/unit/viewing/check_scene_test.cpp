@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/images.hpp"
+
 namespace cohort::viewing {
 namespace {
 
@@ -50,6 +52,31 @@ TEST(CheckScene, RefusesColoursOfNothing) {
   EXPECT_EQ(check_scene(scene), 4U);
   scene.meshes[0].colors.push_back(40);
   EXPECT_THROW(check_scene(scene), messages::CdrError);
+}
+
+TEST(CheckScene, RefusesTexturesOfNothing) {
+  const std::string image = test::png_of(2, 2);
+  messages::Scene textured = scene_of_two();
+  textured.textures = {{{image.begin(), image.end()}}};
+  textured.mesh_textures = {{0, {0, 0, 1, 0, 0, 1}, {0}}};
+  textured.shape_textures = {{0, 0, 0, 0}};
+  EXPECT_EQ(check_scene(textured), 4U);
+  const auto refuses = [&](auto&& change) {
+    messages::Scene scene = textured;
+    change(scene);
+    EXPECT_THROW(check_scene(scene), messages::CdrError);
+  };
+  refuses([](messages::Scene& scene) { scene.textures[0].image = {1, 2, 3}; });
+  refuses([](messages::Scene& scene) { scene.textures.resize(65, scene.textures[0]); });
+  refuses([](messages::Scene& scene) { scene.textures.clear(); });
+  refuses([](messages::Scene& scene) { scene.mesh_textures[0].mesh = 1; });
+  refuses([](messages::Scene& scene) { scene.mesh_textures[0].coordinates.pop_back(); });
+  refuses([](messages::Scene& scene) { scene.mesh_textures[0].textures[0] = 1; });
+  refuses([](messages::Scene& scene) { scene.mesh_textures[0].textures.push_back(0); });
+  refuses([](messages::Scene& scene) { scene.shape_textures[0].model = 1; });
+  refuses([](messages::Scene& scene) { scene.shape_textures[0].link = 2; });
+  refuses([](messages::Scene& scene) { scene.shape_textures[0].shape = 1; });
+  refuses([](messages::Scene& scene) { scene.shape_textures[0].texture = 1; });
 }
 
 }  // namespace

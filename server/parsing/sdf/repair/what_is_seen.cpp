@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "server/parsing/sdf/schema/sdf_schema.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
@@ -22,15 +23,34 @@ bool can_be_read(const XmlNode& node, const ElementSchema& schema) {
                              [&](const XmlNode& child) { return can_be_read(child, schema.child(child.name)); });
 }
 
+// Removes everything else. libsdformat requires at most one of each.
+bool has_albedo_map(XmlNode& pbr) {
+  const auto keep_first = [](XmlNode& node, const char* name) {
+    bool is_kept = false;
+    std::erase_if(node.children,
+                  [&](const XmlNode& child) { return child.name != name || std::exchange(is_kept, true); });
+    return is_kept;
+  };
+  pbr.text.clear();
+  XmlNode* const workflow = keep_first(pbr, "metal") ? child_of(pbr, "metal") : nullptr;
+  if (workflow == nullptr || !keep_first(*workflow, "albedo_map")) return false;
+  workflow->text.clear();
+  XmlNode& map = *child_of(*workflow, "albedo_map");
+  map.children.clear();
+  return !map.text.empty();
+}
+
 bool is_shown(XmlNode& visual) {
   const ElementSchema& schema = schema_of_visuals();
   std::erase_if(visual.children, [](const XmlNode& child) {
     return child.name != "pose" && child.name != "geometry" && child.name != "material" && child.name != "transparency";
   });
-  if (XmlNode* const material = child_of(visual, "material"))
-    std::erase_if(material->children, [&](const XmlNode& child) {
+  if (XmlNode* const material = child_of(visual, "material")) {
+    std::erase_if(material->children, [&](XmlNode& child) {
+      if (child.name == "pbr") return !has_albedo_map(child);
       return child.name != "diffuse" || !can_be_read(child, schema.child("material").child("diffuse"));
     });
+  }
   const XmlNode* const geometry = visual.child("geometry");
   return geometry != nullptr && geometry->children.size() == 1 && can_be_read(visual, schema);
 }

@@ -59,11 +59,12 @@ export class FilmMode {
     this.connection.want("/cohort/contacts", look.layers.includes("contacts"));
   }
 
-  /** Waits until the last message of each of these topics has this time. */
+  /** Waits until the last message of each of these topics has this time, and the images of the scene are decoded. */
   async received(awaited: { [T in Topic]?: number }): Promise<void> {
     const times = Object.entries(awaited) as [Topic, number][];
     while (!times.every(([topic, time]) => this.connection.received.get(topic) === BigInt(time)))
       await new Promise((resolve) => setTimeout(resolve, 1));
+    await this.viewer.textures?.ready;
   }
 
   /** Returns the picture as a data URL (PNG). */

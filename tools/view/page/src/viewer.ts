@@ -28,6 +28,7 @@ import { levels } from "./picture/quality";
 import { Outline, pick } from "./picture/selection";
 import { Sound } from "./picture/sound";
 import { Stage } from "./picture/stage";
+import { Textures } from "./picture/textures";
 
 export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sound" | "collisions";
 
@@ -54,6 +55,8 @@ export class Viewer {
   /** Is called when the page itself switches a layer. */
   onLayers: () => void = () => undefined;
 
+  /** The images of the scene. */
+  textures: Textures | undefined;
   private instances: Instances | undefined;
   private glow: Glow | undefined;
   private robots: readonly SceneRobot[] = []; // the selected ones
@@ -99,10 +102,12 @@ export class Viewer {
     const followed = this.cameras.followedEntity !== undefined ? this.cameras.mode : undefined;
     if (this.glow) this.stage.remove(this.glow.group);
     this.poses = new Poses(scene);
+    this.textures?.dispose();
+    this.textures = new Textures(scene);
     this.glow = new Glow(this.poses);
     this.glow.wear(this.stage.theme === "dark");
     this.stage.lay(scene);
-    this.build(this.poses);
+    this.build(this.poses, this.textures);
     this.stage.add(this.glow.group);
     this.trails.clear();
     const known = (names: ReadonlySet<string | undefined>): number[] =>
@@ -353,12 +358,12 @@ export class Viewer {
     this.inspector.showPose(`x ${x}  y ${y}  z ${z} m · ${fixed((180 * heading) / Math.PI, 0)}°`);
   }
 
-  private build(poses: Poses): void {
+  private build(poses: Poses, textures: Textures): void {
     for (const each of [this.instances, this.contactShadows]) {
       if (each) this.stage.remove(each.group);
       each?.dispose();
     }
-    this.instances = new Instances(poses, this.layers.has("collisions") ? "collision" : "visual");
+    this.instances = new Instances(poses, textures, this.layers.has("collisions") ? "collision" : "visual");
     this.bounds = new Bounds(poses, this.instances);
     this.stage.add(this.instances.group);
     this.contactShadows = undefined;
@@ -408,8 +413,8 @@ export class Viewer {
     this.showLegend();
     this.sound.switch(this.layers.has("sound"));
     if (!this.layers.has("trails")) this.trails.clear();
-    if (changed === "collisions" && this.poses && this.instances) {
-      this.build(this.poses);
+    if (changed === "collisions" && this.poses && this.instances && this.textures) {
+      this.build(this.poses, this.textures);
       this.outline.select([...this.selection], this.poses, this.instances);
     }
   }

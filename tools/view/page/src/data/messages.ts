@@ -76,6 +76,20 @@ export interface SceneEmitter {
   direction: Float32Array;
   range: number;
 }
+export interface SceneTexture {
+  image: Uint8Array;
+}
+export interface SceneMeshTexture {
+  mesh: number;
+  coordinates: Float32Array;
+  textures: Uint32Array;
+}
+export interface SceneShapeTexture {
+  model: number;
+  link: number;
+  shape: number;
+  texture: number;
+}
 export interface Scene {
   revision: number;
   world: string;
@@ -86,6 +100,9 @@ export interface Scene {
   lamps: SceneEmitter[];
   tones: SceneEmitter[];
   leds: SceneEmitter[];
+  textures: SceneTexture[];
+  mesh_textures: SceneMeshTexture[];
+  shape_textures: SceneShapeTexture[];
 }
 export interface SceneFrame {
   revision: number;

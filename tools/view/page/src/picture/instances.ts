@@ -16,6 +16,7 @@ import { none, type SceneShape, ShapeRole } from "../data/messages";
 import type { Poses } from "./poses";
 import { linkGeometry } from "./shapes";
 import { dominantColor, teamColors, teamShare } from "./teams";
+import type { Textures } from "./textures";
 
 /** Shader functions that place a vertex by its link. */
 export const placeDeclarations = `
@@ -60,6 +61,28 @@ const surfaces = {
   static: { roughness: 0.9, metalness: 0 },
 };
 
+/** Splits a geometry into one for each texture, whose attributes are those of `whole`. */
+function partsByTexture(
+  whole: InstancedBufferGeometry,
+  textures: readonly number[],
+): { texture: number; part: InstancedBufferGeometry }[] {
+  const corners = new Map<number, number[]>();
+  textures.forEach((texture, triangle) => {
+    const known = corners.get(texture);
+    const first = 3 * triangle;
+    if (known) known.push(first, first + 1, first + 2);
+    else corners.set(texture, [first, first + 1, first + 2]);
+  });
+  if (corners.size < 2) return [{ texture: textures[0] ?? none, part: whole }];
+  return [...corners].map(([texture, index]) => {
+    const part = new InstancedBufferGeometry();
+    for (const [name, attribute] of Object.entries(whole.attributes)) part.setAttribute(name, attribute);
+    part.instanceCount = whole.instanceCount;
+    part.setIndex(index);
+    return { texture, part };
+  });
+}
+
 interface Drawn {
   geometry: InstancedBufferGeometry;
   model: number;
@@ -88,6 +111,7 @@ export class Instances {
 
   constructor(
     private readonly poses: Poses,
+    private readonly textures: Textures,
     role: "visual" | "collision",
   ) {
     const { scene } = poses;
@@ -133,7 +157,10 @@ export class Instances {
 
   dispose(): void {
     for (const { geometry } of this.drawn) geometry.dispose();
-    for (const child of this.group.children as Mesh[]) (child.material as Material).dispose();
+    for (const child of this.group.children as Mesh[]) {
+      child.geometry.dispose();
+      (child.material as Material).dispose();
+    }
   }
 
   private add(model: number, link: number, shapes: SceneShape[], dominant: Float32Array | undefined): void {
@@ -151,8 +178,8 @@ export class Instances {
       parts: shape.userData.parts as Box3[],
     });
     const geometry = new InstancedBufferGeometry();
-    for (const name of ["position", "normal", "color", "teamShare"])
-      geometry.setAttribute(name, shape.getAttribute(name));
+    for (const name of ["position", "normal", "color", "teamShare", "uv"])
+      if (shape.hasAttribute(name)) geometry.setAttribute(name, shape.getAttribute(name));
     geometry.instanceCount = count;
     for (const name of ["linkPosition", "linkPositionBefore"])
       geometry.setAttribute(name, new InstancedBufferAttribute(new Float32Array(3 * count), 3));
@@ -161,20 +188,24 @@ export class Instances {
     geometry.setAttribute("teamColor", this.colorsOf(entities));
     const opacity = shapes[0].color[3];
     const isRobot = scene.entities[entities[0]].robot !== none;
-    const material = new MeshStandardMaterial({
-      vertexColors: true,
-      ...surfaces[isRobot ? "robot" : scene.models[model].is_static ? "static" : "movable"],
-      opacity,
-      transparent: opacity < 1,
-    });
-    placeByLink(material, this.blend);
-    const mesh = new Mesh(geometry, material);
-    mesh.customDepthMaterial = new MeshDepthMaterial({ depthPacking: RGBADepthPacking });
-    placeByLink(mesh.customDepthMaterial, this.blend);
-    mesh.frustumCulled = false;
-    mesh.castShadow = opacity >= 1;
-    mesh.receiveShadow = true;
-    this.group.add(mesh);
+    const surface = surfaces[isRobot ? "robot" : scene.models[model].is_static ? "static" : "movable"];
+    for (const { texture, part } of partsByTexture(geometry, shape.userData.textures as number[])) {
+      const material = new MeshStandardMaterial({
+        vertexColors: true,
+        ...surface,
+        opacity,
+        transparent: opacity < 1,
+      });
+      placeByLink(material, this.blend);
+      this.textures.use(texture, (map) => Object.assign(material, { map, vertexColors: false, needsUpdate: true }));
+      const mesh = new Mesh(part, material);
+      mesh.customDepthMaterial = new MeshDepthMaterial({ depthPacking: RGBADepthPacking });
+      placeByLink(mesh.customDepthMaterial, this.blend);
+      mesh.frustumCulled = false;
+      mesh.castShadow = opacity >= 1;
+      mesh.receiveShadow = true;
+      this.group.add(mesh);
+    }
     this.drawn.push({ geometry, model, link, first: this.poses.firstPlace(model, link), count });
   }
 

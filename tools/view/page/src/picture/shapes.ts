@@ -12,7 +12,8 @@ import {
   Vector3,
 } from "three";
 import { mergeGeometries, toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
-import { type Scene, type SceneMesh, type SceneShape, ShapeKind } from "../data/messages";
+import { none, type Scene, type SceneMesh, type SceneShape, ShapeKind } from "../data/messages";
+import { coordinatesOf, texturesOf } from "./textures";
 
 /** Segments of what is round: fewer where there are many of it. */
 const segmentsOf = (instances: number): number => (instances <= 500 ? 28 : instances <= 3000 ? 16 : 10);
@@ -30,15 +31,15 @@ function plainGeometry(scene: Scene, shape: SceneShape, round: number): BufferGe
   const upright = (geometry: BufferGeometry): BufferGeometry => geometry.rotateX(Math.PI / 2); // three's axis is y
   switch (shape.kind) {
     case ShapeKind.box:
-      return new BoxGeometry(a, b, c);
+      return upright(new BoxGeometry(a, c, b));
     case ShapeKind.sphere:
-      return new SphereGeometry(a, round, round / 2);
+      return upright(new SphereGeometry(a, round, round / 2));
     case ShapeKind.cylinder:
       return upright(new CylinderGeometry(a, a, b, round));
     case ShapeKind.capsule:
       return upright(new CapsuleGeometry(a, b, 8, round));
     case ShapeKind.ellipsoid:
-      return new SphereGeometry(1, round, round / 2).scale(a, b, c);
+      return upright(new SphereGeometry(1, round, round / 2)).scale(a, b, c);
     case ShapeKind.mesh:
       return meshGeometry(scene.meshes[shape.mesh]);
     case ShapeKind.plane:
@@ -54,10 +55,29 @@ export function matrixOf(pose: ArrayLike<number>): Matrix4 {
   );
 }
 
-/** Adds how much of a team's colour each vertex takes. */
-function withTeamShare(geometry: BufferGeometry, share: number): BufferGeometry {
+/** Adds how much of a team's colour each vertex takes: nothing where it has a texture. */
+function withTeamShare(geometry: BufferGeometry, share: number, textures?: Uint32Array): BufferGeometry {
   const shares = new Float32Array(geometry.getAttribute("position").count).fill(share);
+  textures?.forEach((texture, triangle) => {
+    if (texture !== none) shares.fill(0, 3 * triangle, 3 * triangle + 3);
+  });
   return geometry.setAttribute("teamShare", new BufferAttribute(shares, 1));
+}
+
+/** Returns the texture of each triangle, as an index into the textures of the scene, or `none`. */
+function triangleTextures(geometry: BufferGeometry, scene: Scene, shape: SceneShape): Uint32Array {
+  const textures = new Uint32Array(geometry.getAttribute("position").count / 3).fill(none);
+  const of = texturesOf(scene, shape);
+  return of ? textures.map((_, triangle) => of(triangle)) : textures;
+}
+
+/** Meshes have the texture coordinates of their file; three.js gives some to the other shapes. */
+function withCoordinates(geometry: BufferGeometry, scene: Scene, shape: SceneShape): BufferGeometry {
+  if (shape.kind !== ShapeKind.mesh) return geometry;
+  const count = geometry.getAttribute("position").count;
+  const known = coordinatesOf(scene, shape.mesh);
+  const coordinates = known?.length === 2 * count ? known : new Float32Array(2 * count);
+  return geometry.setAttribute("uv", new BufferAttribute(coordinates, 2));
 }
 
 /** `geometry` has three vertices for each triangle, in their order. */
@@ -75,7 +95,8 @@ function coloured(geometry: BufferGeometry, scene: Scene, shape: SceneShape): Bu
 
 /**
  * Returns the shapes of one link as one piece with colours, in the link's frame; nothing if there are none. `shareOf`
- * gives how much of a team's colour a shape takes.
+ * gives how much of a team's colour a shape takes. `userData.textures` has the texture of each triangle, or is empty if
+ * there are none.
  */
 export function linkGeometry(
   scene: Scene,
@@ -83,16 +104,22 @@ export function linkGeometry(
   instances: number,
   shareOf: (shape: SceneShape) => number = () => 0,
 ): BufferGeometry | undefined {
-  const parts = shapes
-    .filter(({ kind }) => kind !== ShapeKind.plane)
-    .map((shape) => {
-      const geometry = plainGeometry(scene, shape, segmentsOf(instances));
-      const plain = geometry.index ? geometry.toNonIndexed() : geometry;
-      plain.deleteAttribute("uv");
-      return withTeamShare(coloured(plain.applyMatrix4(matrixOf(shape.pose)), scene, shape), shareOf(shape));
-    });
-  if (parts.length === 0) return undefined;
+  const bodies = shapes.filter(({ kind }) => kind !== ShapeKind.plane);
+  if (bodies.length === 0) return undefined;
+  const hasTextures = bodies.some((shape) => texturesOf(scene, shape));
+  const textures: number[] = [];
+  const parts = bodies.map((shape) => {
+    const geometry = plainGeometry(scene, shape, segmentsOf(instances));
+    const plain = geometry.index ? geometry.toNonIndexed() : geometry;
+    if (hasTextures) withCoordinates(plain, scene, shape);
+    else plain.deleteAttribute("uv");
+    const ofTriangles = hasTextures ? triangleTextures(plain, scene, shape) : undefined;
+    for (const texture of ofTriangles ?? []) textures.push(texture);
+    const placed = coloured(plain.applyMatrix4(matrixOf(shape.pose)), scene, shape);
+    return withTeamShare(placed, shareOf(shape), ofTriangles);
+  });
   const merged = mergeGeometries(parts);
+  merged.userData.textures = textures;
   merged.userData.parts = parts.map((part) =>
     new Box3().setFromBufferAttribute(part.getAttribute("position") as BufferAttribute),
   );

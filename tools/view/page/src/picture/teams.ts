@@ -1,5 +1,6 @@
 import { Color, SRGBColorSpace } from "three";
 import { none, type Scene, type SceneModel, type SceneShape, ShapeKind, ShapeRole } from "../data/messages";
+import { hasTexture } from "./textures";
 
 /** The colours of Okabe and Ito, which colour-blind people can tell apart; those that differ most come first. */
 const palette = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442"];
@@ -50,7 +51,7 @@ export function dominantColor(scene: Scene, model: SceneModel): ShapeColor | und
   for (const { shapes } of model.links)
     for (const shape of shapes) {
       if (shape.role === ShapeRole.collision || shape.kind === ShapeKind.plane) continue;
-      if (shape.color[3] < 1 || shape.has_mesh_colors) continue;
+      if (shape.color[3] < 1 || shape.has_mesh_colors || hasTexture(scene, shape)) continue;
       const { s, l } = colorOf(shape.color).getHSL({ h: 0, s: 0, l: 0 }, SRGBColorSpace);
       const weight = areaOf(scene, shape) * (0.05 + s * (1 - Math.abs(2 * l - 1)));
       const known = found.find(({ color }) => isSame(color, shape.color));

@@ -192,7 +192,8 @@ async function tellsOfMany(page) {
     const row = [...document.querySelectorAll("#group tr")].find((each) =>
       each.textContent.startsWith("treel/left/velocity"),
     );
-    return row ? [...row.cells].slice(1).map((cell) => Number(cell.textContent)) : undefined;
+    const cells = row && [...row.cells].slice(1);
+    return cells?.map((cell) => ({ shown: Number(cell.textContent), exact: Number(cell.title) }));
   });
   const values = await page.evaluate(() => {
     const { viewer } = window.cohort;
@@ -211,7 +212,45 @@ async function tellsOfMany(page) {
   const mean = sum / 16;
   const spread = Math.sqrt(values.reduce((total, each) => total + (each - mean) ** 2, 0) / 16);
   for (const [i, wanted] of [mean, spread, sum].entries())
-    assert.ok(Math.abs(cells[i] - wanted) <= 1e-3 * Math.abs(wanted) + 1e-9, `${cells[i]} for ${wanted}`);
+    for (const [kind, share] of [
+      ["shown", 5e-3],
+      ["exact", 1e-6],
+    ])
+      assert.ok(
+        Math.abs(cells[i][kind] - wanted) <= share * Math.abs(wanted) + 1e-9,
+        `${cells[i][kind]} for ${wanted}`,
+      );
+  const overflow = await page.evaluate(() => {
+    const { scrollWidth, clientWidth } = document.getElementById("about");
+    return scrollWidth - clientWidth;
+  });
+  assert.equal(overflow, 0, "the table is wider than its panel");
+
+  // The legend of many lines names the first ones, and all of them in its tooltip.
+  await run(page, "plot treel/left/velocity; plot treel/right/velocity");
+  const legend = await until(page, () => {
+    const more = document.querySelector(".plot-more");
+    return more
+      ? { entries: more.parentElement.children.length, title: more.title, text: more.textContent }
+      : undefined;
+  });
+  assert.equal(legend.entries, 9);
+  assert.equal(legend.title.split("\n").length, 24);
+  assert.match(legend.text, /^and 16 more: sbot_8 /);
+}
+
+// Values fill the inspector down to its lower edge when the dock is closed.
+async function usesTheHeight(page) {
+  await onDesktop(page);
+  await run(page, "pause; select sbot_3");
+  const dock = page.locator('[data-panel="dock"]');
+  if ((await dock.getAttribute("aria-pressed")) === "true") await dock.click();
+  const below = await until(page, () => {
+    if (document.querySelectorAll("#values tr").length === 0) return undefined;
+    const bottom = (id) => document.getElementById(id).getBoundingClientRect().bottom;
+    return { gap: bottom("right") - bottom("values") };
+  });
+  assert.ok(below.gap >= 0 && below.gap < 20, `${below.gap} pixels are free below the values`);
 }
 
 // No finding of axe in any state, in both themes.
@@ -277,6 +316,7 @@ await runScenario({
   works_on_a_phone: worksOnAPhone,
   shows_the_world_as_a_tree: showsTheWorldAsATree,
   tells_of_many: tellsOfMany,
+  uses_the_height: usesTheHeight,
   is_accessible: isAccessible,
   runs_again: runsAgain,
 });

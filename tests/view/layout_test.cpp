@@ -28,6 +28,8 @@ TEST_F(Layout, TheTreeSelectsIsolatesAndHides) { check("shows_the_world_as_a_tre
 
 TEST_F(Layout, StatisticsOfSelectedRobotsAreTheirs) { check("tells_of_many"); }
 
+TEST_F(Layout, ValuesOfARobotUseTheHeightOfThePanel) { check("uses_the_height"); }
+
 TEST_F(Layout, AxeFindsNothingInAnyState) { check("is_accessible"); }
 
 TEST_F(Layout, ARunIsRepeatedFromThePage) {

@@ -25,6 +25,7 @@ import { type LegendEntry, legendOf, showLegend } from "./picture/legend";
 import { Contacts, Rays, Trails } from "./picture/overlays";
 import { Poses } from "./picture/poses";
 import { levels } from "./picture/quality";
+import { withRoleColors } from "./picture/role_colors";
 import { Outline, pick } from "./picture/selection";
 import { Sound } from "./picture/sound";
 import { Stage } from "./picture/stage";
@@ -95,7 +96,8 @@ export class Viewer {
 
   // Data from the server.
 
-  show(scene: Scene): void {
+  show(sent: Scene): void {
+    const scene = withRoleColors(sent);
     const nameOf = (entity: number): string | undefined => this.poses?.scene.entities[entity].name;
     const [selected, hidden] = [this.selection, this.hidden].map((set) => new Set([...set].map(nameOf)));
     const followedName = this.selectedEntity?.name;

@@ -24,10 +24,12 @@ export function statisticsOf(values: readonly number[]): Statistics | undefined 
   return { count: values.length, mean, spread: Math.sqrt(variance), sum };
 }
 
-/** Returns a number of four digits, never "-0". */
+/** Returns a number of three digits, never "-0". */
 export function shortNumber(value: number): string {
   if (!Number.isFinite(value)) return String(value);
-  const text = Math.abs(value) >= 1e6 ? value.toExponential(3) : String(Number(value.toPrecision(4)));
+  const size = Math.abs(value);
+  const isLong = size >= 1e6 || (size > 0 && size < 1e-3);
+  const text = isLong ? value.toExponential(2).replace("e+", "e") : String(Number(value.toPrecision(3)));
   return text === "-0" ? "0" : text;
 }
 
@@ -114,7 +116,12 @@ export class GroupPanel {
       const found = statisticsOf(all);
       if (!found) return [];
       const { mean, spread, sum } = found;
-      return [rowOf("td", [withUnit(name, unit), ...[mean, spread, sum].map(shortNumber)])];
+      const numbers = [mean, spread, sum];
+      const row = rowOf("td", [withUnit(name, unit), ...numbers.map(shortNumber)]);
+      numbers.forEach((number, i) => {
+        row.cells[i + 1].title = String(number);
+      });
+      return [row];
     });
     this.table.replaceChildren(head, ...rows);
     const missing = this.modelOf.size - robots.length;

@@ -9,6 +9,9 @@ const dashes = [[], [6, 3], [2, 3]];
 const clickSlack = 4; // [pixels] that a mouse may move in a click
 const doubleClick = 250; // [ms] to wait whether a click becomes one
 const retainNulls = 1; // mode of uPlot.join
+const mostEntries = 8; // in a legend
+const mostEntriesIfNarrow = 4;
+const narrow = 700; // [pixels]
 
 export interface Line {
   key: string;
@@ -56,6 +59,7 @@ export class PlotChart {
   private readonly adder = make("select", { className: "plot-add" });
   private readonly place = make("div", { className: "plot-place" });
   private readonly now = make("div", { className: "plot-now" });
+  private readonly head = make("header", {}, this.legend, this.adder);
   private readonly outputs: HTMLOutputElement[] = [];
   private lines: Line[] = [];
   private plot: uPlot | undefined;
@@ -69,11 +73,11 @@ export class PlotChart {
       if (this.adder.value) actions.add(this.adder.value);
       this.adder.value = "";
     });
-    this.root.append(make("header", {}, this.legend, this.adder), this.place);
+    this.root.append(this.head, this.place);
   }
 
-  /** Shows these lines. `addable` are the names of further values. */
-  show(lines: Line[], addable: readonly string[]): void {
+  /** Shows these lines, and returns whether they are others than before. `addable` are the names of further values. */
+  show(lines: Line[], addable: readonly string[]): boolean {
     const isSame = lines.length === this.lines.length && lines.every(({ key }, i) => key === this.lines[i].key);
     this.lines = lines;
     this.adder.hidden = addable.length === 0;
@@ -84,11 +88,19 @@ export class PlotChart {
       this.build();
     } else this.plot.setData(this.data(), false);
     this.setRange(this.range);
+    return !isSame;
+  }
+
+  /** Height of what is above the diagram [pixels]. */
+  get headHeight(): number {
+    return this.head.offsetHeight;
   }
 
   resize(width: number, height: number): void {
     const isSame = width === this.size.width && height === this.size.height;
+    const wasNarrow = this.size.width < narrow;
     this.size = { width, height };
+    if (wasNarrow !== width < narrow) this.buildLegend();
     if (this.plot && !isSame) this.plot.setSize(this.size);
   }
 
@@ -106,10 +118,11 @@ export class PlotChart {
 
   /** Shows the values of a time in the legend. */
   read(time: number): void {
-    this.lines.forEach(({ curve, unit }, i) => {
+    this.outputs.forEach((output, i) => {
+      const { curve, unit } = this.lines[i];
       const value = valueAt(curve, time);
       const text = numberText(value) + (value === undefined ? "" : unitAfter(unit));
-      if (this.outputs[i].textContent !== text) this.outputs[i].textContent = text;
+      if (output.textContent !== text) output.textContent = text;
     });
   }
 
@@ -139,10 +152,13 @@ export class PlotChart {
     );
   }
 
+  // Names the first lines, and says how many more there are.
   private buildLegend(): void {
     this.outputs.length = 0;
+    const most = this.size.width < narrow ? mostEntriesIfNarrow : mostEntries;
+    const unnamed = this.lines.slice(most).map(({ label }) => label);
     this.legend.replaceChildren(
-      ...this.lines.map((line, i) => {
+      ...this.lines.slice(0, most).map((line, i) => {
         const swatch = make("i", {});
         swatch.style.background = colorOf(i);
         const output = make("output", {});
@@ -153,6 +169,10 @@ export class PlotChart {
         return make("li", {}, swatch, make("span", { textContent: line.label, title: line.label }), output, remove);
       }),
     );
+    if (unnamed.length === 0) return;
+    const names = make("span", { className: "unseen", textContent: `: ${unnamed.join(", ")}` });
+    const title = this.lines.map(({ label }) => label).join("\n");
+    this.legend.append(make("li", { className: "plot-more", title }, `and ${unnamed.length} more`, names));
   }
 
   private build(): void {

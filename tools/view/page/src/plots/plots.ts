@@ -14,7 +14,6 @@ const mostCharts = 12;
 const mostLines = 24; // in a chart
 const mostAddable = 400; // names
 const leastHeight = 110; // each chart's [pixels]
-const headHeight = 24;
 const drawInterval = 100; // [ms]; nobody reads faster, and without a graphics processor a plot takes longer than the scene
 const detailDelay = 200; // [ms] without zooming before the detail is asked for
 
@@ -332,12 +331,14 @@ export class Plots {
     const range = this.range();
     const plotted = new Set(this.charts.flatMap(({ names }) => names));
     const addable = known.filter((name) => !plotted.has(name)).slice(0, mostAddable);
+    let isOther = false;
     for (const { chart, lines } of this.charts) {
       chart.setRange(range);
-      chart.show(lines, addable);
+      isOther = chart.show(lines, addable) || isOther;
       chart.setNow(this.now);
     }
     this.read();
+    if (isOther) this.resize();
   }
 
   // Values of the time under the mouse, or else of the present one.
@@ -362,7 +363,8 @@ export class Plots {
     list.hidden = false;
     const width = Math.floor(list.clientWidth);
     if (width === 0) return;
-    const height = Math.max(leastHeight, Math.floor(free / charts.length) - headHeight - 2);
+    const heads = charts.reduce((sum, { chart }) => sum + chart.headHeight, 0);
+    const height = Math.max(leastHeight, Math.floor((free - heads) / charts.length) - 2);
     for (const { chart } of charts) chart.resize(width, height);
   }
 }

@@ -259,7 +259,7 @@ async function steersRecording(page) {
   const distance = await page.evaluate(() => {
     const { viewer } = window.cohort;
     viewer.draw(performance.now());
-    const [x, y] = viewer.poseOf(viewer.selected).position;
+    const [x, y] = viewer.poseOf(viewer.chosen.selected).position;
     return Math.hypot(viewer.cameras.target.x - x, viewer.cameras.target.y - y);
   });
   assert.ok(distance < 0.02, `the camera looks ${distance} m beside what it follows`);

@@ -396,7 +396,8 @@ async function handlesObjects(page) {
   assert.equal(await page.locator("#light").isVisible(), false);
   assert.equal(await page.locator("#drive").isVisible(), false);
   // A removal hides the object at once, and the server removes it later, unless the user undoes it.
-  const isHidden = () => page.evaluate(() => window.cohort.viewer.hidden.has(window.cohort.viewer.find("bar_1")));
+  const isHidden = () =>
+    page.evaluate(() => window.cohort.viewer.chosen.hidden.has(window.cohort.viewer.find("bar_1")));
   const isGone = () =>
     page.evaluate(() => window.cohort.viewer.poses.frame.absent.includes(window.cohort.viewer.find("bar_1")));
   await page.locator("#remove").click();

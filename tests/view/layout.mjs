@@ -127,7 +127,7 @@ const rows = (page) =>
 const selected = (page) =>
   page.evaluate(() => {
     const { viewer } = window.cohort;
-    return [...viewer.selection].map((entity) => viewer.poses.scene.entities[entity].name);
+    return [...viewer.chosen.selection].map((entity) => viewer.poses.scene.entities[entity].name);
   });
 
 async function showsTheWorldAsATree(page) {
@@ -160,7 +160,7 @@ async function showsTheWorldAsATree(page) {
   const beside = await page.evaluate(() => {
     const { viewer } = window.cohort;
     viewer.draw(performance.now() + 1000);
-    const places = [...viewer.selection].map((entity) => viewer.poseOf(entity).position);
+    const places = [...viewer.chosen.selection].map((entity) => viewer.poseOf(entity).position);
     const mean = [0, 1].map((axis) => places.reduce((sum, place) => sum + place[axis], 0) / places.length);
     return Math.hypot(viewer.cameras.target.x - mean[0], viewer.cameras.target.y - mean[1]);
   });
@@ -198,7 +198,7 @@ async function tellsOfMany(page) {
   const values = await page.evaluate(() => {
     const { viewer } = window.cohort;
     return viewer.robots.map((robot) => {
-      const { observation } = viewer.poses.scene.models[viewer.selectedEntity.model];
+      const { observation } = viewer.poses.scene.models[viewer.chosen.selectedEntity.model];
       let at = 0;
       for (const { name, size } of observation) {
         if (name === "treel/left/velocity") break;

@@ -88,7 +88,7 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
 function cameraCommands({ viewer, plots, panels }: Parts): Command[] {
   const names = (): string[] => viewer.poses?.scene.entities.map(({ name }) => name) ?? [];
   const entityOf = (name: string | undefined): number => {
-    const found = name === undefined ? viewer.selected : viewer.find(name);
+    const found = name === undefined ? viewer.chosen.selected : viewer.find(name);
     if (found === undefined) throw new Error(name === undefined ? "select something first" : `there is no '${name}'`);
     return found;
   };
@@ -99,8 +99,8 @@ function cameraCommands({ viewer, plots, panels }: Parts): Command[] {
       help,
       ([name]) => {
         const entity = entityOf(name);
-        if (name !== undefined || mode === "eye") viewer.select(entity);
-        viewer.cameras.choose(mode, entity, mode === "follow" ? [...viewer.selection] : []);
+        if (name !== undefined || mode === "eye") viewer.chosen.select(entity);
+        viewer.cameras.choose(mode, entity, mode === "follow" ? [...viewer.chosen.selection] : []);
       },
       names,
     );
@@ -115,12 +115,12 @@ function cameraCommands({ viewer, plots, panels }: Parts): Command[] {
       "select NAME",
       "selects an object or robot by its name or id",
       ([name]) => {
-        viewer.select(entityOf(name));
-        return viewer.selectedEntity?.name ?? "";
+        viewer.chosen.select(entityOf(name));
+        return viewer.chosen.selectedEntity?.name ?? "";
       },
       names,
     ),
-    command("deselect", "clears the selection", () => viewer.select(undefined)),
+    command("deselect", "clears the selection", () => viewer.chosen.select(undefined)),
     command(
       "viewpoint [save NAME | NAME]",
       "saves or recalls a viewpoint; without arguments lists them",

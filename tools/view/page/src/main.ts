@@ -99,7 +99,7 @@ const connection: Connection = connect(
     phaseCard.connect(isConnected);
     topBar.connect(isConnected);
     plots.forget();
-    if (isConnected && viewer.selection.size > 0) viewer.selectMany([...viewer.selection]);
+    if (isConnected && viewer.chosen.selection.size > 0) viewer.chosen.selectMany([...viewer.chosen.selection]);
   },
 );
 for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const)
@@ -188,10 +188,10 @@ canvas.addEventListener("pointermove", ({ clientX: x, clientY: y }) => objects.h
 // With Ctrl an entity is added to the selection, or taken out of it.
 function pick(x: number, y: number, isAdded: boolean): void {
   const entity = viewer.pickAt(x, y);
-  if (!isAdded) viewer.select(entity);
+  if (!isAdded) viewer.chosen.select(entity);
   if (!isAdded || entity === undefined) return;
-  const others = [...viewer.selection].filter((each) => each !== entity);
-  viewer.selectMany(viewer.selection.has(entity) ? others : [...others, entity]);
+  const others = [...viewer.chosen.selection].filter((each) => each !== entity);
+  viewer.chosen.selectMany(viewer.chosen.selection.has(entity) ? others : [...others, entity]);
 }
 canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button, ctrlKey, metaKey }) => {
   if (objects.isDragging) {
@@ -207,7 +207,7 @@ canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button, ctrlKey,
 canvas.addEventListener("dblclick", ({ clientX: x, clientY: y }) => {
   const entity = viewer.pickAt(x, y);
   if (entity === undefined) return;
-  viewer.select(entity);
+  viewer.chosen.select(entity);
   viewer.cameras.choose("follow", entity);
   showPressed(viewer);
 });

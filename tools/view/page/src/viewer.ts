@@ -1,9 +1,9 @@
 import { Plane, Quaternion, Raycaster, Sphere, Vector2, Vector3 } from "three";
+import { Chosen } from "./chosen";
 import {
   none,
   type Scene,
   type SceneContacts,
-  type SceneEntity,
   type SceneFrame,
   type SceneRobot,
   type SceneSignals,
@@ -45,10 +45,10 @@ export class Viewer {
   readonly sound = new Sound();
   readonly inspector: Inspector;
   poses: Poses | undefined;
-  /** Selected entities, in the order of their selection. */
-  selection: ReadonlySet<number> = new Set();
-  /** Entities that the user has hidden. */
-  hidden: ReadonlySet<number> = new Set();
+  readonly chosen = new Chosen(
+    () => this.showSelection(),
+    () => this.hideEntities(),
+  );
   signals: SceneSignals | undefined;
   framesDrawn = 0;
   /** Finds in each picture where everything is, however long that takes, such as for a film. */
@@ -84,7 +84,7 @@ export class Viewer {
   ) {
     this.stage = new Stage(canvas);
     this.cameras = new Cameras(this.stage.camera, canvas);
-    this.inspector = new Inspector(() => this.select(undefined));
+    this.inspector = new Inspector(() => this.chosen.select(undefined));
     this.stage.add(this.outline.group, this.contacts.group, this.rays.group, this.trails.group);
     this.contacts.group.visible = false;
     this.gizmo = new Gizmo(canvas);
@@ -98,9 +98,6 @@ export class Viewer {
 
   show(sent: Scene): void {
     const scene = withRoleColors(sent);
-    const nameOf = (entity: number): string | undefined => this.poses?.scene.entities[entity].name;
-    const [selected, hidden] = [this.selection, this.hidden].map((set) => new Set([...set].map(nameOf)));
-    const followedName = this.selectedEntity?.name;
     const followed = this.cameras.followedEntity !== undefined ? this.cameras.mode : undefined;
     if (this.glow) this.stage.remove(this.glow.group);
     this.poses = new Poses(scene);
@@ -112,11 +109,7 @@ export class Viewer {
     this.build(this.poses, this.textures);
     this.stage.add(this.glow.group);
     this.trails.clear();
-    const known = (names: ReadonlySet<string | undefined>): number[] =>
-      scene.entities.flatMap(({ name }, entity) => (names.has(name) ? [entity] : []));
-    this.hide(known(hidden));
-    const again = scene.entities.findIndex(({ name }) => name === followedName);
-    this.selectMany([...known(selected).filter((each) => each !== again), ...(again >= 0 ? [again] : [])]);
+    const again = this.chosen.moveTo(scene);
     if (followed) this.cameras.choose(again >= 0 ? followed : "orbit", again);
     if (scene.world !== this.world) this.switchShadows();
     this.apply();
@@ -135,7 +128,7 @@ export class Viewer {
       this.home();
     }
     if (this.layers.has("trails"))
-      this.trails.add(this.poses, this.selection.size === 0 ? this.robotEntities() : [...this.selection]);
+      this.trails.add(this.poses, this.chosen.selection.size === 0 ? this.robotEntities() : [...this.chosen.selection]);
   }
 
   takeSignals(signals: SceneSignals): void {
@@ -149,7 +142,7 @@ export class Viewer {
   }
 
   takeRobots(robots: readonly SceneRobot[]): void {
-    const ids = this.selectedRobots();
+    const ids = this.chosen.robots();
     this.robots = robots.filter(({ robot }) => ids.has(robot));
     if (this.robot) this.inspector.take(this.robot);
     this.group.take(this.robots);
@@ -157,67 +150,30 @@ export class Viewer {
 
   // User input.
 
-  select(entity: number | undefined): void {
-    this.selectMany(entity === undefined ? [] : [entity]);
-  }
-
-  selectMany(entities: readonly number[]): void {
-    this.selection = new Set(entities);
+  private showSelection(): void {
+    const entities = [...this.chosen.selection];
     this.robots = [];
     this.outline.select(entities, this.poses, this.instances);
-    const isOne = this.selection.size === 1;
-    const chosen = isOne ? this.selectedEntity : undefined;
-    this.inspector.select(chosen, chosen && this.poses?.scene.models[chosen.model]);
+    const isOne = entities.length === 1;
+    const only = isOne ? this.chosen.selectedEntity : undefined;
+    this.inspector.select(only, only && this.poses?.scene.models[only.model]);
     this.group.select(isOne ? [] : entities, this.poses);
     this.showLegend();
-    this.onSelect([...this.selectedRobots()]);
+    this.onSelect([...this.chosen.robots()]);
   }
-
-  /** The entity that was selected last. */
-  get selected(): number | undefined {
-    return [...this.selection].at(-1);
-  }
-  get selectedEntity(): SceneEntity | undefined {
-    return this.selected === undefined ? undefined : this.poses?.scene.entities[this.selected];
-  }
-  private selectedRobots(): Set<number> {
-    const robots = [...this.selection].map((entity) => this.poses?.scene.entities[entity].robot ?? none);
-    return new Set(robots.filter((robot) => robot !== none));
+  private hideEntities(): void {
+    this.poses?.hide(this.chosen.hidden);
+    this.instances?.update();
   }
   // The state of the robot that was selected last.
   private get robot(): SceneRobot | undefined {
-    const id = this.selectedEntity?.robot ?? none;
+    const id = this.chosen.selectedEntity?.robot ?? none;
     return id === none ? undefined : this.robots.find(({ robot }) => robot === id);
   }
 
   follow(): void {
-    if (this.selected !== undefined) this.cameras.choose("follow", this.selected, [...this.selection]);
-  }
-
-  /** Hides all that can move but the selection. */
-  isolate(): void {
-    const { models, entities } = this.poses?.scene ?? { models: [], entities: [] };
-    const isOther = (entity: number): boolean =>
-      !models[entities[entity].model].is_static && !this.selection.has(entity);
-    this.hide(entities.flatMap((_, entity) => (isOther(entity) ? [entity] : [])));
-    this.selectMany([...this.selection]);
-  }
-  hideSelection(): void {
-    this.hide([...this.hidden, ...this.selection]);
-    this.selectMany([]);
-  }
-  unhide(entity: number): void {
-    this.hide([...this.hidden].filter((each) => each !== entity));
-    this.selectMany([...this.selection]);
-  }
-  showAll(): void {
-    this.hide([]);
-    this.selectMany([...this.selection]);
-  }
-  private hide(entities: readonly number[]): void {
-    this.hidden = new Set(entities);
-    this.poses?.hide(this.hidden);
-    this.instances?.update();
+    if (this.chosen.selected !== undefined)
+      this.cameras.choose("follow", this.chosen.selected, [...this.chosen.selection]);
   }
 
   pickAt(x: number, y: number): number | undefined {
@@ -254,7 +210,8 @@ export class Viewer {
   /** Returns the colours of the picture and their meanings. */
   legend(): LegendEntry[] {
     if (!this.poses) return [];
-    const rays = this.layers.has("rays") && this.selectedEntity !== undefined && this.selectedEntity.robot !== none;
+    const rays =
+      this.layers.has("rays") && this.chosen.selectedEntity !== undefined && this.chosen.selectedEntity.robot !== none;
     return legendOf(this.poses.scene, { rays, contacts: this.layers.has("contacts") });
   }
 
@@ -275,7 +232,7 @@ export class Viewer {
       counts.set(kind, (counts.get(kind) ?? 0) + 1);
     });
     const what = [...counts].map(([kind, count]) => `${count} ${kind}`).join(", ") || "nothing that can move";
-    const chosen = [...this.selection].slice(0, mostTold).map((entity) => {
+    const chosen = [...this.chosen.selection].slice(0, mostTold).map((entity) => {
       const { position, heading } = this.poseOf(entity);
       const [x, y] = position.map((each) => fixed(each, 2));
       return `${scene.entities[entity].name} at x ${x} m, y ${y} m, heading ${fixed((180 * heading) / Math.PI, 0)} degrees`;
@@ -334,14 +291,14 @@ export class Viewer {
     this.cameras.advance(poses, elapsed);
     stage.draw(this.cameras.target);
     this.gizmo.draw(stage.camera, this.cameras.target);
-    const named = this.layers.has("labels") ? this.robotEntities() : [...this.selection];
+    const named = this.layers.has("labels") ? this.robotEntities() : [...this.chosen.selection];
     this.labels.draw(
       poses?.frame ? poses : undefined,
       named,
       stage.camera,
       this.canvas.clientWidth,
       this.canvas.clientHeight,
-      this.selected,
+      this.chosen.selected,
     );
     ++this.framesDrawn;
   }
@@ -353,9 +310,9 @@ export class Viewer {
   }
 
   private showPose(): void {
-    if (this.selection.size > 1) this.group.showPoses(this.poses);
-    if (this.selection.size !== 1 || this.selected === undefined) return;
-    const { position, heading } = this.poseOf(this.selected);
+    if (this.chosen.selection.size > 1) this.group.showPoses(this.poses);
+    if (this.chosen.selection.size !== 1 || this.chosen.selected === undefined) return;
+    const { position, heading } = this.poseOf(this.chosen.selected);
     const [x, y, z] = position.map((each) => fixed(each, 3));
     this.inspector.showPose(`x ${x}  y ${y}  z ${z} m · ${fixed((180 * heading) / Math.PI, 0)}°`);
   }
@@ -417,7 +374,7 @@ export class Viewer {
     if (!this.layers.has("trails")) this.trails.clear();
     if (changed === "collisions" && this.poses && this.instances && this.textures) {
       this.build(this.poses, this.textures);
-      this.outline.select([...this.selection], this.poses, this.instances);
+      this.outline.select([...this.chosen.selection], this.poses, this.instances);
     }
   }
 }

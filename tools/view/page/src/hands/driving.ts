@@ -62,7 +62,7 @@ export class Driving {
   /** Throws Error with what the server says if it does not give the robot. */
   async drive(name?: string): Promise<string> {
     const scene = this.viewer.poses?.scene;
-    const entity = name === undefined ? this.viewer.selected : this.viewer.find(name);
+    const entity = name === undefined ? this.viewer.chosen.selected : this.viewer.find(name);
     const robot = entity === undefined ? undefined : scene?.entities[entity];
     if (!scene || !robot || robot.robot === none)
       throw new Error(name === undefined ? "select a robot first" : `there is no robot '${name}'`);
@@ -77,7 +77,7 @@ export class Driving {
       const { command } = scene.models[robot.model];
       this.driven = { name: robot.name, channels: command, base: neutralOf(command) };
       this.sentAt = -Infinity;
-      this.viewer.select(this.viewer.find(robot.name));
+      this.viewer.chosen.select(this.viewer.find(robot.name));
     }
     this.show();
     if (!answer.done) throw new Error(answer.text);
@@ -120,7 +120,7 @@ export class Driving {
   }
 
   private selectedRobot(): string | undefined {
-    const entity = this.viewer.selectedEntity;
+    const entity = this.viewer.chosen.selectedEntity;
     return entity && entity.robot !== none ? entity.name : undefined;
   }
 

@@ -41,7 +41,7 @@ export class Objects {
     element("adding-close").addEventListener("click", () => this.close());
     element("remove").addEventListener("click", () => {
       canvas.focus();
-      this.removal.begin(viewer.selectedEntity?.name);
+      this.removal.begin(viewer.chosen.selectedEntity?.name);
     });
     element("light").addEventListener("click", () => void this.switchLight());
     canvas.addEventListener("pointerleave", () => this.ghost.hide());
@@ -141,7 +141,7 @@ export class Objects {
     if (names.length === 0) throw new Error("this world has no models of objects to add");
     if (model !== "" && !names.includes(model))
       throw new Error(`there is no model '${model}' to add: expected one of ${names.join(", ")}`);
-    this.viewer.select(undefined);
+    this.viewer.chosen.select(undefined);
     this.card.hidden = false;
     this.panels.show("right");
     this.offer(model);
@@ -196,7 +196,7 @@ export class Objects {
   // The selection.
 
   private async switchLight(): Promise<void> {
-    const { selectedEntity } = this.viewer;
+    const { selectedEntity } = this.viewer.chosen;
     this.canvas.focus();
     if (!selectedEntity) return;
     const isOn = this.lampsOfSelected().some((lamp) => this.shines(lamp));
@@ -204,7 +204,8 @@ export class Objects {
   }
 
   private lampsOfSelected(): number[] {
-    const { selected, poses } = this.viewer;
+    const { poses } = this.viewer;
+    const { selected } = this.viewer.chosen;
     return poses?.scene.lamps.flatMap(({ entity }, lamp) => (entity === selected ? [lamp] : [])) ?? [];
   }
   private shines(lamp: number): boolean {

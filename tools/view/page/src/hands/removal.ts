@@ -20,20 +20,20 @@ export class Removal {
     element("undo-text").textContent = `${name} will be removed.`;
     element("undo").hidden = false;
     this.pending = { name, timer: setTimeout(() => void this.finish(), graceTime) };
-    this.viewer.hideSelection();
+    this.viewer.chosen.hideSelection();
   }
 
   private undo(): void {
     const found = this.end();
     if (found === undefined) return;
-    this.viewer.unhide(found);
-    this.viewer.select(found);
+    this.viewer.chosen.unhide(found);
+    this.viewer.chosen.select(found);
   }
 
   private async finish(): Promise<void> {
     const { name } = this.pending ?? {};
     const found = this.end();
-    if (name !== undefined && !(await this.remove(name)) && found !== undefined) this.viewer.unhide(found);
+    if (name !== undefined && !(await this.remove(name)) && found !== undefined) this.viewer.chosen.unhide(found);
   }
 
   // Returns the entity that was to be removed, if it is still there.

@@ -36,9 +36,9 @@ export class Tree {
       if (event.key === "Enter" && this.rows.length > 1) this.choose(1);
       if (event.key === "ArrowDown") this.box.focus();
     });
-    element("isolate").addEventListener("click", () => this.viewer.isolate());
-    element("hide").addEventListener("click", () => this.viewer.hideSelection());
-    element("show-all").addEventListener("click", () => this.viewer.showAll());
+    element("isolate").addEventListener("click", () => this.viewer.chosen.isolate());
+    element("hide").addEventListener("click", () => this.viewer.chosen.hideSelection());
+    element("show-all").addEventListener("click", () => this.viewer.chosen.showAll());
   }
 
   /** The scene, the selection, or what is hidden has changed. */
@@ -55,9 +55,9 @@ export class Tree {
       this.rows.findIndex((row) => row.key === key),
     );
     this.list.style.height = `${rowHeight * this.rows.length}px`;
-    const isAny = this.viewer.selection.size > 0;
+    const isAny = this.viewer.chosen.selection.size > 0;
     for (const id of ["isolate", "hide"]) (element(id) as HTMLButtonElement).disabled = !isAny;
-    (element("show-all") as HTMLButtonElement).disabled = this.viewer.hidden.size === 0;
+    (element("show-all") as HTMLButtonElement).disabled = this.viewer.chosen.hidden.size === 0;
     this.draw();
   }
 
@@ -71,7 +71,8 @@ export class Tree {
   }
 
   private element(row: Row, index: number): HTMLElement {
-    const { selection, hidden, poses } = this.viewer;
+    const { poses } = this.viewer;
+    const { selection, hidden } = this.viewer.chosen;
     const item = document.createElement("div");
     const isGone = row.entities.every((each) => hidden.has(each) || poses?.frame?.absent.includes(each));
     item.id = `row-${index}`;
@@ -123,10 +124,10 @@ export class Tree {
       : [this.rows[index]];
     if (!shiftKey) this.anchor = index;
     const chosen = range.flatMap(({ entities }) => entities);
-    if (!ctrlKey && !metaKey) viewer.selectMany(chosen);
-    else if (chosen.every((each) => viewer.selection.has(each)))
-      viewer.selectMany([...viewer.selection].filter((each) => !chosen.includes(each)));
-    else viewer.selectMany([...viewer.selection, ...chosen]);
+    if (!ctrlKey && !metaKey) viewer.chosen.selectMany(chosen);
+    else if (chosen.every((each) => viewer.chosen.selection.has(each)))
+      viewer.chosen.selectMany([...viewer.chosen.selection].filter((each) => !chosen.includes(each)));
+    else viewer.chosen.selectMany([...viewer.chosen.selection, ...chosen]);
   }
 
   private onKey(event: KeyboardEvent): void {

@@ -68,6 +68,8 @@ void TimedProgram::end(std::chrono::milliseconds at_most) {
   const auto until = std::chrono::steady_clock::now() + at_most;
   while (!program_.exit_code() && std::chrono::steady_clock::now() < until)
     std::this_thread::sleep_for(end_is_looked_for_every);
+  // A program that failed shortly before the end of the run may need real time to exit.
+  if (const std::optional<int> code = program_.exit_code(); code && *code != 0) ended_(exec::text_of_end(*code));
   program_.end();
 }
 

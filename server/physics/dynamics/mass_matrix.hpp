@@ -17,6 +17,8 @@ class MassMatrix {
 
   /// Computes the matrix; `inertias` are those of the segments at their present poses.
   void set_up(const BodyMotion& body, const std::vector<Spatial>& axes, const std::vector<SpatialInertia>& inertias);
+  /// Returns the inertia of one dof while all others are held.
+  double inertia(int dof) const { return matrix_[static_cast<std::size_t>(dof * (stride_ + 1))]; }
   /// Adds to the inertia of one dof.
   void add_inertia(int dof, double inertia) { matrix_[static_cast<std::size_t>(dof * (stride_ + 1))] += inertia; }
 

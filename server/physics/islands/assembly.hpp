@@ -160,7 +160,7 @@ struct Assembly {
   void set_up(std::uint32_t member, IslandBodies& bodies);
   void add_own_rows(std::uint32_t member, Problem& problem);
   void add_connection_rows(Connection& connection, Problem& problem);
-  void add_contact_rows(SolidPair& pair, Problem& problem) const;
+  void add_contact_rows(SolidPair& pair, Problem& problem, bool keeps_friction) const;
 
   /// Returns whether the member's velocities allow the step to go on, and stores this in the member.
   bool check(std::uint32_t member, const IslandBodies& bodies);

@@ -5,6 +5,7 @@
 
 #include "server/physics/islands/assembly.hpp"
 #include "server/physics/solvers/group_solver.hpp"
+#include "server/physics/solvers/impacts.hpp"
 
 namespace cohort::physics {
 
@@ -16,13 +17,18 @@ class IslandSolver {
 
  private:
   bool try_to_solve(Assembly& assembly);
-  void settle(std::uint32_t iterations, bool is_symmetric);
+  bool is_mechanism() const;
+  void settle(std::uint32_t iterations, bool is_symmetric, double settled);
 
   IslandBodies bodies_;
   Problem problem_{bodies_};
   GroupSolver group_solver_;
+  Impacts impacts_;
   std::vector<std::uint32_t> sound_;  // members
 };
+
+/// Returns the change of a row's velocity in a pass below which the island has settled [m/s or rad/s].
+double settled_change(const Assembly& assembly);
 
 /// Returns whether the passes ended too early for bodies that are carried by others, as in a stack or between fingers:
 /// the upper bodies would drift. `change`: greatest change of a row's velocity in the last pass.

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "server/physics/islands/island_solver.hpp"
+#include "server/physics/solvers/impacts.hpp"
 #include "server/physics/solvers/iterative_solver.hpp"
 
 namespace cohort::physics {
@@ -48,7 +49,10 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   });
   const double share_of_last = has_connections ? start_of_connected : 1.0;
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
-    for_each_share(phase, [&](Share& share) { SequentialImpulses(share.problem).start(share_of_last); });
+    for_each_share(phase, [&](Share& share) {
+      rebound_at_once(share.problem);
+      SequentialImpulses(share.problem).start(share_of_last);
+    });
   const double change = run_passes(assembly.settings.iterations);
   if (!has_connections && is_unsettled_heap(change, sound_, assembly))
     run_passes(passes_of_heaps * assembly.settings.iterations);
@@ -124,7 +128,7 @@ void LargeIslandSolver::add_rows_of_part(Assembly& assembly, std::uint32_t part)
       if (const std::optional<Parts> two = across(assembly.anchors.member(pair.b)))
         crossings.push_back({.parts = *two, .pair = &pair});
       else
-        assembly.add_contact_rows(pair, problem);
+        assembly.add_contact_rows(pair, problem, false);
     });
   }
 }
@@ -174,7 +178,7 @@ void LargeIslandSolver::add_rows_of_seam(Assembly& assembly, const Seam& seam, P
     if (crossing.connection != nullptr) {
       assembly.add_connection_rows(*crossing.connection, problem);
     } else if (crossing.pair != nullptr) {
-      assembly.add_contact_rows(*crossing.pair, problem);
+      assembly.add_contact_rows(*crossing.pair, problem, false);
     } else {
       assembly.add_own_rows(crossing.member, problem);
       problem_of_[static_cast<std::size_t>(assembly.anchors.index_of_member[crossing.member])] = &problem;

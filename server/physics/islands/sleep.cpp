@@ -13,10 +13,15 @@ constexpr double still = 1e-6;  // [m/s] or [rad/s]
 // Longer than any moving body is this slow, at the top of its flight or between two impacts.
 constexpr double long_enough = 0.5;  // [s]
 
-bool is_still(const Member& member) {
+// A free body that rests on others is as slow as the solver leaves it; this is the share of the velocity that gravity
+// adds in a step. Anything with joints may be meant to move slowly.
+constexpr double still_share = 1e-3;
+
+bool is_still(const Member& member, double fall) {
   if (!member.is_finite || !member.is_inside) return false;
   const Multibody& body = *member.multibody;
-  const auto is_slow = [](double velocity) { return std::abs(velocity) < still; };
+  const double slow = body.mechanism().is_free_body() ? std::max(still, still_share * fall) : still;
+  const auto is_slow = [&](double velocity) { return std::abs(velocity) < slow; };
   return std::all_of(body.motion().velocities(), body.motion().velocities() + body.mechanism().dof_count(), is_slow) &&
          std::ranges::all_of(body.treels(), [&](const TrackRows& treel) {
            return is_slow(treel.track(Side::left).velocity) && is_slow(treel.track(Side::right).velocity);
@@ -30,7 +35,8 @@ Sleep::Sleep(Assembly& assembly)
 
 void Sleep::count(std::uint32_t index) {
   Member& member = assembly_.members[index];
-  member.still_steps = is_still(member) ? std::min(member.still_steps + 1, enough_) : 0;
+  const double fall = assembly_.step * assembly_.gravity.norm();
+  member.still_steps = is_still(member, fall) ? std::min(member.still_steps + 1, enough_) : 0;
 }
 
 // Bodies with air or water forces, with measured forces or with a slipping connection do not sleep: more than their

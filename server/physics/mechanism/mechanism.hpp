@@ -40,6 +40,8 @@ struct Dof {
   int coordinate = -1;  ///< for a revolute or prismatic joint
   description::JointAxis axis;
   double rotor_inertia = 0.0;  ///< rotor inertia reflected to the joint [kg m^2] or [kg]
+
+  bool has_spring() const { return axis.spring_stiffness != 0.0 && coordinate >= 0; }
 };
 
 /// A model as the dynamics sees it: a tree of segments. Immutable; shared by all bodies of the model.

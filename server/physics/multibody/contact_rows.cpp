@@ -34,11 +34,9 @@ Tangents tangents_of(const ContactPoints& contact, const Eigen::Vector3d& normal
 
 namespace {
 
-// Sets the initial impulses of friction. Between two moving bodies they are zero: the friction that a heap needed one
-// step ago would rock it, as the solver cannot follow that fast. On the world, the sum over the points is kept and
-// shared among them by load. Otherwise points could strain against each other without any effect, and this strain would
-// grow from step to step.
-void start_friction(ContactPoints& contact, bool on_the_world) {
+// Sets the initial impulses of friction. If they are kept, the sum over the points is shared among them by load.
+// Otherwise points could strain against each other without any effect, and this strain would grow from step to step.
+void start_friction(ContactPoints& contact, bool is_kept) {
   double load = 0.0;
   Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
   for (const ContactPoint& point : contact) {
@@ -47,7 +45,7 @@ void start_friction(ContactPoints& contact, bool on_the_world) {
     sum_W += point.impulse[1] * tangents.first + point.impulse[2] * tangents.second;
   }
   for (ContactPoint& point : contact) {
-    const double share = on_the_world && load > 0.0 ? point.impulse[0] / load : 0.0;
+    const double share = is_kept && load > 0.0 ? point.impulse[0] / load : 0.0;
     const Tangents tangents = tangents_of(contact, point.normal_W);
     point.impulse[1] = share * tangents.first.dot(sum_W);
     point.impulse[2] = share * tangents.second.dot(sum_W);
@@ -72,12 +70,9 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, const Tangents& tangen
   Row& push = problem.add_force_row(a, b, point.position_W, point.normal_W, point.impulse.data());
   push.target = separating_velocity(point.gap, step);
   push.set_limits(0.0, unlimited);
-  bool bounces = false;
-  if (surfaces.restitution > 0.0) {
-    const double approach = -problem.velocity_before(push, a, b);
-    bounces = approach > surfaces.bounce_threshold && approach * step > point.gap;
-    if (bounces) push.target = std::max(push.target, surfaces.restitution * approach);
-  }
+  push.restitution = surfaces.restitution;
+  push.least_approach = std::max(surfaces.bounce_threshold, point.gap / step);
+  const bool bounces = push.restitution > 0.0 && -problem.velocity_before(push) > push.least_approach;
   if (surfaces.stiffness < SurfacePair::rigid && !bounces)
     soften(push, point.gap, surfaces, step);
   else if (running.has_belt() && push.inverse > 0.0)
@@ -130,8 +125,8 @@ ContactImpulse impulse_of(const ContactPoints& contact, const ContactPoint& poin
 }
 
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
-                      const RunningSurfaces& running, double step) {
-  start_friction(contact, b.body < 0);
+                      const RunningSurfaces& running, double step, bool keeps_friction) {
+  start_friction(contact, keeps_friction || b.body < 0);
   for (ContactPoint& point : contact)
     add_point_rows(problem, a, b, tangents_of(contact, point.normal_W), point, surfaces, running, step);
 }

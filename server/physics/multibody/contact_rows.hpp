@@ -31,8 +31,9 @@ struct RunningSurfaces {
 /// the surfaces are, and two along the surface. Friction acts in a disc or, if it has a direction, separately along and
 /// across it. Two more rows against rolling and one against spinning follow if the surfaces resist these. Friction
 /// drives each body towards the surface velocity of the other. `contact.friction_direction_W` is that of `surfaces` or,
-/// if they have none, the axis of a belt.
+/// if they have none, the axis of a belt. `keeps_friction`: whether friction between two bodies starts with its
+/// impulses of the last step; if not, it starts with zero.
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
-                      const RunningSurfaces& running, double step);
+                      const RunningSurfaces& running, double step, bool keeps_friction);
 
 }  // namespace cohort::physics

@@ -110,7 +110,7 @@ double Problem::velocity(const Row& row) const {
   return sum;
 }
 
-double Problem::velocity_before(const Row& row, Anchor a, Anchor b) const {
+double Problem::velocity_before(const Row& row) const {
   const auto sum_of = [&](int body, const double* jacobian) {
     const Equations& of = equations(body);
     double sum = 0.0;
@@ -118,8 +118,8 @@ double Problem::velocity_before(const Row& row, Anchor a, Anchor b) const {
     return sum;
   };
   const double* jacobian_a = numbers_.data() + row.numbers;
-  double sum = sum_of(a.body, jacobian_a);
-  if (row.velocity_b != nullptr) sum += sum_of(b.body, jacobian_a + 2 * row.stride_a);
+  double sum = sum_of(row.body_a, jacobian_a);
+  if (row.velocity_b != nullptr) sum += sum_of(row.body_b, jacobian_a + 2 * row.stride_a);
   return sum;
 }
 

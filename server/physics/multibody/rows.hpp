@@ -26,8 +26,10 @@ struct Row {
   double impulse = 0.0;  ///< [N s] or [N m s]
   double friction = 0.0;
   double cap = unlimited;
-  double cone_inverse = 0.0;  ///< cone: 1 / the greatest velocity by a unit impulse in its plane; 0: none
-  double softness = 0.0;      ///< for a soft row [m/s / N s] or [rad/s / N m s]
+  double cone_inverse = 0.0;    ///< cone: 1 / the greatest velocity by a unit impulse in its plane; 0: none
+  double softness = 0.0;        ///< for a soft row [m/s / N s] or [rad/s / N m s]
+  double restitution = 0.0;     ///< of a contact's normal: share of the approach speed that is left after an impact
+  double least_approach = 0.0;  ///< a slower approach is no impact [m/s]
   int load_begin = 0;
   int load_end = 0;
   Limits limits = Limits::fixed;
@@ -79,6 +81,7 @@ class Problem {
   void clear();
 
   int body_count() const { return bodies_->count(); }
+  Equations& equations(int body) { return (*bodies_)[body]; }
   const Equations& equations(int body) const { return (*bodies_)[body]; }
   std::vector<Row>& rows() { return rows_; }
   const std::vector<Row>& rows() const { return rows_; }
@@ -102,8 +105,8 @@ class Problem {
 
   /// Returns the velocity along the row at the present velocities of the bodies.
   double velocity(const Row& row) const;
-  /// Returns the velocity along the row of `a` and `b` at the velocities before this step.
-  double velocity_before(const Row& row, Anchor a, Anchor b) const;
+  /// Returns the velocity along the row at the velocities before this step.
+  double velocity_before(const Row& row) const;
 
  private:
   Row& begin_row(Anchor a, Anchor b, double* kept);

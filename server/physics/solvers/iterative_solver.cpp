@@ -95,13 +95,13 @@ double SequentialImpulses::turn_cone(Row& first, Row& second) {
   return std::max(change(first, wanted_first), change(second, wanted_second));
 }
 
-double solve_iteratively(Problem& problem, std::uint32_t iterations, double share_of_last) {
+double solve_iteratively(Problem& problem, const Passes& passes, double share_of_last) {
   SequentialImpulses impulses(problem);
   impulses.start(share_of_last);
   double change = 0.0;
-  for (std::uint32_t i = 0; i < iterations; ++i) {
+  for (std::uint32_t i = 0; i < passes.most; ++i) {
     change = impulses.pass(i % 2 == 0);
-    if (change <= negligible_change) break;
+    if (change <= (i + 1 < passes.least ? negligible_change : passes.settled)) break;
   }
   return change;
 }

@@ -40,8 +40,15 @@ class SequentialImpulses {
 /// gain energy without bound.
 inline constexpr double start_of_connected = 0.9;
 
-/// Makes at most `iterations` passes in alternating directions. Returns the greatest change of a row's velocity in the
-/// last one.
-double solve_iteratively(Problem& problem, std::uint32_t iterations, double share_of_last);
+/// How long to solve: `least` passes, unless nothing changes any more, then up to `most` while a pass changes the
+/// velocity of a row by more than `settled` [m/s or rad/s].
+struct Passes {
+  std::uint32_t least = 0;
+  std::uint32_t most = 0;
+  double settled = 0.0;
+};
+
+/// Makes passes in alternating directions. Returns the greatest change of a row's velocity in the last one.
+double solve_iteratively(Problem& problem, const Passes& passes, double share_of_last);
 
 }  // namespace cohort::physics

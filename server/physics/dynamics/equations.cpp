@@ -1,7 +1,7 @@
 #include "server/physics/dynamics/equations.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
 
 #include "server/physics/dynamics/gyroscopic.hpp"
 
@@ -9,6 +9,8 @@ namespace cohort::physics {
 namespace {
 
 constexpr int free_root_dofs = 6;
+// Greatest number of degrees of freedom for which the bias forces of the middle are found by elimination.
+constexpr int most_eliminated = 48;
 // Square of the step times the angular frequency up to which a spring keeps all its energy.
 constexpr double fastest_spring = 64.0;
 
@@ -23,12 +25,13 @@ void Equations::set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, d
   pushed_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   find_joint_axes(body, axes_);
   const bool has_springs = std::ranges::any_of(mechanism_->dofs(), [](const Dof& dof) { return dof.has_spring(); });
-  if (body.bullet() == nullptr || has_springs) {
+  if (body.bullet() == nullptr || has_springs || !MassMatrix::is_small(size_)) {
     bias_.set_up(*body_, axes_);
     matrix_.set_up(*body_, axes_, bias_.inertias());
   }
   find_efforts(step);
   body.bullet() != nullptr ? solve_by_bullet(gravity, step) : solve_by_mass_matrix(gravity, step);
+  half_step_ = 0.0;
   is_symmetric_ = !has_stiff_gyroscopic_torques(body, step, is_held);
   if (!is_symmetric_) take_bias_of_the_middle(step);
   for (int i = 0; i < size_; ++i) velocity_[at(i)] += body.velocities()[i];
@@ -38,7 +41,57 @@ void Equations::set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, d
 // The two differ by half the velocity change times the derivative of the bias force; this also holds for changes by
 // impulses. The bias force is quadratic in the velocities, so that the central difference with steps of one is the
 // exact derivative.
+//
+// For a body with many joints, the equations are solved by iteration, which converges if no part turns by much more than
+// a radian in a step.
 void Equations::take_bias_of_the_middle(double step) {
+  bias_.set_up(*body_, axes_);
+  if (size_ > most_eliminated) {
+    half_step_ = 0.5 * step;
+    if (approach_middle(velocity_.data())) return;
+    velocity_ = start_;
+    half_step_ = 0.0;
+  }
+  eliminate_middle(step);
+}
+
+// Computes the growth of the bias forces by a change of the velocities.
+void Equations::find_growth(const double* change, double* growth) {
+  shifted_.resize(at(stride_));
+  opposite_.resize(at(stride_));
+  const double* velocities = body_->velocities();
+  for (int i = 0; i < size_; ++i) shifted_[at(i)] = velocities[i] + change[i];
+  bias_.find(shifted_.data(), Eigen::Vector3d::Zero(), growth);
+  for (int i = 0; i < size_; ++i) shifted_[at(i)] = velocities[i] - change[i];
+  bias_.find(shifted_.data(), Eigen::Vector3d::Zero(), opposite_.data());
+  for (int i = 0; i < size_; ++i) growth[i] = 0.5 * (growth[i] - opposite_[at(i)]);
+}
+
+// Replaces a velocity change, or a response, by the one with the bias forces of the middle of the step. Returns false if
+// the iteration does not converge.
+bool Equations::approach_middle(double* velocity) {
+  constexpr int most_iterations = 60;
+  constexpr double converged = 1e-12;
+  start_.assign(velocity, velocity + stride_);
+  response_.assign(at(stride_), 0.0);
+  double greatest = 0.0;
+  for (int i = 0; i < size_; ++i) greatest = std::max(greatest, std::abs(velocity[i]));
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    find_growth(velocity, response_.data());
+    matrix_.solve(response_.data());
+    double change = 0.0;
+    for (int i = 0; i < size_; ++i) {
+      const double next = start_[at(i)] - half_step_ * response_[at(i)];
+      change = std::max(change, std::abs(next - velocity[i]));
+      velocity[i] = next;
+    }
+    if (change <= converged * greatest) return true;
+    if (!(change <= 1e3 * greatest)) return false;
+  }
+  return false;
+}
+
+void Equations::eliminate_middle(double step) {
   if (!is_inverted_) {
     inverse_.assign(at(size_ * stride_), 0.0);
     for (int i = 0; i < size_; ++i) {
@@ -47,21 +100,14 @@ void Equations::take_bias_of_the_middle(double step) {
     }
     is_inverted_ = true;
   }
-  bias_.set_up(*body_, axes_);
-  std::vector<double> velocities(body_->velocities(), body_->velocities() + size_);
+  std::vector<double> unit(at(stride_), 0.0);
   std::vector<double> growth(at(stride_), 0.0);
-  std::vector<double> at_less(at(stride_), 0.0);
   middle_.reset(size_);
   response_.assign(at(stride_), 0.0);
   for (int column = 0; column < size_; ++column) {
-    const auto find_bias_with = [&](double more, double* bias) {
-      const double velocity = std::exchange(velocities[at(column)], velocities[at(column)] + more);
-      bias_.find(velocities.data(), Eigen::Vector3d::Zero(), bias);
-      velocities[at(column)] = velocity;
-    };
-    find_bias_with(1.0, growth.data());
-    find_bias_with(-1.0, at_less.data());
-    for (int row = 0; row < size_; ++row) growth[at(row)] = 0.5 * (growth[at(row)] - at_less[at(row)]);
+    unit[at(column)] = 1.0;
+    find_growth(unit.data(), growth.data());
+    unit[at(column)] = 0.0;
     respond(growth.data(), response_.data());
     for (int row = 0; row < size_; ++row)
       middle_(row, column) = (row == column ? 1.0 : 0.0) + 0.5 * step * response_[at(row)];
@@ -74,10 +120,10 @@ void Equations::take_bias_of_the_middle(double step) {
 // Computes the efforts of dampers and springs. The part that depends on the motion within this step acts like added
 // inertia.
 //
-// A spring k that is h v (1/4) further stretched by the change of the velocity neither adds nor removes energy at any
-// step h: the step then maps position and velocity without changing their area. It oscillates as by the trapezoidal
-// rule (Newmark, "A method of computation for structural dynamics", Journal of the Engineering Mechanics Division 85,
-// 1959, with beta = 1/4). A spring that no step can follow becomes implicit instead, which brings it to rest.
+// The force of a spring is that at the beginning of the step, less a quarter of what the change of the velocity adds to
+// its stretch. This neither adds nor removes energy at any step, and oscillates as by the trapezoidal rule. Source:
+// Newmark, "A method of computation for structural dynamics", Journal of the Engineering Mechanics Division 85, 1959,
+// with beta = 1/4. A spring that the steps cannot follow becomes implicit instead, which brings it to rest.
 void Equations::find_efforts(double step) {
   efforts_.assign(at(size_), 0.0);
   added_inertia_.assign(at(size_), 0.0);
@@ -103,7 +149,7 @@ void Equations::solve_by_mass_matrix(const Eigen::Vector3d& gravity, double step
   }
   matrix_.factorise();
   matrix_.solve(velocity_.data());
-  is_inverted_ = matrix_.is_small();
+  is_inverted_ = MassMatrix::is_small(size_);
   if (!is_inverted_) return;
   inverse_.assign(at(size_ * stride_), 0.0);
   matrix_.invert(inverse_.data());
@@ -112,7 +158,23 @@ void Equations::solve_by_mass_matrix(const Eigen::Vector3d& gravity, double step
 // Bullet does not know the added inertia; each term of it is a rank-one update of the inverse. Source: Sherman and
 // Morrison, "Adjustment of an inverse matrix corresponding to a change in one element of a given matrix", Annals of
 // Mathematical Statistics 21, 1950.
+//
+// Bullet computes one response at a time, each at nearly the cost of a whole step. A body with many joints therefore uses
+// the responses of the mass matrix.
 void Equations::solve_by_bullet(const Eigen::Vector3d& gravity, double step) {
+  if (!MassMatrix::is_small(size_)) {
+    body_->bullet()->solve(body_->segment_poses(), gravity, efforts_.data(), step, velocity_.data(), nullptr);
+    response_.assign(at(stride_), 0.0);
+    for (int i = 0; i < size_; ++i) {
+      matrix_.add_inertia(i, added_inertia_[at(i)]);
+      response_[at(i)] = -added_inertia_[at(i)] * velocity_[at(i)];
+    }
+    matrix_.factorise();
+    matrix_.solve(response_.data());
+    add_scaled(1.0, response_.data(), velocity_.data(), stride_);
+    is_inverted_ = false;
+    return;
+  }
   inverse_.assign(at(size_ * stride_), 0.0);
   is_inverted_ = true;
   body_->bullet()->solve(body_->segment_poses(), gravity, efforts_.data(), step, velocity_.data(), inverse_.data());
@@ -148,10 +210,11 @@ void Equations::add_torque(int segment, const Eigen::Vector3d& direction_W, doub
   add_generalised(segment, {direction_W, Eigen::Vector3d::Zero()}, jacobian);
 }
 
-void Equations::respond(const double* jacobian, double* response) const {
+void Equations::respond(const double* jacobian, double* response) {
   if (!is_inverted_) {
     std::copy_n(jacobian, stride_, response);
     matrix_.solve(response);
+    if (half_step_ > 0.0) approach_middle(response);
     return;
   }
   std::fill_n(response, stride_, 0.0);

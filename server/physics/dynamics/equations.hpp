@@ -55,13 +55,16 @@ class Equations {
   /// Changes the velocities by an impulse along one dof of a joint.
   void push_dof(int dof, double impulse);
   /// Computes into `response` the change of the velocities by the generalised impulse `jacobian`.
-  void respond(const double* jacobian, double* response) const;
+  void respond(const double* jacobian, double* response);
 
  private:
   void find_efforts(double step);
   void solve_by_mass_matrix(const Eigen::Vector3d& gravity, double step);
   void solve_by_bullet(const Eigen::Vector3d& gravity, double step);
   void take_bias_of_the_middle(double step);
+  void eliminate_middle(double step);
+  bool approach_middle(double* velocity);
+  void find_growth(const double* change, double* growth);
   void add_generalised(int segment, const Spatial& force, double* jacobian) const;
 
   const BodyMotion* body_ = nullptr;
@@ -74,6 +77,10 @@ class Equations {
   MassMatrix matrix_;
   BiasForces bias_;
   LinearSystem middle_;
+  std::vector<double> shifted_;  // scratch, by dof
+  std::vector<double> opposite_;
+  std::vector<double> start_;
+  double half_step_ = 0.0;  // [s]; of a body whose responses in the middle of the step are approached; otherwise zero
   bool is_symmetric_ = true;
   std::vector<double> inverse_;  // size_ x stride_: by dof, the response to a unit impulse along it
   bool is_inverted_ = false;     // true if inverse_ belongs to this body

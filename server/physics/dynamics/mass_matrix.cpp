@@ -88,9 +88,9 @@ void MassMatrix::factorise() {
   }
 }
 
-// The inverse is computed from the factors, inv(L) inv(D) inv(L)', row by row.
-bool MassMatrix::is_small() const { return size_ <= most_inverted; }
+bool MassMatrix::is_small(int size) { return size <= most_inverted; }
 
+// The inverse is computed from the factors, inv(L) inv(D) inv(L)', row by row.
 void MassMatrix::invert(double* inverse) const {
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): only its lower triangle is ever read.
   std::array<std::array<double, most_inverted>, most_inverted> inverse_l;

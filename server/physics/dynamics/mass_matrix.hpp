@@ -26,8 +26,8 @@ class MassMatrix {
   void factorise();
   /// Solves matrix * y = x in place.
   void solve(double* x) const;
-  /// Returns whether the matrix is so small that using its inverse is cheaper than solving.
-  bool is_small() const;
+  /// Returns whether a matrix of this size is so small that using its inverse is cheaper than solving.
+  static bool is_small(int size);
   /// Computes the inverse: one row and column per dof, rows `stride` apart.
   void invert(double* inverse) const;
 

@@ -186,7 +186,7 @@ double FluidBody::velocity(const Equations& equations) const {
   return equations.size() > 0 ? dot(jacobian_.data(), equations.velocity(), equations.stride()) : 0.0;
 }
 
-double FluidBody::response(const Equations& equations) {
+double FluidBody::response(Equations& equations) {
   if (equations.size() == 0) return 0.0;
   response_.resize(jacobian_.size());
   equations.respond(jacobian_.data(), response_.data());

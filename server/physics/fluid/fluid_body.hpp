@@ -81,7 +81,7 @@ class FluidBody {
   // Sets the direction of the following calls: a unit force or torque at a point of a place.
   void aim(const Place& place, const Eigen::Vector3d& point_W, const Spatial& unit_W, const Equations& equations);
   double velocity(const Equations& equations) const;
-  double response(const Equations& equations);
+  double response(Equations& equations);
   void push(double impulse, Equations& equations);
   void push(const Place& place, const Eigen::Vector3d& point_W, const Spatial& impulse_W, Equations& equations);
   /// Applies damping along this direction, relative to the velocity of the fluid.

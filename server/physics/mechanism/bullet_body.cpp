@@ -150,6 +150,7 @@ void BulletBody::solve(const std::vector<Pose>& X_WS, const Eigen::Vector3d& gra
                                                               false, false, false);
   for (int i = 0; i < size; ++i) change[i] = velocities[i] - scratch.response[at(i)];
   std::copy_n(scratch.response.data(), size, velocities);
+  if (responses == nullptr) return;
 
   // Compute the joints one by one. Those of the base come from its own inertia, which Bullet would otherwise invert for
   // each column.

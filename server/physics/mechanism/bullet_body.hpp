@@ -13,7 +13,7 @@ class btAlignedObjectArray;
 namespace cohort::physics {
 
 /// A body of Bullet that owns the state of one of Cohort's bodies. Bullet's articulated-body algorithm (Featherstone)
-/// computes the velocities and how they respond to impulses. Nothing else of Bullet moves it.
+/// computes the velocities and, on request, how they respond to impulses. Nothing else of Bullet moves it.
 ///
 /// Bullet has the same velocities in the same order: angular and linear velocity of a free root's centre of mass in
 /// world axes, then those of each joint. Its frames are those of the segments, with their origins at the centres of
@@ -28,9 +28,10 @@ class BulletBody {
   /// Returns pointers to the body's state, valid as long as this object.
   BodyState::Memory memory();
 
-  /// Computes the change of the velocities in one `step` [s] into `change`, and the changes by a unit impulse along
-  /// each dof into `responses`, with rows `stride` apart. The body is taken at its present state, with its segments at
-  /// `X_WS`, under `gravity` [m/s^2] and the joint `efforts` by dof [N] or [N m]. Does not change the state.
+  /// Computes the change of the velocities in one `step` [s] into `change`. If `responses` is not null, also computes
+  /// the changes by a unit impulse along each dof into it, with rows `stride` apart. The body is taken at its present
+  /// state, with its segments at `X_WS`, under `gravity` [m/s^2] and the joint `efforts` by dof [N] or [N m]. Does not
+  /// change the state.
   void solve(const std::vector<Pose>& X_WS, const Eigen::Vector3d& gravity, const double* efforts, double step,
              double* change, double* responses);
 

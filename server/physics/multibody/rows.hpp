@@ -28,7 +28,7 @@ struct Row {
   double cap = unlimited;
   double cone_inverse = 0.0;    ///< cone: 1 / the greatest velocity by a unit impulse in its plane; 0: none
   double softness = 0.0;        ///< for a soft row [m/s / N s] or [rad/s / N m s]
-  double restitution = 0.0;     ///< of a contact's normal: share of the approach speed that is left after an impact
+  double restitution = 0.0;     ///< share of the approach speed that is left after an impact at a contact
   double least_approach = 0.0;  ///< a slower approach is no impact [m/s]
   int load_begin = 0;
   int load_end = 0;

@@ -8,7 +8,7 @@ namespace cohort::physics {
 namespace {
 
 constexpr int most_rounds = 64;
-constexpr std::uint32_t most_passes = 100;  // of each round
+constexpr std::uint32_t most_passes_a_round = 100;
 
 bool approaches(const Row& row, double velocity) { return row.restitution > 0.0 && -velocity > row.least_approach; }
 
@@ -60,7 +60,7 @@ bool Impacts::find_approaching(Problem& problem) {
 
 void Impacts::solve_round(Problem& problem) {
   SequentialImpulses impulses(problem);
-  for (std::uint32_t i = 0; i < most_passes; ++i)
+  for (std::uint32_t i = 0; i < most_passes_a_round; ++i)
     if (impulses.pass(i % 2 == 0) <= negligible_change) break;
   for (std::size_t i = 0; i < rows_.size(); ++i) impulses_[i] += problem.rows()[i].impulse;
 }

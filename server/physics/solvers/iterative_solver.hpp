@@ -40,8 +40,8 @@ class SequentialImpulses {
 /// gain energy without bound.
 inline constexpr double start_of_connected = 0.9;
 
-/// How long to solve: `least` passes, unless nothing changes any more, then up to `most` while a pass changes the
-/// velocity of a row by more than `settled` [m/s or rad/s].
+/// How long to solve: `least` passes, unless nothing changes any more. Up to `most` passes follow while one still
+/// changes the velocity of a row by more than `settled` [m/s or rad/s].
 struct Passes {
   std::uint32_t least = 0;
   std::uint32_t most = 0;

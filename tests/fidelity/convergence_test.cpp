@@ -190,6 +190,40 @@ TEST_P(Convergence, AHoppingLegKeepsItsEnergy) {
   }
 }
 
+// Hanging links of 0.1 m on ball joints that swing and turn.
+TEST_P(Convergence, AChainOfBallJointsKeepsItsEnergy) {
+  for (const std::size_t links : {8, 24}) {  // the second has so many degrees of freedom that its bias is iterated
+    SCOPED_TRACE(std::to_string(links) + " links");
+    description::World world = empty_world();
+    world.physics = GetParam().world().physics;
+    SmallWorld small(world);
+    description::Model chain;
+    chain.name = "chain";
+    const Vector3d size(0.02, 0.02, 0.1);
+    for (std::size_t link = 0; link < links; ++link) {
+      chain.links.push_back({"link" + std::to_string(link), {{0, 0, -0.1 * static_cast<double>(link)}}, {}, {}});
+      chain.links.back().inertial = solid_box(0.1, size);
+      chain.links.back().inertial.X_LI.position.z() = -0.05;
+      chain.joints.push_back(joint_of("ball" + std::to_string(link), JointType::ball,
+                                      link == 0 ? Joint::world : link - 1, link, Vector3d::UnitZ()));
+    }
+    const auto body = small.add(chain, at(0, 0, 5));
+    small.world().set_joint_state(body, JointId{0}, std::array{0.0, 0.0, 0.0, 1.0}, std::array{0.3, 0.5, 0.5});
+    const auto energy = [&] {
+      const WholeMotion motion = whole_motion(small, body);
+      return motion.kinetic_energy + motion.potential_energy;
+    };
+    const double total = whole_motion(small, body).kinetic_energy;
+    const double before = energy();
+    double furthest = 0.0;
+    for (int i = 0; i < 500; ++i) {
+      small.world().step();
+      furthest = std::max(furthest, std::abs(energy() - before));
+    }
+    EXPECT_LT(furthest, 0.03 * total);
+  }
+}
+
 // Five balls touch; the first falls against the others, and the last one swings as far. The error of the first three is
 // the way that the falling ball makes in a step.
 TEST_P(Convergence, OnlyTheLastBallOfACradleSwings) {

@@ -133,7 +133,7 @@ TEST(JointForces, AlongItsAxisAJointTransmitsMotorSpringAndDamper) {
         world.joint_state(body, JointId{0}).effort - 0.02 * world.joint_state(body, JointId{0}).velocity;
     EXPECT_NEAR(world.joint_wrench(body, JointId{0}).torque_W.dot(hinge_W), turned_by, 1e-9) << "at step " << i;
     const double rate = world.joint_state(body, JointId{1}).velocity;
-    EXPECT_NEAR(world.joint_wrench(body, JointId{1}).force_W.dot(rail_W), 
+    EXPECT_NEAR(world.joint_wrench(body, JointId{1}).force_W.dot(rail_W),
                 -30.0 * (slide + 0.25 * h * (rate - rate_before)) - 0.5 * rate, 1e-9);
     EXPECT_LT(world.joint_wrench(body, JointId{2}).torque_W.norm(), 1e-9) << "a ball joint holds no torque";
   }

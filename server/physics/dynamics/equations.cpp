@@ -42,8 +42,8 @@ void Equations::set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, d
 // impulses. The bias force is quadratic in the velocities, so that the central difference with steps of one is the
 // exact derivative.
 //
-// For a body with many joints, the equations are solved by iteration, which converges if no part turns by much more than
-// a radian in a step.
+// For a body with many joints, the equations are solved by iteration, which converges if no part turns by much more
+// than a radian in a step.
 void Equations::take_bias_of_the_middle(double step) {
   bias_.set_up(*body_, axes_);
   if (size_ > most_eliminated) {
@@ -67,11 +67,11 @@ void Equations::find_growth(const double* change, double* growth) {
   for (int i = 0; i < size_; ++i) growth[i] = 0.5 * (growth[i] - opposite_[at(i)]);
 }
 
-// Replaces a velocity change, or a response, by the one with the bias forces of the middle of the step. Returns false if
-// the iteration does not converge.
+// Replaces a velocity change, or a response, by the one with the bias forces of the middle of the step. Returns false
+// if the iteration does not converge.
 bool Equations::approach_middle(double* velocity) {
   constexpr int most_iterations = 60;
-  constexpr double converged = 1e-12;
+  constexpr double converged = 1e-10;
   start_.assign(velocity, velocity + stride_);
   response_.assign(at(stride_), 0.0);
   double greatest = 0.0;
@@ -159,8 +159,8 @@ void Equations::solve_by_mass_matrix(const Eigen::Vector3d& gravity, double step
 // Morrison, "Adjustment of an inverse matrix corresponding to a change in one element of a given matrix", Annals of
 // Mathematical Statistics 21, 1950.
 //
-// Bullet computes one response at a time, each at nearly the cost of a whole step. A body with many joints therefore uses
-// the responses of the mass matrix.
+// Bullet computes one response at a time, each at nearly the cost of a whole step. A body with many joints therefore
+// uses the responses of the mass matrix.
 void Equations::solve_by_bullet(const Eigen::Vector3d& gravity, double step) {
   if (!MassMatrix::is_small(size_)) {
     body_->bullet()->solve(body_->segment_poses(), gravity, efforts_.data(), step, velocity_.data(), nullptr);

@@ -38,6 +38,10 @@ std::optional<std::chrono::nanoseconds> read_step(const sdf::Physics* physics, c
     if (!std::isnan(seconds)) report.problem(step, "expected a step > 0 s and <= 1 s");
     return std::nullopt;
   }
+  constexpr double longest_accurate = 0.05;
+  if (seconds > longest_accurate)
+    report.warning(step, "a step of " + step->GetValue()->GetAsString() +
+                             " s is too long for contacts and joints, which may then gain energy; use at most 0.05 s");
   const double count = std::round(seconds * nanoseconds);
   if (count < 1.0 || std::abs(seconds * nanoseconds - count) > rounding)
     report.problem(step, "expected a whole number of nanoseconds, not " + step->GetValue()->GetAsString() + " s");

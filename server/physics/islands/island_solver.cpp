@@ -37,7 +37,8 @@ bool is_carried(std::uint32_t member, const Assembly& assembly) {
 }  // namespace
 
 double settled_change(const Assembly& assembly) {
-  return std::max(settled_share * assembly.step * assembly.gravity.norm(), settled_without_gravity);
+  const double fall = assembly.step * assembly.gravity.norm();
+  return fall > 0.0 ? settled_share * fall : settled_without_gravity;
 }
 
 bool is_unsettled_heap(double change, std::span<const std::uint32_t> members, const Assembly& assembly) {

@@ -311,6 +311,33 @@ TEST_F(PhysicsOfAnExperiment, OverridesSingleKeysOfTheWorld) {
   EXPECT_EQ(settings.lowest, -1.0);
 }
 
+using Accuracy = Description;
+
+TEST_F(Accuracy, AStepThatIsTooLongIsWarnedOf) {
+  const auto with_step = [&](const std::string& step) {
+    return read("<physics type=\"ignored\"><max_step_size>" + step + "</max_step_size></physics>").warnings;
+  };
+  EXPECT_TRUE(with_step("0.05").empty());
+  const std::vector<Problem> warnings = with_step("0.2");
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].line, 2);
+  EXPECT_EQ(warnings[0].element, "world/physics/max_step_size");
+  EXPECT_TRUE(warnings[0].message.starts_with("a step of 0.2 s is too long")) << warnings[0].message;
+}
+
+TEST_F(Accuracy, AMassRatioThatIsTooGreatIsWarnedOf) {
+  const auto of_mass = [](const std::string& name, const std::string& mass) {
+    return "<model name=\"" + name + "\"><link name=\"l\"><inertial><mass>" + mass +
+           "</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial><collision name=\"c\"><geometry>" +
+           ball + "</geometry></collision></link></model>";
+  };
+  EXPECT_TRUE(read(of_mass("crate", "10") + of_mass("bead", "0.001")).warnings.empty());
+  const std::vector<Problem> warnings = read(of_mass("crate", "1000") + of_mass("bead", "0.001")).warnings;
+  ASSERT_EQ(warnings.size(), 1u) << texts_of(warnings);
+  EXPECT_EQ(warnings[0].element, "model[crate]");
+  EXPECT_TRUE(warnings[0].message.starts_with("has 1e+06 times the mass of 'bead'")) << warnings[0].message;
+}
+
 class FlawOfPhysicsInAnExperiment : public PhysicsOfAnExperiment, public testing::WithParamInterface<Flaw> {};
 
 TEST_P(FlawOfPhysicsInAnExperiment, IsReportedAloneWithFileLineAndKey) {

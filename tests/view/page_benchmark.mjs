@@ -2,15 +2,15 @@
 // card, for 16, 1,000 and 10,000 robots. With several folders of pages, they are measured in turn on the same
 // recordings.
 //
-//   cp tests/view/page_benchmark.mjs build/release/tests/view/node    # `tools/test -R Layout` installs npm's packages
+//   cp tests/view/{page_benchmark,recorded}.mjs build/release/tests/view/node  # npm packages: `tools/test -R Layout`
 //   node build/release/tests/view/node/page_benchmark.mjs COHORT PAGE...
 //
 // COHORT is the program, and each PAGE a folder with page.js, page.css and index.html.
-import { spawn, spawnSync } from "node:child_process";
 import { mkdtempSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
+import { record, serve } from "./recorded.mjs";
 
 const [, , cohort, ...pages] = process.argv;
 if (!cohort || pages.length === 0) {
@@ -24,7 +24,7 @@ const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1]
 const middleOf = (values) =>
   `${median(values).toFixed(0)} ms (${Math.min(...values).toFixed(0)} to ${Math.max(...values).toFixed(0)})`;
 
-function record(count) {
+function recorded(count) {
   const side = Math.sqrt(count) * 0.3;
   const file = join(folder, `${count}.mcap`);
   writeFileSync(
@@ -45,21 +45,7 @@ teams:
   - {name: all, robots: robots/*, controller: obstacle_avoidance}
 `,
   );
-  const run = ["run", join(folder, "experiment.yaml"), "--controllers", "inprocess", "--record", file, "--quiet"];
-  const { status, stderr } = spawnSync(cohort, run, { encoding: "utf8" });
-  if (status !== 0) throw new Error(stderr);
-  return file;
-}
-
-async function serve(file) {
-  const view = spawn(cohort, ["view", file, "--port", "0"]);
-  let said = "";
-  view.stdout.setEncoding("utf8");
-  for await (const text of view.stdout) {
-    said += text;
-    if (said.includes("\n")) break;
-  }
-  return { view, address: said.trim() };
+  return record(cohort, join(folder, "experiment.yaml"), file);
 }
 
 /** In the page: `window.firstPicture` is the time from the request of the page to its first picture with bodies [ms]. */
@@ -131,7 +117,7 @@ try {
   for (const page of pages)
     console.log(`${page}: page.js has ${(statSync(join(page, "page.js")).size / 1000).toFixed(0)} kB`);
   for (const count of [16, 1000, 10_000]) {
-    const { view, address } = await serve(record(count));
+    const { view, address } = await serve(cohort, recorded(count));
     const results = new Map(pages.map((page) => [page, []]));
     for (let round = 0; round < rounds; ++round)
       for (const page of pages) results.get(page).push(await measure(address, page));

@@ -1,9 +1,9 @@
 // Takes the pictures of the page that docs/view.md shows, as PNG files: node pictures.mjs COHORT FOLDER. See
 // tools/make-view-pictures.
-import { spawn, spawnSync } from "node:child_process";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
 import { look, run, until } from "./in_page.mjs";
+import { record, serve } from "./recorded.mjs";
 
 const [, , cohort, folder] = process.argv;
 const desktop = { width: 1440, height: 900 };
@@ -36,25 +36,6 @@ const pictures = [
   },
 ];
 
-function record({ example, duration }) {
-  const file = join(folder, `${example}.mcap`);
-  const run = ["run", example, "--duration", `${duration}`, "--controllers", "inprocess", "--record", file, "--quiet"];
-  const { status, stderr } = spawnSync(cohort, run, { encoding: "utf8" });
-  if (status !== 0) throw new Error(stderr);
-  return file;
-}
-
-async function serve(file) {
-  const view = spawn(cohort, ["view", file, "--port", "0"]);
-  let said = "";
-  view.stdout.setEncoding("utf8");
-  for await (const text of view.stdout) {
-    said += text;
-    if (said.includes("\n")) break;
-  }
-  return { view, address: said.trim() };
-}
-
 async function take(browser, address, { name, duration, size, lines, from, to }) {
   const page = await browser.newPage({ viewport: size });
   await page.goto(address);
@@ -81,7 +62,11 @@ const browser = await chromium.launch({
 });
 try {
   for (const picture of pictures) {
-    const { view, address } = await serve(record(picture));
+    const file = record(cohort, picture.example, join(folder, `${picture.example}.mcap`), [
+      "--duration",
+      `${picture.duration}`,
+    ]);
+    const { view, address } = await serve(cohort, file);
     await take(browser, address, picture);
     view.kill();
   }

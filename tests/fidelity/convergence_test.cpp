@@ -23,7 +23,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Convergence, ::testing::Values(treel, by_bullet(
 // loops.
 TEST_P(Convergence, AStewartPlatformHoldsItsLoad) {
   description::Model model;
-  model.name = "hexapod";
+  model.name = "platform";
   const double height = 0.8;
   const auto base = [](int leg) {
     const double angle = M_PI / 3.0 * (leg / 2 * 2) + (leg % 2 == 0 ? -0.2 : 0.2);
@@ -224,8 +224,8 @@ TEST_P(Convergence, AChainOfBallJointsKeepsItsEnergy) {
   }
 }
 
-// Five balls touch; the first falls against the others, and the last one swings as far. The error of the first three is
-// the way that the falling ball makes in a step.
+// Five balls touch; the first falls against the others, and the last one swings as far. The error of the others is the
+// way that the falling ball makes in a step.
 TEST_P(Convergence, OnlyTheLastBallOfACradleSwings) {
   for (const int step : {10, 1}) {
     SCOPED_TRACE("step " + std::to_string(step) + " ms");

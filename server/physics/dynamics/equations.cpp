@@ -42,8 +42,8 @@ void Equations::set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, d
 // impulses. The bias force is quadratic in the velocities, so that the central difference with steps of one is the
 // exact derivative.
 //
-// For a body with many joints, the equations are solved by iteration, which converges if no part turns by much more
-// than a radian in a step.
+// For a body with many joints, the equations are first solved by iteration. Where it does not converge, as for a long
+// chain that turns fast, they are solved by elimination.
 void Equations::take_bias_of_the_middle(double step) {
   bias_.set_up(*body_, axes_);
   if (size_ > most_eliminated) {

@@ -115,8 +115,9 @@ TEST_P(FastBodies, HitEachOther) {
     small.world().set_root_twist(two, {Vector3d::Zero(), Vector3d(-6.0, 0, 0)});
     small.run(1.0);
     EXPECT_LT(small.position(one).x(), small.position(two).x());
-    EXPECT_NEAR(small.velocity(one).x(), 1.0, 1e-9) << "together";
-    EXPECT_NEAR(small.velocity(two).x(), 1.0, 1e-9);
+    EXPECT_NEAR(small.velocity(one).x(), 1.0, 3e-6) << "together";
+    EXPECT_NEAR(small.velocity(two).x(), 1.0, 3e-6);
+    EXPECT_NEAR(small.velocity(one).x() + small.velocity(two).x(), 2.0, 1e-9);
   }
 }
 
@@ -133,7 +134,7 @@ TEST_P(FastBodies, PushSlowBodies) {
     small.run(0.3);
     EXPECT_LT(small.position(body).x(), small.position(target).x());
     EXPECT_NEAR(0.05 * small.velocity(body).x() + 0.15 * small.velocity(target).x(), 0.05 * 8.0, 1e-9);
-    EXPECT_NEAR(small.velocity(target).x(), 2.0, 1e-9);
+    EXPECT_NEAR(small.velocity(target).x(), 2.0, 3e-6);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 #include "server/physics/dynamics/gyroscopic.hpp"
 
 namespace cohort::physics {
@@ -220,6 +222,21 @@ void Equations::respond(const double* jacobian, double* response) {
   std::fill_n(response, stride_, 0.0);
   for (int i = 0; i < size_; ++i)
     if (jacobian[i] != 0.0) add_scaled(jacobian[i], inverse_.data() + i * stride_, response, stride_);
+}
+
+void Equations::add_inertia(double* matrix) const {
+  if (body_->bullet() == nullptr || !MassMatrix::is_small(size_)) {
+    matrix_.add_product(matrix);
+    return;
+  }
+  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, MassMatrix::most_inverted,
+                              MassMatrix::most_inverted>;
+  Small inverse(size_, size_);
+  for (int i = 0; i < size_; ++i)
+    for (int j = 0; j < size_; ++j) inverse(i, j) = inverse_[at(i * stride_ + j)];
+  const Small inertia = inverse.llt().solve(Small::Identity(size_, size_));
+  for (int i = 0; i < size_; ++i)
+    for (int j = 0; j < size_; ++j) matrix[i * stride_ + j] += inertia(i, j);
 }
 
 void Equations::push(int segment, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,

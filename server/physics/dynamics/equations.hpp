@@ -54,6 +54,9 @@ class Equations {
   }
   /// Changes the velocities by an impulse along one dof of a joint.
   void push_dof(int dof, double impulse);
+  /// Adds the mass matrix, with everything that acts like inertia, to `matrix`: rows `stride` apart. Only if the response
+  /// is symmetric.
+  void add_inertia(double* matrix) const;
   /// Computes into `response` the change of the velocities by the generalised impulse `jacobian`.
   void respond(const double* jacobian, double* response);
 

@@ -6,7 +6,6 @@ namespace cohort::physics {
 namespace {
 
 constexpr int free_dofs = 6;
-constexpr int most_inverted = 12;
 
 }  // namespace
 
@@ -88,7 +87,16 @@ void MassMatrix::factorise() {
   }
 }
 
-bool MassMatrix::is_small(int size) { return size <= most_inverted; }
+void MassMatrix::add_product(double* matrix) const {
+  const std::vector<int>& parents = mechanism_->parents();
+  for (int k = 0; k < size_; ++k) {
+    const double* row = matrix_.data() + k * stride_;
+    const double scale = 1.0 / row[k];
+    const auto factor = [&](int i) { return i == k ? 1.0 : row[i]; };
+    for (int i = k; i >= 0; i = parents[at(i)])
+      for (int j = k; j >= 0; j = parents[at(j)]) matrix[i * stride_ + j] += factor(i) * scale * factor(j);
+  }
+}
 
 // The inverse is computed from the factors, inv(L) inv(D) inv(L)', row by row.
 void MassMatrix::invert(double* inverse) const {

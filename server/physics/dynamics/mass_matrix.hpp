@@ -27,7 +27,10 @@ class MassMatrix {
   /// Solves matrix * y = x in place.
   void solve(double* x) const;
   /// Returns whether a matrix of this size is so small that using its inverse is cheaper than solving.
-  static bool is_small(int size);
+  static bool is_small(int size) { return size <= most_inverted; }
+  static constexpr int most_inverted = 12;
+  /// Adds the matrix itself, computed from its factors, to `matrix`: rows `stride` apart.
+  void add_product(double* matrix) const;
   /// Computes the inverse: one row and column per dof, rows `stride` apart.
   void invert(double* inverse) const;
 

@@ -239,7 +239,7 @@ void Assembly::add_connection_rows(Connection& connection, Problem& problem) {
   connection.add_rows(problem, anchors, pose_of(connection.a()), pose_of(connection.b()), step);
 }
 
-void Assembly::add_contact_rows(SolidPair& pair, Problem& problem, bool keeps_friction) const {
+void Assembly::add_contact_rows(SolidPair& pair, Problem& problem, FrictionStart start) const {
   if (anchors.moves(pair.b) && anchors.of(pair.b).body < 0) return;
   if (is_immovable(pair.a) && (!anchors.moves(pair.b) || is_immovable(pair.b))) return;
   const geometry::Solid& a = scene.solid(pair.a);
@@ -258,7 +258,7 @@ void Assembly::add_contact_rows(SolidPair& pair, Problem& problem, bool keeps_fr
       break;
   }
   physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, running, step,
-                            keeps_friction);
+                            start);
 }
 
 bool Assembly::is_immovable(std::uint32_t solid) const {

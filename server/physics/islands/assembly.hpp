@@ -105,10 +105,6 @@ struct Assembly {
   void record_outside();
   /// Adds the loads of this step to the belts; call it like `record_outside`.
   void load_belts();
-  /// Returns whether an end is on a light part of its body.
-  bool is_light(const Connection::End& end) const {
-    return end.member != Anchors::nobody && members[end.member].multibody->mechanism().is_light(end.segment);
-  }
   /// Returns X_WS of the segment that an end is on; the identity for the world.
   Pose pose_of(const Connection::End& end) const {
     return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->motion().segment_pose(end.segment);
@@ -160,7 +156,7 @@ struct Assembly {
   void set_up(std::uint32_t member, IslandBodies& bodies);
   void add_own_rows(std::uint32_t member, Problem& problem);
   void add_connection_rows(Connection& connection, Problem& problem);
-  void add_contact_rows(SolidPair& pair, Problem& problem, bool keeps_friction) const;
+  void add_contact_rows(SolidPair& pair, Problem& problem, FrictionStart start) const;
 
   /// Returns whether the member's velocities allow the step to go on, and stores this in the member.
   bool check(std::uint32_t member, const IslandBodies& bodies);

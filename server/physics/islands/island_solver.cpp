@@ -10,18 +10,14 @@ namespace cohort::physics {
 
 namespace {
 
-// If light links hold heavy bodies, sequential impulses leave errors of millimetres. Islands of up to this many bodies
-// are solved exactly instead; more bodies would take too long.
-constexpr std::size_t most_solved_as_group = 6;
-// Islands of 2 to this many bodies without connections are solved until they settle, by at most this many times the
-// usual number of passes. Their friction therefore starts from that of the last step. In larger heaps the passes cannot
-// follow, and the friction that a heap needed one step ago would rock it.
-constexpr std::size_t most_followed = 16;
-constexpr std::uint32_t passes_of_followed = 5;
 // A pass that changes velocities by less than this share of what gravity adds in a step has settled them.
 constexpr double settled_share = 1e-4;
 constexpr double settled_without_gravity = 1e-5;  // [m/s or rad/s]
-// Fast-spinning bodies need more passes: their equations are not symmetric, as the direct and the group solver require.
+// Newton's method is this much more precise, at nearly the same cost.
+constexpr double share_for_newton = 1e-2;
+// Where Newton's method finds no solution, up to this multiple of the usual number of passes settles an island.
+constexpr std::uint32_t passes_of_unsettled = 5;
+// Fast-spinning bodies need more passes: their equations are not symmetric, as the other solvers require.
 constexpr std::uint32_t passes_where_fast = 10;
 
 // Returns whether only other moving bodies support it.
@@ -87,42 +83,36 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
   for (const std::uint32_t member : sound_) assembly.set_up(member, bodies_);
   if (!all_are_finite()) return false;
 
+  const bool directly = is_solved_directly(assembly.settings, sound_.size());
+  const bool is_symmetric = std::ranges::all_of(
+      sound_, [&](std::uint32_t member) { return bodies_[assembly.anchors.index_of_member[member]].is_symmetric(); });
   problem_.clear();
   for (const std::uint32_t member : sound_) assembly.add_own_rows(member, problem_);
   bool has_connections = false;
-  bool has_light_connections = false;
   for (const std::uint32_t member : sound_)
     assembly.connections.for_each_of(member, [&](Connection& connection) {
       assembly.add_connection_rows(connection, problem_);
       has_connections = true;
-      has_light_connections =
-          has_light_connections || assembly.is_light(connection.a()) || assembly.is_light(connection.b());
     });
-  const bool is_followed = !has_connections && sound_.size() > 1 && sound_.size() <= most_followed;
+  const bool is_alone = sound_.size() == 1;
+  const FrictionStart start = is_symmetric && !directly && !is_alone ? FrictionStart::last : FrictionStart::shared;
   for (const std::uint32_t member : sound_)
-    assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_, is_followed); });
+    assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_, start); });
 
   impacts_.solve(problem_);
-  const bool directly = is_solved_directly(assembly.settings, sound_.size());
-  const bool is_symmetric = std::ranges::all_of(
-      sound_, [&](std::uint32_t member) { return bodies_[assembly.anchors.index_of_member[member]].is_symmetric(); });
+  const double settled = settled_change(assembly);
   bool is_solved = false;
   if (directly && is_symmetric) {
     is_solved = solve_directly(problem_);
-  } else if (is_symmetric && has_light_connections && sound_.size() <= most_solved_as_group) {
-    is_solved = group_solver_.solve(problem_) || solve_directly(problem_);
   } else {
-    is_solved = solve_by_active_set(problem_) || (is_symmetric && is_mechanism() && group_solver_.solve(problem_));
+    is_solved = solve_by_active_set(problem_) ||
+                (is_symmetric && (!is_alone || !has_cones()) && newton_.solve(problem_, share_for_newton * settled));
   }
   if (!is_solved) {
-    const double share_of_last = has_connections ? start_of_connected : 1.0;
     const std::uint32_t passes = assembly.settings.iterations * (is_symmetric ? 1 : passes_where_fast);
-    const double settled = settled_change(assembly);
-    const double change = solve_iteratively(
-        problem_, is_followed ? Passes{passes, passes_of_followed * passes, settled} : Passes{passes, passes, 0.0},
-        share_of_last);
-    if (!has_connections && is_unsettled_heap(change, sound_, assembly))
-      settle(assembly.settings.iterations, is_symmetric, settled);
+    solve_iteratively(problem_,
+                      is_alone ? Passes{passes, passes, 0.0} : Passes{passes, passes_of_unsettled * passes, settled},
+                      has_connections ? start_of_connected : 1.0);
   }
   if (!all_are_finite()) return false;
 
@@ -132,21 +122,8 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
   return true;
 }
 
-// Returns whether the island is a single body without friction in a disc: joints, motors and loops, for example of a
-// parallel robot.
-bool IslandSolver::is_mechanism() const {
-  const auto is_cone = [](const Row& row) { return row.limits == Row::Limits::cone; };
-  return sound_.size() == 1 && std::ranges::none_of(problem_.rows(), is_cone);
-}
-
-// Solves all rows at once if that is not too expensive, otherwise by more passes.
-void IslandSolver::settle(std::uint32_t iterations, bool is_symmetric, double settled) {
-  SequentialImpulses impulses(problem_);
-  impulses.take_back();
-  if (is_symmetric && group_solver_.solve(problem_)) return;
-  impulses.put_in();
-  for (std::uint32_t i = 0; i < passes_of_heaps * iterations; ++i)
-    if (impulses.pass(i % 2 == 0) <= settled) return;
+bool IslandSolver::has_cones() const {
+  return std::ranges::any_of(problem_.rows(), [](const Row& row) { return row.limits == Row::Limits::cone; });
 }
 
 }  // namespace cohort::physics

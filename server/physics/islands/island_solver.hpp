@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "server/physics/islands/assembly.hpp"
-#include "server/physics/solvers/group_solver.hpp"
 #include "server/physics/solvers/impacts.hpp"
+#include "server/physics/solvers/newton_solver.hpp"
 
 namespace cohort::physics {
 
@@ -17,12 +17,11 @@ class IslandSolver {
 
  private:
   bool try_to_solve(Assembly& assembly);
-  bool is_mechanism() const;
-  void settle(std::uint32_t iterations, bool is_symmetric, double settled);
+  bool has_cones() const;
 
   IslandBodies bodies_;
   Problem problem_{bodies_};
-  GroupSolver group_solver_;
+  NewtonSolver newton_;
   Impacts impacts_;
   std::vector<std::uint32_t> sound_;  // members
 };

@@ -128,7 +128,7 @@ void LargeIslandSolver::add_rows_of_part(Assembly& assembly, std::uint32_t part)
       if (const std::optional<Parts> two = across(assembly.anchors.member(pair.b)))
         crossings.push_back({.parts = *two, .pair = &pair});
       else
-        assembly.add_contact_rows(pair, problem, false);
+        assembly.add_contact_rows(pair, problem, FrictionStart::shared);
     });
   }
 }
@@ -178,7 +178,7 @@ void LargeIslandSolver::add_rows_of_seam(Assembly& assembly, const Seam& seam, P
     if (crossing.connection != nullptr) {
       assembly.add_connection_rows(*crossing.connection, problem);
     } else if (crossing.pair != nullptr) {
-      assembly.add_contact_rows(*crossing.pair, problem, false);
+      assembly.add_contact_rows(*crossing.pair, problem, FrictionStart::shared);
     } else {
       assembly.add_own_rows(crossing.member, problem);
       problem_of_[static_cast<std::size_t>(assembly.anchors.index_of_member[crossing.member])] = &problem;

@@ -34,9 +34,9 @@ Tangents tangents_of(const ContactPoints& contact, const Eigen::Vector3d& normal
 
 namespace {
 
-// Sets the initial impulses of friction. If they are kept, the sum over the points is shared among them by load.
-// Otherwise points could strain against each other without any effect, and this strain would grow from step to step.
-void start_friction(ContactPoints& contact, bool is_kept) {
+// Shares the sum of the impulses of friction among the points by load, or sets them to zero. Otherwise points could
+// strain against each other without any effect, and this strain would grow from step to step.
+void share_friction(ContactPoints& contact, bool is_kept) {
   double load = 0.0;
   Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
   for (const ContactPoint& point : contact) {
@@ -125,8 +125,8 @@ ContactImpulse impulse_of(const ContactPoints& contact, const ContactPoint& poin
 }
 
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
-                      const RunningSurfaces& running, double step, bool keeps_friction) {
-  start_friction(contact, keeps_friction || b.body < 0);
+                      const RunningSurfaces& running, double step, FrictionStart start) {
+  if (start != FrictionStart::last) share_friction(contact, b.body < 0);
   for (ContactPoint& point : contact)
     add_point_rows(problem, a, b, tangents_of(contact, point.normal_W), point, surfaces, running, step);
 }

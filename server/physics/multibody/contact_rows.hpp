@@ -27,13 +27,16 @@ struct RunningSurfaces {
   }
 };
 
+/// The impulses with which friction starts: those of the last step at each point, which requires a solver that solves
+/// all rows; or their sum at static bodies, shared by load, and zero between two moving ones.
+enum class FrictionStart : std::uint8_t { last, shared };
+
 /// Adds the rows of the points between `a`, a body, and `b`. Each point has one row along the normal, which is soft if
 /// the surfaces are, and two along the surface. Friction acts in a disc or, if it has a direction, separately along and
 /// across it. Two more rows against rolling and one against spinning follow if the surfaces resist these. Friction
 /// drives each body towards the surface velocity of the other. `contact.friction_direction_W` is that of `surfaces` or,
-/// if they have none, the axis of a belt. `keeps_friction`: whether friction between two bodies starts with its
-/// impulses of the last step; if not, it starts with zero.
+/// if they have none, the axis of a belt.
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
-                      const RunningSurfaces& running, double step, bool keeps_friction);
+                      const RunningSurfaces& running, double step, FrictionStart start);
 
 }  // namespace cohort::physics

@@ -52,6 +52,7 @@ Row& Problem::finish_row(Row& row, Anchor a, Anchor b) {
 Row& Problem::add_force_row(Anchor a, Anchor b, const Eigen::Vector3d& point_W, const Eigen::Vector3d& direction_W,
                             double* kept) {
   Row& row = begin_row(a, b, kept);
+  row.is_of_force = true;
   double* jacobian_a = numbers_.data() + row.numbers;
   equations(a.body).add_force(a.segment, point_W, direction_W, jacobian_a);
   if (b.body >= 0) {

@@ -257,8 +257,7 @@ void Assembly::add_contact_rows(SolidPair& pair, Problem& problem, FrictionStart
       pair.contact.friction_direction_W = b.X_WC.orientation * b.surface().friction_direction;
       break;
   }
-  physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, running, step,
-                            start);
+  physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, running, step, start);
 }
 
 bool Assembly::is_immovable(std::uint32_t solid) const {

@@ -13,21 +13,37 @@ namespace {
 // A pass that changes velocities by less than this share of what gravity adds in a step has settled them.
 constexpr double settled_share = 1e-4;
 constexpr double settled_without_gravity = 1e-5;  // [m/s or rad/s]
-// Newton's method is this much more precise, at nearly the same cost.
-constexpr double share_for_newton = 1e-2;
+// Islands of up to this many bodies with connections at light links, such as an arm that lifts a robot, are solved by
+// Newton's method. More bodies would take too long, and connected bodies of similar mass do not need it.
+constexpr std::size_t most_lightly_connected = 6;
+// Newton's method solves an island this much more precisely.
+constexpr double precise_share = 1e-2;
 // Where Newton's method finds no solution, up to this multiple of the usual number of passes settles an island.
 constexpr std::uint32_t passes_of_unsettled = 5;
 // Fast-spinning bodies need more passes: their equations are not symmetric, as the other solvers require.
 constexpr std::uint32_t passes_where_fast = 10;
 
-// Returns whether only other moving bodies support it.
-bool is_carried(std::uint32_t member, const Assembly& assembly) {
+// Returns whether only other moving bodies support it, as a can between fingers.
+bool is_held_by_others(std::uint32_t member, const Assembly& assembly) {
   const Multibody& multibody = *assembly.members[member].multibody;
   bool stands = !multibody.mechanism().has_free_root();
   for (const TrackRows& treel : multibody.treels())
     treel.for_each_ground([&](std::uint32_t solid) { stands = stands || !assembly.anchors.moves(solid); });
   assembly.for_each_pair(member, [&](const SolidPair& pair) { stands = stands || !assembly.anchors.moves(pair.b); });
   return !stands;
+}
+
+// Returns whether it stands on another moving body, or that one on it.
+bool is_stacked(std::uint32_t member, const Assembly& assembly) {
+  constexpr double steepest = 0.5;  // cosine of the angle between gravity and the normal
+  const double least = steepest * assembly.gravity.norm();
+  bool is_stacked = false;
+  assembly.for_each_pair(member, [&](const SolidPair& pair) {
+    if (!assembly.anchors.moves(pair.b)) return;
+    for (const ContactPoint& point : pair.contact)
+      is_stacked = is_stacked || std::abs(point.normal_W.dot(assembly.gravity)) > least;
+  });
+  return is_stacked;
 }
 
 }  // namespace
@@ -37,9 +53,10 @@ double settled_change(const Assembly& assembly) {
   return fall > 0.0 ? settled_share * fall : settled_without_gravity;
 }
 
-bool is_unsettled_heap(double change, std::span<const std::uint32_t> members, const Assembly& assembly) {
-  return change > settled_change(assembly) && members.size() > 1 &&
-         std::ranges::any_of(members, [&](std::uint32_t member) { return is_carried(member, assembly); });
+bool has_carried(std::span<const std::uint32_t> members, const Assembly& assembly) {
+  return std::ranges::any_of(members, [&](std::uint32_t member) {
+    return is_held_by_others(member, assembly) || is_stacked(member, assembly);
+  });
 }
 
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies) {
@@ -83,43 +100,54 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
   for (const std::uint32_t member : sound_) assembly.set_up(member, bodies_);
   if (!all_are_finite()) return false;
 
-  const bool directly = is_solved_directly(assembly.settings, sound_.size());
-  const bool is_symmetric = std::ranges::all_of(
-      sound_, [&](std::uint32_t member) { return bodies_[assembly.anchors.index_of_member[member]].is_symmetric(); });
   problem_.clear();
   for (const std::uint32_t member : sound_) assembly.add_own_rows(member, problem_);
-  bool has_connections = false;
+  bool has_light_connections = false;
+  has_connections_ = false;
   for (const std::uint32_t member : sound_)
     assembly.connections.for_each_of(member, [&](Connection& connection) {
       assembly.add_connection_rows(connection, problem_);
-      has_connections = true;
+      has_connections_ = true;
+      has_light_connections =
+          has_light_connections || assembly.is_light(connection.a()) || assembly.is_light(connection.b());
     });
-  const bool is_alone = sound_.size() == 1;
-  const FrictionStart start = is_symmetric && !directly && !is_alone ? FrictionStart::last : FrictionStart::shared;
+  method_ = find_method(assembly, has_light_connections);
+  const FrictionStart start =
+      method_ == Method::newton && sound_.size() > 1 ? FrictionStart::last : FrictionStart::shared;
   for (const std::uint32_t member : sound_)
     assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_, start); });
 
   impacts_.solve(problem_);
-  const double settled = settled_change(assembly);
-  bool is_solved = false;
-  if (directly && is_symmetric) {
-    is_solved = solve_directly(problem_);
-  } else {
-    is_solved = solve_by_active_set(problem_) ||
-                (is_symmetric && (!is_alone || !has_cones()) && newton_.solve(problem_, share_for_newton * settled));
-  }
-  if (!is_solved) {
-    const std::uint32_t passes = assembly.settings.iterations * (is_symmetric ? 1 : passes_where_fast);
-    solve_iteratively(problem_,
-                      is_alone ? Passes{passes, passes, 0.0} : Passes{passes, passes_of_unsettled * passes, settled},
-                      has_connections ? start_of_connected : 1.0);
-  }
+  solve_rows(assembly);
   if (!all_are_finite()) return false;
 
   impacts_.add_impulses(problem_);
   keep_impulses(problem_);
   for (const std::uint32_t member : sound_) assembly.integrate(member, problem_);
   return true;
+}
+
+IslandSolver::Method IslandSolver::find_method(const Assembly& assembly, bool has_light_connections) const {
+  const bool is_symmetric = std::ranges::all_of(
+      sound_, [&](std::uint32_t member) { return bodies_[assembly.anchors.index_of_member[member]].is_symmetric(); });
+  if (!is_symmetric) return Method::many_passes;
+  if (is_solved_directly(assembly.settings, sound_.size())) return Method::direct;
+  if (has_connections_)
+    return has_light_connections && sound_.size() <= most_lightly_connected ? Method::newton : Method::passes;
+  return sound_.size() == 1 || has_carried(sound_, assembly) ? Method::newton : Method::passes;
+}
+
+void IslandSolver::solve_rows(const Assembly& assembly) {
+  const double settled = settled_change(assembly);
+  const bool is_alone = sound_.size() == 1;
+  if (method_ == Method::direct && solve_directly(problem_)) return;
+  if (method_ != Method::direct && solve_by_active_set(problem_)) return;
+  if (method_ == Method::newton && !(is_alone && has_cones()) && newton_.solve(problem_, precise_share * settled))
+    return;
+
+  const std::uint32_t passes = assembly.settings.iterations * (method_ == Method::many_passes ? passes_where_fast : 1);
+  const std::uint32_t most = is_alone || has_connections_ ? passes : passes_of_unsettled * passes;
+  solve_iteratively(problem_, {passes, most, settled}, has_connections_ ? start_of_connected : 1.0);
 }
 
 bool IslandSolver::has_cones() const {

@@ -16,7 +16,11 @@ class IslandSolver {
   void solve(Assembly& assembly, std::span<const std::uint32_t> members);
 
  private:
+  enum class Method : std::uint8_t { passes, many_passes, direct, newton };
+
   bool try_to_solve(Assembly& assembly);
+  Method find_method(const Assembly& assembly, bool has_light_connections) const;
+  void solve_rows(const Assembly& assembly);
   bool has_cones() const;
 
   IslandBodies bodies_;
@@ -24,16 +28,15 @@ class IslandSolver {
   NewtonSolver newton_;
   Impacts impacts_;
   std::vector<std::uint32_t> sound_;  // members
+  bool has_connections_ = false;
+  Method method_ = Method::passes;
 };
 
 /// Returns the change of a row's velocity in a pass below which the island has settled [m/s or rad/s].
 double settled_change(const Assembly& assembly);
 
-/// Returns whether the passes ended too early for bodies that are carried by others, as in a stack or between fingers:
-/// the upper bodies would drift. `change`: greatest change of a row's velocity in the last pass.
-bool is_unsettled_heap(double change, std::span<const std::uint32_t> members, const Assembly& assembly);
-/// The number of passes is multiplied by this for such a heap; they end when nothing changes any more.
-inline constexpr std::uint32_t passes_of_heaps = 4;
+/// Returns whether any of these bodies is carried by others only, as in a stack or between fingers.
+bool has_carried(std::span<const std::uint32_t> members, const Assembly& assembly);
 
 /// Returns whether an island of this many bodies is solved by Dantzig's algorithm.
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies);

@@ -10,6 +10,8 @@
 namespace cohort::physics {
 namespace {
 
+// A heap whose passes end before it has settled gets this multiple of the usual number in addition.
+constexpr std::uint32_t passes_of_heaps = 4;
 constexpr std::uint32_t bodies_a_part = 32;
 constexpr std::size_t bodies_a_chunk = 16;
 
@@ -54,7 +56,7 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
       SequentialImpulses(share.problem).start(share_of_last);
     });
   const double change = run_passes(assembly.settings.iterations);
-  if (!has_connections && is_unsettled_heap(change, sound_, assembly))
+  if (!has_connections && change > settled_change(assembly) && has_carried(sound_, assembly))
     run_passes(passes_of_heaps * assembly.settings.iterations);
   if (!all_are_finite(assembly)) return false;
 

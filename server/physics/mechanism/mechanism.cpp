@@ -82,6 +82,7 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
       followers_.push_back({follower.first_dof, leader.first_dof, coupling.multiplier, coupling.offset});
   }
   turn_to_principal_axes();
+  find_light_segments();
   if (has_kinematic_root()) make_root_immovable();
   find_outputs();
 }
@@ -143,6 +144,15 @@ void Mechanism::turn_to_principal_axes() {
     for (LinkPlace& link : links_)
       if (link.segment == static_cast<int>(s)) link.X_SL = to_segment * link.X_SL;
   }
+}
+
+void Mechanism::find_light_segments() {
+  constexpr double light_share = 0.25;
+  std::vector<double> masses;  // each segment with everything it carries
+  for (const Segment& segment : segments_) masses.push_back(segment.mass);
+  for (std::size_t s = segments_.size(); s-- > 0;)
+    if (segments_[s].parent >= 0) masses[static_cast<std::size_t>(segments_[s].parent)] += masses[s];
+  for (const double mass : masses) is_light_.push_back(mass < light_share * masses[0] ? 1 : 0);
 }
 
 void Mechanism::add_link(std::size_t link, const std::vector<char>& welded) {

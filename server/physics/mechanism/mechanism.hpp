@@ -93,6 +93,9 @@ class Mechanism {
   /// Returns whether wheels are simulated; the motors of their joints then drive the robot.
   bool has_wheels() const { return has_wheels_; }
 
+  /// Returns whether a segment and everything it carries have less than a quarter of the total mass. A connection there
+  /// easily moves this part and hardly moves the rest.
+  bool is_light(int segment) const { return is_light_[static_cast<std::size_t>(segment)] != 0; }
 
   int dof_count() const { return static_cast<int>(dofs_.size()); }
   /// Returns the length of a velocity vector in the solver, padded with zeros. A mechanism welded to the world has such
@@ -109,6 +112,7 @@ class Mechanism {
                   const description::JointAxis* axis);
   void turn_to_principal_axes();
   void find_outputs();
+  void find_light_segments();
   void make_root_immovable();
   void add_mass(int index, const description::Inertial& inertial, const Pose& X_SL);
 
@@ -121,6 +125,7 @@ class Mechanism {
   DeviceOutputs outputs_;
   std::vector<double> zero_coordinates_;
   std::vector<int> parents_;
+  std::vector<char> is_light_;  // by segment
   bool is_chain_ = true;
   bool has_wheels_ = false;
 };

@@ -100,8 +100,11 @@ double solve_iteratively(Problem& problem, const Passes& passes, double share_of
   impulses.start(share_of_last);
   double change = 0.0;
   for (std::uint32_t i = 0; i < passes.most; ++i) {
+    const double before = change;
     change = impulses.pass(i % 2 == 0);
     if (change <= (i + 1 < passes.least ? negligible_change : passes.settled)) break;
+    const double left = passes.most - 1 - i;
+    if (i + 1 >= passes.least && change * std::pow(change / before, left) > passes.settled) break;
   }
   return change;
 }

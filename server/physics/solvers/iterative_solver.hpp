@@ -41,7 +41,7 @@ class SequentialImpulses {
 inline constexpr double start_of_connected = 0.9;
 
 /// How long to solve: `least` passes, unless nothing changes any more. Up to `most` passes follow while one still
-/// changes the velocity of a row by more than `settled` [m/s or rad/s].
+/// changes the velocity of a row by more than `settled` [m/s or rad/s], if they converge so fast that they get there.
 struct Passes {
   std::uint32_t least = 0;
   std::uint32_t most = 0;

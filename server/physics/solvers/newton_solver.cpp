@@ -15,19 +15,17 @@ constexpr double flat = 0.1;  // share of the first slope at which a line search
 
 // Compliance of rows as a share of what the bodies yield to an impulse. More compliance makes a minimum easier to find,
 // less makes the next guess better.
-constexpr double yielding_one_sided = 1e-4;  // contacts and limits of joints
+constexpr double yielding_one_sided = 1e-3;  // contacts and limits of joints
 constexpr double yielding_two_sided = 1e-2;  // friction and motors
 // A contact forgets this share of its guess, so that it yields a little to its load. Otherwise the loads of a body on
 // more points than it needs would drift. Friction remembers all of its guess: a body at rest does not creep.
-constexpr double forgotten_share = 1e-2;
+constexpr double forgotten_share = 1e-3;
 // Rows without any limit have no guess: loops may contradict each other by the sum of their gaps.
 constexpr double yielding_without_limit = 1e-5;
 // If masses differ much, the rows of light bodies carry the loads of heavy ones. Their compliance is at most this
 // multiple of what the heaviest body yields.
 constexpr double yielding_of_heaviest = 0.1;
 
-// The first minimum does not have to be as precise as the last.
-constexpr double first_tolerance = 10.0;
 // A limit of friction may still change by this multiple of the negligible error, as it would change the velocity of a
 // free body.
 constexpr double limits_tolerance = 100.0;
@@ -209,9 +207,9 @@ bool NewtonSolver::prepare() {
 // Finds minima until the rows do not yield any more. Returns false if it does not even find the first.
 bool NewtonSolver::follow(double negligible) {
   int steps_left = most_steps;
-  double tolerance = first_tolerance * negligible;
   for (int minimum = 0; minimum < most_minima; ++minimum) {
-    if (!minimise(tolerance, steps_left)) {
+    double moved = 0.0;
+    if (!minimise(negligible, steps_left, moved)) {
       velocity_ = found_;
       return minimum > 0;
     }
@@ -220,20 +218,21 @@ bool NewtonSolver::follow(double negligible) {
       for (std::size_t i = 0; i < term.count; ++i) impulses_[term.row + i] = term.impulse[i];
     const double yielded = update_guesses();
     const double limits = update_limits();
-    if (tolerance <= negligible && yielded <= negligible && limits <= limits_tolerance * negligible) return true;
-    tolerance = std::clamp(0.1 * std::max(yielded, limits / limits_tolerance), 0.1 * negligible, negligible);
+    if (minimum > 0 && moved <= negligible) return true;
+    if (yielded <= negligible && limits <= limits_tolerance * negligible) return true;
   }
   return true;
 }
 
 // Returns false if no minimum was found in the steps that are left.
-bool NewtonSolver::minimise(double negligible, int& steps_left) {
+bool NewtonSolver::minimise(double negligible, int& steps_left, double& moved) {
   bool is_whole = false;
   for (; steps_left > 0; --steps_left) {
     const bool is_same = evaluate();
     if (is_whole && is_same) return true;
     if (!is_factorised_ || !is_same) factorise();
     const double greatest = find_step();
+    moved = std::max(moved, greatest);
     const bool is_last = greatest <= negligible;
     const double share = is_last ? 1.0 : find_share();
     add_step(share);

@@ -57,7 +57,7 @@ class NewtonSolver {
   bool is_settled(double negligible) const;
   bool prepare();
   bool follow(double negligible);
-  bool minimise(double negligible, int& steps_left);
+  bool minimise(double negligible, int& steps_left, double& moved);
   bool evaluate();
   void evaluate(Term& term, double share) const;
   void factorise();

@@ -110,34 +110,41 @@ void on_plane(const Ellipsoid& ellipsoid, const Pose& X_W, const HalfSpace& plan
   touch_plane(X_W * lowest, plane, margin, found);
 }
 
-// Takes, of the vertices near the plane, the lowest one and those furthest out in three directions around it.
+// Takes the vertices near the plane if there are at most four, otherwise four that are far from each other: first of
+// those that touch, then of the others. The body must not tip over an edge between vertices that were left out.
 void on_plane(const Mesh& mesh, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
   if (!mesh.convex) return;  // it is static, and so is the plane
-  std::vector<Vector3d> near;
-  Vector3d lowest = Vector3d::Zero();
-  double least = std::numeric_limits<double>::infinity();
+  struct Vertex {
+    Vector3d point_W;
+    double height;
+    double away;  // squared distance to the nearest vertex that was taken
+    bool is_taken = false;
+  };
+  std::vector<Vertex> near;
+  double least = margin;
   for (const Vector3d& vertex : mesh.triangles->vertices) {
     const Vector3d point_W = X_W * vertex;
     const double height = plane.height(point_W);
     if (height >= margin) continue;
-    near.push_back(point_W);
-    if (height >= least) continue;
-    least = height;
-    lowest = point_W;
+    near.push_back({point_W, height, std::numeric_limits<double>::infinity()});
+    least = std::min(least, height);
   }
-  if (near.empty()) return;
-  const Vector3d x = plane.normal_W.unitOrthogonal();
-  const Vector3d y = plane.normal_W.cross(x);
-  touch_plane(lowest, plane, margin, found);
-  for (const Vector3d& direction : {x, Vector3d(-0.5 * x + y), Vector3d(-0.5 * x - y)}) {
-    const Vector3d& outermost = *std::max_element(near.begin(), near.end(), [&](const Vector3d& a, const Vector3d& b) {
-      return direction.dot(a) < direction.dot(b);
-    });
-    const bool is_new = std::none_of(found.begin(), found.end(), [&](const ContactPoint& point) {
-      return (point.position_W - outermost + 0.5 * plane.height(outermost) * plane.normal_W).squaredNorm() == 0.0;
-    });
-    if (is_new) touch_plane(outermost, plane, margin, found);
+  constexpr double touching = 1e-3;  // height above the lowest vertex [m]
+  for (const bool only_touching : {true, false}) {
+    for (int taken = 0; taken < ContactPoints::most; ++taken) {
+      Vertex* furthest = nullptr;
+      for (Vertex& vertex : near)
+        if (vertex.away > 0.0 && (!only_touching || vertex.height < least + touching) &&
+            (furthest == nullptr || vertex.away > furthest->away))
+          furthest = &vertex;
+      if (furthest == nullptr) break;
+      furthest->is_taken = true;
+      for (Vertex& vertex : near)
+        vertex.away = std::min(vertex.away, (vertex.point_W - furthest->point_W).squaredNorm());
+    }
   }
+  for (const Vertex& vertex : near)
+    if (vertex.is_taken) touch_plane(vertex.point_W, plane, margin, found);
 }
 
 // The point of a box's surface nearest to `point`, both in the box's frame. For a point inside, it is on the nearest

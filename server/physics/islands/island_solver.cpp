@@ -59,6 +59,18 @@ bool has_carried(std::span<const std::uint32_t> members, const Assembly& assembl
   });
 }
 
+bool is_calm_heap(std::span<const std::uint32_t> members, Assembly& assembly) {
+  const double fall = assembly.step * assembly.gravity.norm();
+  double sum = 0.0;
+  bool has_connections = false;
+  for (const std::uint32_t member : members) {
+    const BodyMotion& motion = assembly.members[member].multibody->motion();
+    sum += motion.segment_twist(0, motion.segment_pose(0).position).linear_W.squaredNorm();
+    assembly.connections.for_each_of(member, [&](const Connection&) { has_connections = true; });
+  }
+  return sum < fall * fall * static_cast<double>(members.size()) && !has_connections && has_carried(members, assembly);
+}
+
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies) {
   return settings.solver == description::Solver::direct ||
          (settings.solver == description::Solver::hybrid && bodies <= settings.direct_bodies);
@@ -82,23 +94,40 @@ void keep_impulses(const Problem& problem) {
     if (row.kept != nullptr) *row.kept = row.impulse;
 }
 
-void IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
+void IslandSolver::take(const Assembly& assembly, std::span<const std::uint32_t> members) {
   sound_.clear();
   for (const std::uint32_t member : members)
     if (assembly.members[member].is_awake()) sound_.push_back(member);
+}
+
+void IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
+  take(assembly, members);
   while (!sound_.empty() && !try_to_solve(assembly)) leave_out_broken(sound_, assembly);
 }
 
-// Returns false, without moving any body, if one of them has invalid velocities.
+bool IslandSolver::solve_by_newton(Assembly& assembly, std::span<const std::uint32_t> members) {
+  take(assembly, members);
+  return set_up(assembly) && method_ == Method::newton &&
+         newton_.solve(problem_, precise_share * settled_change(assembly)) && finish(assembly);
+}
+
 bool IslandSolver::try_to_solve(Assembly& assembly) {
-  const auto all_are_finite = [&] {
-    bool all = true;
-    for (const std::uint32_t member : sound_) all = assembly.check(member, bodies_) && all;
-    return all;
-  };
+  if (!set_up(assembly)) return false;
+  solve_rows(assembly);
+  return finish(assembly);
+}
+
+bool IslandSolver::all_are_finite(Assembly& assembly) {
+  bool all = true;
+  for (const std::uint32_t member : sound_) all = assembly.check(member, bodies_) && all;
+  return all;
+}
+
+// Returns false if a body has invalid velocities without any impulse.
+bool IslandSolver::set_up(Assembly& assembly) {
   number_bodies(sound_, assembly, bodies_);
   for (const std::uint32_t member : sound_) assembly.set_up(member, bodies_);
-  if (!all_are_finite()) return false;
+  if (!all_are_finite(assembly)) return false;
 
   problem_.clear();
   for (const std::uint32_t member : sound_) assembly.add_own_rows(member, problem_);
@@ -116,11 +145,13 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
       method_ == Method::newton && sound_.size() > 1 ? FrictionStart::last : FrictionStart::shared;
   for (const std::uint32_t member : sound_)
     assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_, start); });
-
   impacts_.solve(problem_);
-  solve_rows(assembly);
-  if (!all_are_finite()) return false;
+  return true;
+}
 
+// Returns false, without moving any body, if one of them has invalid velocities.
+bool IslandSolver::finish(Assembly& assembly) {
+  if (!all_are_finite(assembly)) return false;
   impacts_.add_impulses(problem_);
   keep_impulses(problem_);
   for (const std::uint32_t member : sound_) assembly.integrate(member, problem_);

@@ -14,11 +14,18 @@ class IslandSolver {
  public:
   /// Solves the island. A body whose state breaks keeps its pose, and the rest of the island is solved without it.
   void solve(Assembly& assembly, std::span<const std::uint32_t> members);
+  /// Solves a large heap by Newton's method. Returns false, without any change, if it is no heap, if that would cost
+  /// too much or if a velocity is invalid.
+  bool solve_by_newton(Assembly& assembly, std::span<const std::uint32_t> members);
 
  private:
   enum class Method : std::uint8_t { passes, many_passes, direct, newton };
 
+  void take(const Assembly& assembly, std::span<const std::uint32_t> members);
   bool try_to_solve(Assembly& assembly);
+  bool all_are_finite(Assembly& assembly);
+  bool set_up(Assembly& assembly);
+  bool finish(Assembly& assembly);
   Method find_method(const Assembly& assembly, bool has_light_connections) const;
   void solve_rows(const Assembly& assembly);
   bool has_cones() const;
@@ -40,6 +47,9 @@ bool has_carried(std::span<const std::uint32_t> members, const Assembly& assembl
 
 /// Returns whether an island of this many bodies is solved by Dantzig's algorithm.
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies);
+
+/// Returns whether the bodies of a heap without connections move so slowly, on average, that they will soon rest.
+bool is_calm_heap(std::span<const std::uint32_t> members, Assembly& assembly);
 
 /// Assigns to each member its index in `bodies`.
 void number_bodies(std::span<const std::uint32_t> members, Assembly& assembly, IslandBodies& bodies);

@@ -12,6 +12,9 @@ namespace {
 
 // A heap whose passes end before it has settled gets this multiple of the usual number in addition.
 constexpr std::uint32_t passes_of_heaps = 4;
+// A heap that is nearly at rest: passes over everything, and before each of them passes over the loads.
+constexpr int most_passes_of_calm = 20;
+constexpr int passes_over_loads = 10;
 constexpr std::uint32_t bodies_a_part = 32;
 constexpr std::size_t bodies_a_chunk = 16;
 
@@ -35,6 +38,13 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   });
   if (!all_are_finite(assembly)) return false;
 
+  const bool has_connections = std::ranges::any_of(sound_, [&](std::uint32_t member) {
+    bool any = false;
+    assembly.connections.for_each_of(member, [&](const Connection&) { any = true; });
+    return any;
+  });
+  const bool is_calm = is_calm_heap(sound_, assembly);
+  friction_start_ = is_calm ? FrictionStart::last : FrictionStart::shared;
   cut(assembly);
   workers_.for_each_chunk(parts_.count(), 1, [&](std::size_t part, std::size_t, unsigned) {
     add_rows_of_part(assembly, static_cast<std::uint32_t>(part));
@@ -44,20 +54,18 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   workers_.for_each_chunk(seams_.size(), 1, [&](std::size_t seam, std::size_t, unsigned) {
     add_rows_of_seam(assembly, seams_[seam], shares_[parts_.count() + seam].problem);
   });
-  const bool has_connections = std::any_of(sound_.begin(), sound_.end(), [&](std::uint32_t member) {
-    bool any = false;
-    assembly.connections.for_each_of(member, [&](const Connection&) { any = true; });
-    return any;
-  });
   const double share_of_last = has_connections ? start_of_connected : 1.0;
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
     for_each_share(phase, [&](Share& share) {
       rebound_at_once(share.problem);
       SequentialImpulses(share.problem).start(share_of_last);
     });
-  const double change = run_passes(assembly.settings.iterations);
-  if (!has_connections && change > settled_change(assembly) && has_carried(sound_, assembly))
+  const double settled = settled_change(assembly);
+  if (is_calm) {
+    settle(settled);
+  } else if (run_passes(assembly.settings.iterations) > settled && !has_connections && has_carried(sound_, assembly)) {
     run_passes(passes_of_heaps * assembly.settings.iterations);
+  }
   if (!all_are_finite(assembly)) return false;
 
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
@@ -130,7 +138,7 @@ void LargeIslandSolver::add_rows_of_part(Assembly& assembly, std::uint32_t part)
       if (const std::optional<Parts> two = across(assembly.anchors.member(pair.b)))
         crossings.push_back({.parts = *two, .pair = &pair});
       else
-        assembly.add_contact_rows(pair, problem, FrictionStart::shared);
+        assembly.add_contact_rows(pair, problem, friction_start_);
     });
   }
 }
@@ -180,7 +188,7 @@ void LargeIslandSolver::add_rows_of_seam(Assembly& assembly, const Seam& seam, P
     if (crossing.connection != nullptr) {
       assembly.add_connection_rows(*crossing.connection, problem);
     } else if (crossing.pair != nullptr) {
-      assembly.add_contact_rows(*crossing.pair, problem, FrictionStart::shared);
+      assembly.add_contact_rows(*crossing.pair, problem, friction_start_);
     } else {
       assembly.add_own_rows(crossing.member, problem);
       problem_of_[static_cast<std::size_t>(assembly.anchors.index_of_member[crossing.member])] = &problem;
@@ -198,19 +206,35 @@ void LargeIslandSolver::for_each_share(std::size_t phase, Work&& work) {
   });
 }
 
-double LargeIslandSolver::run_passes(std::uint32_t most) {
+double LargeIslandSolver::run_pass(bool forwards, bool with_friction) {
   const std::size_t phases = phases_.size() - 1;
+  for (std::size_t phase = 0; phase < phases; ++phase)
+    for_each_share(forwards ? phase : phases - 1 - phase, [&](Share& share) {
+      SequentialImpulses impulses(share.problem);
+      share.change = with_friction ? impulses.pass(forwards) : impulses.pass_without_friction(forwards);
+    });
   double greatest = 0.0;
-  for (std::uint32_t i = 0; i < most; ++i) {
-    const bool forwards = i % 2 == 0;
-    for (std::size_t phase = 0; phase < phases; ++phase)
-      for_each_share(forwards ? phase : phases - 1 - phase,
-                     [&](Share& share) { share.change = SequentialImpulses(share.problem).pass(forwards); });
-    greatest = 0.0;
-    for (std::size_t share = 0; share < phases_.back(); ++share) greatest = std::max(greatest, shares_[share].change);
-    if (greatest <= negligible_change) break;
-  }
+  for (std::size_t share = 0; share < phases_.back(); ++share) greatest = std::max(greatest, shares_[share].change);
   return greatest;
+}
+
+double LargeIslandSolver::run_passes(std::uint32_t most) {
+  double change = 0.0;
+  for (std::uint32_t i = 0; i < most; ++i) {
+    change = run_pass(i % 2 == 0, true);
+    if (change <= negligible_change) break;
+  }
+  return change;
+}
+
+// Passes over the loads before each pass over everything carry the weight of a heap down to the ground. Friction, whose
+// limits are the loads, would otherwise rock it.
+void LargeIslandSolver::settle(double settled) {
+  for (int i = 0; i < most_passes_of_calm; ++i) {
+    for (int k = 0; k < passes_over_loads; ++k)
+      if (run_pass(k % 2 == 0, false) <= settled) break;
+    if (run_pass(i % 2 == 0, true) <= settled) break;
+  }
 }
 
 }  // namespace cohort::physics

@@ -64,14 +64,17 @@ class LargeIslandSolver {
   void colour_seams();
   void add_rows_of_seam(Assembly& assembly, const Seam& seam, Problem& problem);
   bool all_are_finite(Assembly& assembly);
-  /// Returns the greatest change of a row's velocity in the last pass.
+  /// These return the greatest change of a row's velocity in the last pass.
+  double run_pass(bool forwards, bool with_friction);
   double run_passes(std::uint32_t most);
+  void settle(double settled);
   template <class Work>
   void for_each_share(std::size_t phase, Work&& work);
 
   WorkerPool& workers_;
   IslandBodies bodies_;
   std::vector<std::uint32_t> sound_;  // members
+  FrictionStart friction_start_ = FrictionStart::shared;
   IslandParts parts_;
   std::vector<std::vector<Crossing>> crossings_of_part_;
   std::vector<Crossing> crossings_;

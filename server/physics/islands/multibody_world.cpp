@@ -262,7 +262,8 @@ void MultibodyWorld::wake_group_of(std::uint32_t sleeper) {
   sleep_.wake(sleeper);
 }
 
-// Small islands come first, each solved by one worker, then the large ones, each solved by all workers.
+// Small islands come first, each solved by one worker, then the large ones, each solved by all workers. A large heap
+// that is nearly at rest is solved more precisely by one of them, so that it comes to rest.
 void MultibodyWorld::solve_islands() {
   const auto is_large = [&](std::uint32_t island) {
     const std::size_t bodies = islands_.members(island).size();
@@ -273,8 +274,12 @@ void MultibodyWorld::solve_islands() {
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
       if (!is_large(island)) solver.solve(assembly_, islands_.members(island));
   });
-  for (std::uint32_t island = 0; island < islands_.count(); ++island)
-    if (is_large(island)) large_island_solver_.solve(assembly_, islands_.members(island));
+  for (std::uint32_t island = 0; island < islands_.count(); ++island) {
+    if (!is_large(island)) continue;
+    const std::span<const std::uint32_t> members = islands_.members(island);
+    if (!is_calm_heap(members, assembly_) || !solver_of_this_thread().solve_by_newton(assembly_, members))
+      large_island_solver_.solve(assembly_, members);
+  }
   if (!assembly_.settings.sleeping) return;
   workers_.for_each_chunk(awake_.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) sleep_.count(awake_[i]);

@@ -20,12 +20,20 @@ constexpr double still_share = 1e-3;
 bool is_still(const Member& member, double fall) {
   if (!member.is_finite || !member.is_inside) return false;
   const Multibody& body = *member.multibody;
-  const double slow = body.mechanism().is_free_body() ? std::max(still, still_share * fall) : still;
+  const bool is_free = body.mechanism().is_free_body();
+  const double slow = is_free ? std::max(still, still_share * fall) : still;
+  double slow_turn = slow;  // [rad/s]: as fast at the radius of gyration
+  if (is_free) {
+    const Segment& segment = body.mechanism().segments()[0];
+    slow_turn = std::max(still, slow / std::sqrt(segment.inertia_S.diagonal().maxCoeff() / segment.mass));
+  }
   const auto is_slow = [&](double velocity) { return std::abs(velocity) < slow; };
-  return std::all_of(body.motion().velocities(), body.motion().velocities() + body.mechanism().dof_count(), is_slow) &&
-         std::ranges::all_of(body.treels(), [&](const TrackRows& treel) {
-           return is_slow(treel.track(Side::left).velocity) && is_slow(treel.track(Side::right).velocity);
-         });
+  const double* velocities = body.motion().velocities();
+  for (int i = 0; i < body.mechanism().dof_count(); ++i)
+    if (std::abs(velocities[i]) >= (is_free && i < 3 ? slow_turn : slow)) return false;
+  return std::ranges::all_of(body.treels(), [&](const TrackRows& treel) {
+    return is_slow(treel.track(Side::left).velocity) && is_slow(treel.track(Side::right).velocity);
+  });
 }
 
 }  // namespace

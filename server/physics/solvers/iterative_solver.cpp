@@ -28,6 +28,16 @@ double SequentialImpulses::pass(bool forwards) {
   return greatest;
 }
 
+double SequentialImpulses::pass_without_friction(bool forwards) {
+  double greatest = 0.0;
+  const std::size_t count = rows_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t index = forwards ? i : count - 1 - i;
+    if (rows_[index].has_fixed_limits()) greatest = std::max(greatest, turn(index));
+  }
+  return greatest;
+}
+
 inline double SequentialImpulses::turn(std::size_t index) {
   Row& row = rows_[index];
   switch (row.limits) {

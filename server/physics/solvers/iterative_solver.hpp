@@ -21,6 +21,8 @@ class SequentialImpulses {
   void put_in();
   /// Makes one pass over the rows, forwards or backwards. Returns the greatest change of a row's velocity.
   double pass(bool forwards);
+  /// The same for the rows that are not friction.
+  double pass_without_friction(bool forwards);
 
  private:
   double turn(std::size_t index);

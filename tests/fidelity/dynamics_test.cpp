@@ -144,5 +144,126 @@ TEST(Dynamics, BothImplementationsAgreeOnRandomMechanisms) {
   EXPECT_GT(mechanisms, 400);
 }
 
+// Returns M + D + h K: the mass matrix, the added inertia, and the derivative of the bias forces.
+Eigen::MatrixXd dense_equations(const physics::BodyMotion& body, const std::vector<double>& added_inertia, double h) {
+  const Eigen::Index size = body.mechanism().dof_count();
+  const auto stride = static_cast<Eigen::Index>(body.mechanism().stride());
+  std::vector<physics::Spatial> axes;
+  physics::find_joint_axes(body, axes);
+  physics::BiasForces bias;
+  bias.set_up(body, axes);
+  physics::MassMatrix inertia;
+  inertia.set_up(body, axes, bias.inertias());
+  for (int i = 0; i < size; ++i) inertia.add_inertia(i, added_inertia[static_cast<std::size_t>(i)]);
+  inertia.factorise();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(stride, stride);
+  inertia.add_product(matrix.data());
+
+  const auto bias_at = [&](const Eigen::VectorXd& velocities) {
+    Eigen::VectorXd forces(size);
+    bias.find(velocities.data(), Vector3d::Zero(), forces.data());
+    return forces;
+  };
+  const Eigen::VectorXd present = Numbers(body.velocities(), size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, i);
+    matrix.col(i).head(size) += 0.5 * h * (bias_at(present + unit) - bias_at(present - unit));
+  }
+  return matrix.topLeftCorner(size, size);
+}
+
+// Returns how far the recursion is from elimination for some right-hand sides, relative to the solution.
+double distance_to_elimination(const physics::BodyMotion& body, Draws& draws, double h) {
+  const Eigen::Index size = body.mechanism().dof_count();
+  std::vector<double> added_inertia(static_cast<std::size_t>(size));
+  for (double& inertia : added_inertia) inertia = draws.between(0, 1) < 0.5 ? draws.between(0.0, 0.01) : 0.0;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> dense(dense_equations(body, added_inertia, h));
+  physics::ArticulatedBody recursion;
+  recursion.set_up(body, added_inertia, h);
+  double furthest = 0.0;
+  for (int side = 0; side < 3; ++side) {
+    Eigen::VectorXd x(size);
+    for (double& value : x) value = draws.between(-1.0, 1.0);
+    const Eigen::VectorXd expected = dense.solve(x);
+    recursion.solve(x.data());
+    furthest = std::max(furthest, (x - expected).norm() / expected.norm());
+  }
+  return furthest;
+}
+
+TEST(Dynamics, RecursionAgreesWithEliminationOnRandomMechanisms) {
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Draws draws(seed);
+    const description::Model model = random_mechanism(draws);
+    const physics::Mechanism mechanism(model, description::Fidelity::articulated);
+    if (mechanism.dof_count() == 0 || mechanism.is_free_body()) continue;
+    physics::BodyMotion body(mechanism, Dynamics::cohort, {draws.vector(5.0), draws.rotation()});
+    set_random_state(body, draws);
+    for (const double h : {0.0, 0.005, 0.05}) EXPECT_LT(distance_to_elimination(body, draws, h), 1e-10);
+  }
+}
+
+// Returns hanging links of 0.1 m.
+description::Model chain_of(std::size_t links, JointType type, bool is_free) {
+  description::Model model;
+  for (std::size_t i = 0; i < links; ++i) {
+    model.links.push_back({"link" + std::to_string(i), at(0, 0, -0.1 * static_cast<double>(i)), {}, {}});
+    model.links.back().inertial = solid_box(0.1, Vector3d(0.02, 0.03, 0.1));
+    model.links.back().inertial.X_LI.position.z() = -0.05;
+    if (i == 0 && is_free) continue;
+    const std::size_t parent = i == 0 ? description::Joint::world : i - 1;
+    model.joints.push_back(joint_of("joint" + std::to_string(i), type, parent, i, Vector3d::UnitX()));
+    model.joints.back().second_axis.direction = Vector3d::UnitY();
+  }
+  return model;
+}
+
+// The rounding errors of elimination itself grow with the length of the chain.
+TEST(Dynamics, RecursionAgreesWithEliminationOnALongChain) {
+  for (const JointType type : {JointType::ball, JointType::universal})
+    for (const bool is_free : {false, true}) {
+      SCOPED_TRACE((type == JointType::ball ? "balls" : "universal joints") + std::string(is_free ? ", free" : ""));
+      const description::Model model = chain_of(100, type, is_free);
+      const physics::Mechanism mechanism(model, description::Fidelity::articulated);
+      physics::BodyMotion body(mechanism, Dynamics::cohort, at(1, 2, 3));
+      Draws draws(1);
+      set_random_state(body, draws);
+      for (const double h : {0.0, 0.005}) EXPECT_LT(distance_to_elimination(body, draws, h), 1e-8);
+    }
+}
+
+TEST(Dynamics, BothImplementationsAgreeOnALongChain) {
+  for (const bool is_free : {false, true})
+    for (const bool is_fast : {false, true}) {
+      SCOPED_TRACE(std::string(is_free ? "free " : "") + (is_fast ? "fast" : "at rest"));
+      const description::Model model = chain_of(30, JointType::ball, is_free);
+      const physics::Mechanism mechanism(model, description::Fidelity::articulated);
+      const Eigen::Index size = mechanism.dof_count();
+      const auto stride = static_cast<Eigen::Index>(mechanism.stride());
+      Eigen::VectorXd expected_velocity;
+      for (const Dynamics dynamics : {Dynamics::cohort, Dynamics::bullet}) {
+        physics::BodyMotion body(mechanism, dynamics, at(1, 2, 3));
+        Draws draws(1);
+        set_random_state(body, draws);
+        if (!is_fast) body.stop();
+        physics::Equations equations;
+        equations.set_up(body, Vector3d(0.3, -0.2, -9.81), 0.01, false);
+        ASSERT_EQ(equations.is_symmetric(), !is_fast);
+        const Numbers velocity(equations.velocity(), size);
+        if (dynamics == Dynamics::cohort) expected_velocity = velocity;
+        EXPECT_LT((velocity - expected_velocity).norm(), 1e-8 * expected_velocity.norm());
+        if (is_fast) continue;
+        Eigen::MatrixXd inertia = Eigen::MatrixXd::Zero(stride, stride);
+        equations.add_inertia(inertia.data());
+        Eigen::VectorXd jacobian = Eigen::VectorXd::Zero(stride);
+        for (Eigen::Index i = 0; i < size; ++i) jacobian[i] = draws.between(-1.0, 1.0);
+        Eigen::VectorXd response(stride);
+        equations.respond(jacobian.data(), response.data());
+        EXPECT_LT((inertia * response - jacobian).norm(), 1e-8 * jacobian.norm());
+      }
+    }
+}
+
 }  // namespace
 }  // namespace cohort::test

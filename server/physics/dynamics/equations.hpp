@@ -2,20 +2,23 @@
 
 #include <vector>
 
+#include "server/physics/dynamics/articulated_body.hpp"
 #include "server/physics/dynamics/bias_forces.hpp"
 #include "server/physics/dynamics/body_motion.hpp"
 #include "server/physics/dynamics/joint_axes.hpp"
 #include "server/physics/dynamics/mass_matrix.hpp"
-#include "server/physics/mechanism/linear_system.hpp"
 
 namespace cohort::physics {
 
 /// The equations of motion of one body over one step: its velocities without any impulse, and how an impulse changes
-/// them. They use the dynamics that the body has: Bullet's, or Cohort's own mass matrix. Damping and springs of joints
-/// are integrated implicitly: they are part of the inertia, and so stable at any stiffness. The rotor inertia of geared
+/// them. They use the dynamics that the body has: Bullet's, or Cohort's own. Damping and springs of joints are
+/// integrated implicitly: they are part of the inertia, and so stable at any stiffness. The rotor inertia of geared
 /// motors is part of it too (Featherstone, "Rigid body dynamics algorithms", 2008, chapter 9.6). Bias forces are taken
 /// at the beginning of the step. If a part spins fast, they are taken at its middle instead (linearly implicit midpoint
 /// rule).
+///
+/// Small bodies are solved by their mass matrix. Bodies that spin fast and bodies with many degrees of freedom are
+/// solved by recursion (ArticulatedBody).
 ///
 /// One object serves many bodies one after the other and reuses its memory.
 class Equations {
@@ -54,8 +57,8 @@ class Equations {
   }
   /// Changes the velocities by an impulse along one dof of a joint.
   void push_dof(int dof, double impulse);
-  /// Adds the mass matrix, with everything that acts like inertia, to `matrix`: rows `stride` apart. Only if the response
-  /// is symmetric.
+  /// Adds the mass matrix, with everything that acts like inertia, to `matrix`: rows `stride` apart. Only if the
+  /// response is symmetric.
   void add_inertia(double* matrix) const;
   /// Computes into `response` the change of the velocities by the generalised impulse `jacobian`.
   void respond(const double* jacobian, double* response);
@@ -64,9 +67,7 @@ class Equations {
   void find_efforts(double step);
   void solve_by_mass_matrix(const Eigen::Vector3d& gravity, double step);
   void solve_by_bullet(const Eigen::Vector3d& gravity, double step);
-  void take_bias_of_the_middle(double step);
-  void eliminate_middle(double step);
-  bool approach_middle(double* velocity);
+  void solve_by_recursion(const Eigen::Vector3d& gravity, double step);
   void find_growth(const double* change, double* growth);
   void add_generalised(int segment, const Spatial& force, double* jacobian) const;
 
@@ -79,12 +80,11 @@ class Equations {
   std::vector<double> added_inertia_;  // from dampers, springs and rotors, by dof
   MassMatrix matrix_;
   BiasForces bias_;
-  LinearSystem middle_;
+  ArticulatedBody articulated_;
   std::vector<double> shifted_;  // scratch, by dof
   std::vector<double> opposite_;
-  std::vector<double> start_;
-  double half_step_ = 0.0;  // [s]; of a body whose responses in the middle of the step are approached; otherwise zero
   bool is_symmetric_ = true;
+  bool is_recursive_ = false;    // true if articulated_ belongs to this body
   std::vector<double> inverse_;  // size_ x stride_: by dof, the response to a unit impulse along it
   bool is_inverted_ = false;     // true if inverse_ belongs to this body
   std::vector<double> velocity_;

@@ -29,6 +29,20 @@ bool is_round(const std::vector<Segment>& segments, std::size_t s) {
          std::ranges::none_of(segments, [&](const Segment& other) { return other.parent == static_cast<int>(s); });
 }
 
+// Returns the angular velocity relative to the parent, in world axes.
+Vector3d angular_velocity_at_joint(const BodyMotion& body, std::size_t s, const Eigen::Matrix3d& R_WS) {
+  const Segment& segment = body.mechanism().segments()[s];
+  const double* v = body.velocities() + segment.first_dof;
+  switch (segment.motion) {
+    case Motion::free: return {v[0], v[1], v[2]};
+    case Motion::ball: return R_WS * Vector3d(v[0], v[1], v[2]);
+    case Motion::revolute: return v[0] * (R_WS * segment.axis_S);
+    case Motion::prismatic:
+    case Motion::anchored: break;
+  }
+  return Vector3d::Zero();
+}
+
 // Returns whether a ball joint turns too fast. Its velocities are in axes of its segment and seem to turn with that;
 // for a round segment only the rotation of its parent counts.
 bool has_fast_ball(const BodyMotion& body, double step, bool is_held) {
@@ -79,7 +93,8 @@ bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_h
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const Pose& X_WS = body.segment_poses()[s];
     const Eigen::Matrix3d R = X_WS.orientation.toRotationMatrix();
-    turning[s].angular_W = body.segment_twist(static_cast<int>(s), X_WS.position).angular_W;
+    turning[s].angular_W = angular_velocity_at_joint(body, s, R);
+    if (segments[s].parent >= 0) turning[s].angular_W += turning[at(segments[s].parent)].angular_W;
     turning[s].inertia_W = R * segments[s].inertia_S * R.transpose();
     turning[s].angular_momentum_W = turning[s].inertia_W * turning[s].angular_W;
   }

@@ -254,17 +254,6 @@ TEST_P(Convergence, OnlyTheLastBallOfACradleSwings) {
   }
 }
 
-TEST_P(Convergence, ABoxOfAThousandTimesTheMassStandsOnALightOne) {
-  description::World world = GetParam().world();
-  world.physics.sleeping = false;
-  SmallWorld small(world);
-  const Vector3d size = Vector3d::Constant(0.1);
-  small.add(loose("light", Box{size}, solid_box(0.001, size)), at(0, 0, 0.05));
-  const auto heavy = small.add(loose("heavy", Box{size}, solid_box(1.0, size)), at(0, 0, 0.15));
-  small.run(10.0);
-  EXPECT_LT((small.position(heavy) - Vector3d(0, 0, 0.15)).norm(), 1e-3);
-}
-
 // Three storeys of leaning pairs, with a card on each two neighbouring pairs.
 TEST_P(Convergence, AHouseOfCardsStands) {
   SmallWorld small(GetParam().world(0.6));

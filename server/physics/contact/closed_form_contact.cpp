@@ -110,8 +110,8 @@ void on_plane(const Ellipsoid& ellipsoid, const Pose& X_W, const HalfSpace& plan
   touch_plane(X_W * lowest, plane, margin, found);
 }
 
-// Takes the vertices near the plane if there are at most four, otherwise four that are far from each other: first of
-// those that touch, then of the others. The body must not tip over an edge between vertices that were left out.
+// Takes the vertices near the plane if there are at most four, otherwise four that are far from each other. Those that
+// touch come first. The body must not tip over an edge between vertices that were left out.
 void on_plane(const Mesh& mesh, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
   if (!mesh.convex) return;  // it is static, and so is the plane
   struct Vertex {

@@ -27,8 +27,8 @@ struct RunningSurfaces {
   }
 };
 
-/// The impulses with which friction starts: those of the last step at each point, which requires a solver that solves
-/// all rows; or their sum at static bodies, shared by load, and zero between two moving ones.
+/// The impulses with which friction starts. `last`: those of the last step at each point, for a solver that solves all
+/// rows. `shared`: at static bodies, their sum shared by load; zero between two moving bodies.
 enum class FrictionStart : std::uint8_t { last, shared };
 
 /// Adds the rows of the points between `a`, a body, and `b`. Each point has one row along the normal, which is soft if

@@ -6,11 +6,11 @@
 namespace cohort::physics {
 
 /// A symmetric positive definite matrix of blocks, one row and column of blocks per body, and its Cholesky factors. The
-/// bodies are eliminated by minimum degree (George and Liu, "Computer solution of large sparse positive definite
-/// systems", 1981, chapter 5), so that the cost grows linearly with their number if they form a chain or a tree.
+/// bodies are eliminated in the order of minimum degree. The cost grows linearly with their number if they form a chain
+/// or a tree. Source: George and Liu, "Computer solution of large sparse positive definite systems", 1981, chapter 5.
 ///
-/// The blocks have the size of their bodies' degrees of freedom; their rows are padded with zeros to a multiple of
-/// `lanes`. Vectors have the same padding, body after body. Reuses its memory.
+/// A block has the size of its bodies' degrees of freedom; its rows are padded with zeros to a multiple of `lanes`.
+/// Vectors have the same padding, body after body. Reuses its memory.
 class BlockCholesky {
  public:
   /// Starts a matrix. `sizes`: degrees of freedom by body.
@@ -23,7 +23,7 @@ class BlockCholesky {
 
   /// Start of a body's entries in a vector.
   std::size_t offset(int body) const { return offsets_[static_cast<std::size_t>(body)]; }
-  std::size_t length() const { return offsets_.back(); }  ///< of a vector
+  std::size_t length() const { return offsets_.back(); }  ///< length of a vector
 
   /// The block of two coupled bodies, or the lower triangle of that of one body. The rows belong to `row`.
   struct Block {
@@ -48,7 +48,7 @@ class BlockCholesky {
   const Below& below(int column, int row) const;
   void subtract_products(int column);
 
-  std::vector<int> sizes_;  // by body
+  std::vector<int> sizes_;  // degrees of freedom, by body
   std::vector<std::ptrdiff_t> strides_;
   std::vector<std::size_t> offsets_;
   std::vector<std::vector<int>> neighbours_;  // not yet eliminated, ascending
@@ -58,7 +58,7 @@ class BlockCholesky {
   std::vector<int> rank_;                     // by body
   std::vector<int> merged_;                   // scratch
   std::vector<double> values_;
-  std::vector<double> inverse_;  // of the diagonal of the factors, as in a vector
+  std::vector<double> inverse_;  // diagonal of the factors, inverted; a vector
 };
 
 }  // namespace cohort::physics

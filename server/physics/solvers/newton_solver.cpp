@@ -9,7 +9,7 @@ namespace {
 constexpr double most_elimination_work = 4e6;  // multiplications in one factorisation
 constexpr int most_dofs_of_body = 64;
 constexpr int most_minima = 10;
-constexpr int most_steps = 30;  // of Newton's method, in all minima together
+constexpr int most_steps = 30;  // steps of Newton's method, in all minima together
 constexpr int most_shares = 20;
 constexpr double flat = 0.1;  // share of the first slope at which a line search ends
 

@@ -19,9 +19,9 @@ namespace cohort::physics {
 /// contact", IEEE Transactions on Robotics 39, 2023. These two couple friction to the normal velocity, which lifts a
 /// body that slides. Here the limits of friction are constant in each minimum.
 ///
-/// The impulses at the minimum are the next guess, and their loads the next limits of friction, until the rows do not
-/// yield any more: the method of multipliers (Bertsekas, "Constrained optimization and Lagrange multiplier methods",
-/// 1982, chapters 2 and 5). The first guess is that of the last step, which usually solves a heap at rest.
+/// The impulses at the minimum are the next guess, and their loads give the next limits of friction, until the rows do
+/// not yield any more. This is the method of multipliers (Bertsekas, "Constrained optimization and Lagrange multiplier
+/// methods", 1982, chapters 2 and 5). The first guess is that of the last step, which usually solves a heap at rest.
 ///
 /// Reuses its memory; each worker has one.
 class NewtonSolver {
@@ -34,19 +34,19 @@ class NewtonSolver {
   /// A row, or the two rows of a cone.
   struct Term {
     std::size_t row = 0;
-    std::size_t count = 1;  ///< of rows
+    std::size_t count = 1;  ///< number of rows
     bool is_free = false;   ///< the impulse is within its limits
     double compliance = 0.0;
-    double forgotten = 0.0;  ///< share of an impulse that the next guess does not have
+    double forgotten = 0.0;  ///< share of the impulse that is missing in the next guess
     double lower = 0.0;
-    double upper = 0.0;                ///< of a cone: its radius
-    std::array<double, 2> guess{};     ///< of the impulse
+    double upper = 0.0;                ///< radius of a cone
+    std::array<double, 2> guess{};     ///< guess of the impulse
     std::array<double, 2> velocity{};  ///< along each row
-    std::array<double, 2> change{};    ///< of the velocity by a whole step
+    std::array<double, 2> change{};    ///< change of the velocity by a whole step
     std::array<double, 2> impulse{};
     std::array<double, 3> stiffness{};             ///< negative derivative of the impulse: first, second, mixed
     std::array<double, 3> factorised{};            ///< the stiffness in the present factors
-    std::array<BlockCholesky::Block, 3> blocks{};  ///< of the first body, of the second, of both
+    std::array<BlockCholesky::Block, 3> blocks{};  ///< first body, second body, both
   };
 
   bool is_small(const Problem& problem);
@@ -79,12 +79,12 @@ class NewtonSolver {
   BlockCholesky matrix_;
   std::vector<int> sizes_;          // by body
   std::vector<double> inertia_;     // mass matrices
-  std::vector<std::size_t> begin_;  // of each body's mass matrix
+  std::vector<std::size_t> begin_;  // start of each body's mass matrix
   std::vector<Term> terms_;
   std::vector<double> impulses_;  // by row
   std::vector<double> velocity_;  // vectors as in the matrix
   std::vector<double> momentum_;  // that the impulses have added
-  std::vector<double> step_;      // of the velocity
+  std::vector<double> step_;      // step of the velocity
   std::vector<double> step_momentum_;
   std::vector<double> found_;  // the velocity at the last minimum
   bool is_factorised_ = false;

@@ -1,0 +1,169 @@
+// Bodies that stand on or lie between each other come to rest, and then sleep: at default settings.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "server/core/random.hpp"
+#include "tests/support/physics.hpp"
+
+namespace cohort::test {
+namespace {
+
+using description::Box;
+using Eigen::Vector3d;
+
+class Heaps : public EveryPhysics {};
+INSTANTIATE_TEST_SUITE_P(Every, Heaps, ::testing::Values(treel, by_bullet(treel)), name_of);
+
+struct Heap {
+  explicit Heap(description::World world, unsigned threads = 1) : small(std::move(world), threads) {}
+
+  SmallWorld small;
+  std::vector<BodyId> bodies;
+  std::vector<Vector3d> places;
+
+  void add(const description::Shape& shape, const description::Inertial& inertial, const Pose& X_WM,
+           double friction = 0.5) {
+    bodies.push_back(small.add(loose("body", shape, inertial, {friction, 0.0}), X_WM));
+    places.push_back(X_WM.position);
+  }
+  void add_box(const Vector3d& size, double mass, const Vector3d& place, double friction = 0.5) {
+    add(Box{size}, solid_box(mass, size), at(place.x(), place.y(), place.z()), friction);
+  }
+  double furthest() {
+    double furthest = 0.0;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      furthest = std::max(furthest, (small.position(bodies[i]) - places[i]).norm());
+    return furthest;
+  }
+  double greatest_speed() {
+    double greatest = 0.0;
+    for (const BodyId body : bodies) greatest = std::max(greatest, small.velocity(body).norm());
+    return greatest;
+  }
+  bool all_sleep() {
+    return std::ranges::all_of(bodies, [&](BodyId body) { return small.world().is_asleep(body); });
+  }
+};
+
+TEST_P(Heaps, AStackOfFortyBoxesStands) {
+  description::World world = GetParam().world();
+  world.physics.sleeping = false;
+  Heap heap(world);
+  for (int i = 0; i < 40; ++i) heap.add_box(Vector3d::Constant(0.1), 1.0, {0, 0, 0.05 + 0.1 * i});
+  heap.small.run(60.0);
+  EXPECT_LT(heap.furthest(), 2e-5);
+  EXPECT_LT(heap.greatest_speed(), 1e-6);
+}
+
+TEST_P(Heaps, ABoxOf100000TimesTheMassStandsOnALightOne) {
+  description::World world = GetParam().world();
+  world.physics.sleeping = false;
+  for (const double ratio : {1e3, 1e4, 1e5}) {
+    SCOPED_TRACE(ratio);
+    Heap heap(world);
+    heap.add_box(Vector3d::Constant(0.1), 1.0 / ratio, {0, 0, 0.05});
+    heap.add_box(Vector3d::Constant(0.1), 1.0, {0, 0, 0.15});
+    heap.small.run(10.0);
+    EXPECT_LT(heap.furthest(), 2e-6);
+  }
+}
+
+TEST_P(Heaps, APyramidOf55BoxesStands) {
+  Heap heap(GetParam().world());
+  for (int row = 0; row < 10; ++row)
+    for (int i = 0; i < 10 - row; ++i)
+      heap.add_box(Vector3d::Constant(0.1), 1.0, {0.105 * (i + 0.5 * row), 0, 0.05 + 0.1 * row});
+  heap.small.run(20.0);
+  EXPECT_LT(heap.furthest(), 2e-6);
+  EXPECT_TRUE(heap.all_sleep());
+}
+
+// In stretcher bond, with half bricks at the ends of every second course, without gaps.
+TEST_P(Heaps, AWallOf67BricksStands) {
+  for (const bool sleeping : {true, false}) {
+    SCOPED_TRACE(sleeping ? "may sleep" : "may not sleep");
+    description::World world = GetParam().world();
+    world.physics.sleeping = sleeping;
+    Heap heap(world);
+    for (int course = 0; course < 9; ++course) {
+      const bool is_shifted = course % 2 == 1;
+      for (int i = 0; i < (is_shifted ? 8 : 7); ++i) {
+        const bool is_half = is_shifted && (i == 0 || i == 7);
+        const double x = 0.2 * (i - (is_shifted ? 0.5 : 0.0)) + (is_half ? (i == 0 ? 0.05 : -0.05) : 0.0);
+        heap.add_box({is_half ? 0.1 : 0.2, 0.1, 0.06}, is_half ? 1.0 : 2.0, {x, 0, 0.03 + 0.06 * course}, 0.6);
+      }
+    }
+    heap.small.run(sleeping ? 20.0 : 4.0);
+    EXPECT_LT(heap.furthest(), 5e-6);
+    EXPECT_EQ(heap.all_sleep(), sleeping);
+  }
+}
+
+// Bodies of different sizes that fall into a square of four walls.
+void drop(Heap& heap, int count, bool hulls) {
+  constexpr double half = 0.5;
+  for (int side = 0; side < 4; ++side) {
+    const double angle = 0.5 * M_PI * side;
+    place(heap.small.description, static_shape("wall", Box{Vector3d(0.1, 1.4, 3.0)}, {0.5, 0.0}),
+          "wall_" + std::to_string(side),
+          turned((half + 0.05) * std::cos(angle), (half + 0.05) * std::sin(angle), 1.5, Vector3d::UnitZ(), angle));
+  }
+  const RandomStream random(3, "heap", hulls ? "hulls" : "boxes");
+  constexpr int edge = 6;
+  for (int i = 0; i < count; ++i) {
+    std::uint32_t draw = 0;
+    const auto next = [&] { return random.uniform(static_cast<std::uint64_t>(i), draw++); };
+    const Vector3d size(0.06 + 0.05 * next(), 0.06 + 0.05 * next(), 0.06 + 0.05 * next());
+    const Vector3d position(-half + 0.08 + 0.16 * (i % edge) + 0.01 * next(),
+                            -half + 0.08 + 0.16 * (i / edge % edge) + 0.01 * next(), 0.1 + 0.17 * (i / edge / edge));
+    Eigen::Quaterniond orientation(next() - 0.5, next() - 0.5, next() - 0.5, next() - 0.5);
+    orientation.normalize();
+    description::Shape shape = Box{size};
+    if (hulls) {
+      auto mesh = std::make_shared<description::TriangleMesh>(*box_mesh(size).triangles);
+      for (Vector3d& vertex : mesh->vertices)
+        for (int axis = 0; axis < 3; ++axis) vertex[axis] *= 0.7 + 0.3 * next();
+      shape = description::Mesh{mesh, true};
+    }
+    heap.add(shape, solid_box(1000.0 * size.prod(), size), {position, orientation});
+  }
+}
+
+TEST_P(Heaps, TwoHundredHullsComeToRest) {
+  Heap heap(GetParam().world());
+  drop(heap, 200, true);
+  heap.small.run(15.0);
+  EXPECT_TRUE(heap.all_sleep());
+}
+
+TEST_P(Heaps, TwoHundredBoxesComeToRest) {
+  Heap heap(GetParam().world());
+  drop(heap, 200, false);
+  heap.small.run(15.0);
+  EXPECT_TRUE(heap.all_sleep());
+}
+
+TEST_P(Heaps, HaveTheSameBitsForAnyNumberOfThreadsAndAfterARestore) {
+  const auto hash_after = [&](unsigned threads, bool restores) {
+    Heap heap(GetParam().world(), threads);
+    drop(heap, 120, true);
+    heap.small.run(1.5);
+    if (!restores) {
+      heap.small.run(1.0);
+      return hash_of(heap.small.world());
+    }
+    WorkerPool workers(2);
+    const auto restored = physics::make_world(heap.small.description, workers);
+    restore_from(heap.small.world(), *restored);
+    for (int i = 0; i < 100; ++i) restored->step();
+    return hash_of(*restored);
+  };
+  const std::uint64_t expected = hash_after(1, false);
+  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(hash_after(threads, false), expected) << threads;
+  EXPECT_EQ(hash_after(1, true), expected) << "restored";
+}
+
+}  // namespace
+}  // namespace cohort::test

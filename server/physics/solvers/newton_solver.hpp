@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
 #include "server/physics/multibody/rows.hpp"
 #include "server/physics/solvers/block_cholesky.hpp"
+#include "server/physics/solvers/yielding_rows.hpp"
 
 namespace cohort::physics {
 
@@ -31,60 +31,32 @@ class NewtonSolver {
   bool solve(Problem& problem, double negligible);
 
  private:
-  /// A row, or the two rows of a cone.
-  struct Term {
-    std::size_t row = 0;
-    std::size_t count = 1;  ///< number of rows
-    bool is_free = false;   ///< the impulse is within its limits
-    double compliance = 0.0;
-    double forgotten = 0.0;  ///< share of the impulse that is missing in the next guess
-    double lower = 0.0;
-    double upper = 0.0;                ///< radius of a cone
-    std::array<double, 2> guess{};     ///< guess of the impulse
-    std::array<double, 2> velocity{};  ///< along each row
-    std::array<double, 2> change{};    ///< change of the velocity by a whole step
-    std::array<double, 2> impulse{};
-    std::array<double, 3> stiffness{};             ///< negative derivative of the impulse: first, second, mixed
-    std::array<double, 3> factorised{};            ///< the stiffness in the present factors
-    std::array<BlockCholesky::Block, 3> blocks{};  ///< first body, second body, both
-  };
-
   bool is_small(const Problem& problem);
-  void gather();
-  void soften(Term& term, double response, double least);
   void start();
-  void guess_loads();
-  bool is_settled(double negligible) const;
   bool prepare();
   bool follow(double negligible);
   bool minimise(double negligible, int& steps_left, double& moved);
   bool evaluate();
-  void evaluate(Term& term, double share) const;
   void factorise();
-  void add_outer_products(const Term& term);
+  void add_outer_products(const YieldingRow& term);
   double find_step();
   double slope(double share, double* curvature);
   double find_share();
   void add_step(double share);
-  double update_limits();
-  double update_guesses();
   void apply();
 
-  const Row& row(const Term& term, std::size_t i = 0) const { return problem_->rows()[term.row + i]; }
+  const Row& row(const YieldingRow& term, std::size_t i = 0) const { return problem_->rows()[term.row + i]; }
   double along(const Row& row, const std::vector<double>& velocities) const;
-  static double response_of(const Row& row);
-  double response_of_heavier(const Row& row, double response) const;
 
   Problem* problem_ = nullptr;
+  YieldingRows rows_;
   BlockCholesky matrix_;
   std::vector<int> sizes_;          // by body
   std::vector<double> inertia_;     // mass matrices
   std::vector<std::size_t> begin_;  // start of each body's mass matrix
-  std::vector<Term> terms_;
-  std::vector<double> impulses_;  // by row
-  std::vector<double> velocity_;  // vectors as in the matrix
-  std::vector<double> momentum_;  // that the impulses have added
-  std::vector<double> step_;      // step of the velocity
+  std::vector<double> velocity_;    // vectors as in the matrix
+  std::vector<double> momentum_;    // that the impulses have added
+  std::vector<double> step_;        // step of the velocity
   std::vector<double> step_momentum_;
   std::vector<double> found_;  // the velocity at the last minimum
   bool is_factorised_ = false;

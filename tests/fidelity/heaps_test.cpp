@@ -70,6 +70,42 @@ TEST_P(Heaps, ABoxOf100000TimesTheMassStandsOnALightOne) {
   }
 }
 
+// One wheel of a differential drive of 9 kg rolls onto a marble of 10 g. A free marble carries the wheel but cannot
+// drive it, so that the vehicle turns, as it does with steps of 1 ms.
+TEST_P(Heaps, AWheelDoesNotPressAMarbleIntoTheFloor) {
+  const auto yaw_after = [&](int milliseconds) {
+    description::World world = GetParam().world(0.8);
+    world.step = std::chrono::milliseconds(milliseconds);
+    SmallWorld small(world);
+    description::Model car;
+    car.name = "car";
+    const Vector3d size(0.4, 0.26, 0.1);
+    car.links.push_back({"hull", {{0, 0, 0.12}}, solid_box(8.0, size), {{"body", {}, Box{size}, {0.5, 0.0}}}});
+    for (const double x : {0.15, -0.15})
+      car.links[0].collisions.push_back(
+          {x > 0.0 ? "front" : "back", {{x, 0, -0.09}}, description::Sphere{0.03}, {0.0, 0.0}});
+    for (const double y : {0.16, -0.16}) add_wheel(car, {0, y, 0.1}, 0.1, 0.03, 0.5);
+    for (const std::size_t joint : {std::size_t{0}, std::size_t{1}})
+      car.devices.emplace_back(description::VelocityMotor{car.joints[joint].name, joint, 100.0, 5.0});
+    const auto body = small.add(car, at(0, 0, 0));
+    const auto marble = small.add(loose("marble", description::Sphere{0.01}, solid_sphere(0.01, 0.01), {0.5, 0.0}),
+                                  at(0.4, 0.16, 0.01));
+    for (const std::size_t joint : {std::size_t{0}, std::size_t{1}})
+      small.world().set_joint_target(body, JointId{joint}, physics::JointTarget::velocity(2.0));
+    double lowest = 1.0;
+    for (int i = 0; i < 4000 / milliseconds; ++i) {
+      small.world().step();
+      lowest = std::min(lowest, small.position(marble).z());
+    }
+    EXPECT_GT(lowest, 0.01 - 1e-3) << milliseconds << " ms";
+    const Eigen::Quaterniond& orientation = small.world().link_pose(body, LinkId{0}).orientation;
+    return 2.0 * std::atan2(orientation.z(), orientation.w());
+  };
+  const double fine = yaw_after(1);
+  EXPECT_GT(fine, 1.0);
+  EXPECT_NEAR(yaw_after(10), fine, 0.3);
+}
+
 TEST_P(Heaps, APyramidOf55BoxesStands) {
   Heap heap(GetParam().world());
   for (int row = 0; row < 10; ++row)

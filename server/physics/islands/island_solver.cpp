@@ -16,7 +16,7 @@ constexpr double settled_without_gravity = 1e-5;  // [m/s or rad/s]
 // Islands of up to this many bodies with connections at light links, such as an arm that lifts a robot, are solved by
 // Newton's method. More bodies would take too long, and connected bodies of similar mass do not need it.
 constexpr std::size_t most_lightly_connected = 6;
-// Newton's method solves an island this much more precisely.
+// Newton's method solves islands more precisely than passes, by this factor of the settled change.
 constexpr double precise_share = 1e-2;
 // Where Newton's method finds no solution, up to this multiple of the usual number of passes settles an island.
 constexpr std::uint32_t passes_of_unsettled = 5;

@@ -14,8 +14,8 @@ class IslandSolver {
  public:
   /// Solves the island. A body whose state breaks keeps its pose, and the rest of the island is solved without it.
   void solve(Assembly& assembly, std::span<const std::uint32_t> members);
-  /// Solves a large heap by Newton's method. Returns false, without any change, if it is no heap, if that would cost
-  /// too much or if a velocity is invalid.
+  /// Solves a large heap by Newton's method. Returns false, without moving any body, if it is no heap, if that would
+  /// cost too much, if there is no solution, or if a velocity is invalid.
   bool solve_by_newton(Assembly& assembly, std::span<const std::uint32_t> members);
 
  private:
@@ -42,7 +42,8 @@ class IslandSolver {
 /// Returns the change of a row's velocity in a pass below which the island has settled [m/s or rad/s].
 double settled_change(const Assembly& assembly);
 
-/// Returns whether any of these bodies is carried by others only, as in a stack or between fingers.
+/// Returns whether any of these bodies stands on another moving body or is held only by others, as in a stack or
+/// between fingers.
 bool has_carried(std::span<const std::uint32_t> members, const Assembly& assembly);
 
 /// Returns whether an island of this many bodies is solved by Dantzig's algorithm.

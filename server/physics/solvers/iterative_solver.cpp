@@ -13,14 +13,6 @@ void SequentialImpulses::start(double share) {
   }
 }
 
-void SequentialImpulses::take_back() {
-  for (const Row& row : rows_) apply(row, -row.impulse);
-}
-
-void SequentialImpulses::put_in() {
-  for (const Row& row : rows_) apply(row, row.impulse);
-}
-
 double SequentialImpulses::pass(bool forwards) {
   double greatest = 0.0;
   const std::size_t count = rows_.size();
@@ -105,6 +97,16 @@ double SequentialImpulses::turn_cone(Row& first, Row& second) {
   return std::max(change(first, wanted_first), change(second, wanted_second));
 }
 
+namespace {
+
+// By multiplication: `pow` may round differently on other CPUs, and the result would depend on that.
+bool would_settle(double change, double ratio, std::uint32_t passes_left, double settled) {
+  for (std::uint32_t i = 0; i < passes_left && change > settled; ++i) change *= ratio;
+  return change <= settled;
+}
+
+}  // namespace
+
 double solve_iteratively(Problem& problem, const Passes& passes, double share_of_last) {
   SequentialImpulses impulses(problem);
   impulses.start(share_of_last);
@@ -113,8 +115,8 @@ double solve_iteratively(Problem& problem, const Passes& passes, double share_of
     const double before = change;
     change = impulses.pass(i % 2 == 0);
     if (change <= (i + 1 < passes.least ? negligible_change : passes.settled)) break;
-    const double left = passes.most - 1 - i;
-    if (i + 1 >= passes.least && change * std::pow(change / before, left) > passes.settled) break;
+    if (i > 0 && i + 1 >= passes.least && !would_settle(change, change / before, passes.most - 1 - i, passes.settled))
+      break;
   }
   return change;
 }

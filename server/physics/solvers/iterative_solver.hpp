@@ -16,9 +16,6 @@ class SequentialImpulses {
 
   /// Applies this share of the last step's impulses; call it once before the first pass.
   void start(double share);
-  /// Removes the impulses from the velocities, or applies them again.
-  void take_back();
-  void put_in();
   /// Makes one pass over the rows, forwards or backwards. Returns the greatest change of a row's velocity.
   double pass(bool forwards);
   /// The same for the rows that are not friction.

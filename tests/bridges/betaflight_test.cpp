@@ -323,7 +323,10 @@ TEST_F(Betaflight, ItsEndInTheMiddleOfARunIsNamed) {
   const Field& field = lay_out(1, 60, 7, 70);
   simulate(field, "copter_0");
   ASSERT_TRUE(bridge_->wait_for_output("flies the robot")) << bridge_->output() << server_->output();
-  for (const pid_t child : children_of(bridge_->pid())) ::kill(child, SIGKILL);
+  EXPECT_TRUE(eventually([&] {
+    for (const pid_t child : children_of(bridge_->pid())) ::kill(child, SIGKILL);
+    return !bridge_->running();
+  })) << bridge_->output();
   EXPECT_EQ(bridge_->wait_for_exit(), 1);
   EXPECT_NE(bridge_->output().find("Betaflight was terminated by the signal Killed"), std::string::npos)
       << bridge_->output();
@@ -333,8 +336,10 @@ TEST_F(Betaflight, AProgramEndsWithItsBridge) {
   const Field& field = lay_out(1, 60, 7, 70);
   simulate(field, "copter_0");
   ASSERT_TRUE(bridge_->wait_for_output("flies the robot")) << bridge_->output() << server_->output();
-  const std::vector<pid_t> programs = children_of(bridge_->pid());
-  ASSERT_EQ(programs.size(), 1u);
+  std::vector<pid_t> programs;
+  ASSERT_TRUE(eventually([&] { return (programs = children_of(bridge_->pid())).size() == 1; }))
+      << programs.size() << " children\n"
+      << bridge_->output() << server_->output();
   bridge_->signal(SIGKILL);
   EXPECT_TRUE(wait_until_gone(programs.front()));
 }

@@ -69,6 +69,16 @@ TEST(Ros2BadNodes, ARunWaitsForAStoppedNode) {
   EXPECT_EQ(run.hash(), hash);
 }
 
+TEST(Ros2BadNodes, ANodeThatSubscribesOnceMoreHearsTheFrameAgain) {
+  if (const std::string missing = missing_for_ros2(); !missing.empty()) GTEST_SKIP() << missing;
+  const std::string hash = undisturbed_hash();
+  BridgedNodes run(turtlebot(""));
+  run.start();
+  const auto node = run.start_node(jazzy(), "resubscriber.py");
+  EXPECT_EQ(run.hash(), hash);
+  EXPECT_NE(node->output().find("subscribed again\n"), std::string::npos) << node->output();
+}
+
 TEST(Ros2BadNodes, TheRunNamesTheNodeThatItWaitsFor) {
   if (const std::string missing = missing_for_ros2(); !missing.empty()) GTEST_SKIP() << missing;
   BridgedNodes run(turtlebot("", "1e6"));
@@ -101,8 +111,9 @@ TEST(Ros2BadNodes, ARunDoesNotWaitForStoppedNodesWithoutCommands) {
   const std::string hash = undisturbed_hash();
   BridgedNodes run(turtlebot(""));
   run.start();
-  const auto node = run.start_node(jazzy(), "commander.py", stopping_commander);
+  // First, as it hears nothing after tick 80.
   const auto watcher = run.start_node(jazzy(), "watcher.py", {"/", "scan", "odom", "/clock"});
+  const auto node = run.start_node(jazzy(), "commander.py", stopping_commander);
   EXPECT_TRUE(run.says("the run waits at tick 80 "));
   EXPECT_TRUE(watcher->wait_for_output("odom"));
   watcher->signal(SIGSTOP);

@@ -63,7 +63,7 @@ class BridgedNodes {
   }
 
   std::unique_ptr<Process> start_node(const Ros2Distribution& distribution, const std::string& script,
-                                      const std::vector<std::string>& arguments) const {
+                                      const std::vector<std::string>& arguments = {}) const {
     return network_.start_node(distribution, script, arguments);
   }
 

@@ -1,7 +1,8 @@
 """A node that answers each message of a sensor by a velocity: commander.py NAMESPACE SENSOR COMMAND [SPEED [STOP]].
 
 SENSOR is scan, odom or the name of a Range. COMMAND is Twist, TwistStamped (with the stamp of the sensor's message), or
-BestEffort (a Twist over a publisher that is not reliable). Before it answers message STOP, it stops, as by SIGSTOP.
+BestEffort (a Twist over a publisher that is not reliable). Before it answers message STOP, it stops, as by SIGSTOP; a
+message that comes again counts once.
 """
 
 import contextlib
@@ -32,6 +33,7 @@ class Commander(Node):
         super().__init__("commander", namespace=namespace)
         self.speed = speed
         self.until_stop = stop
+        self.last_stamp = None
         self.type = TwistStamped if command == "TwistStamped" else Twist
         reliability = ReliabilityPolicy.BEST_EFFORT if command == "BestEffort" else ReliabilityPolicy.RELIABLE
         self.publisher = self.create_publisher(self.type, "cmd_vel", QoSProfile(depth=10, reliability=reliability))
@@ -39,9 +41,11 @@ class Commander(Node):
         self.create_subscription(sensor_type, sensor, self.answer, 10)
 
     def answer(self, message) -> None:
-        self.until_stop -= 1
-        if self.until_stop == 0:
-            os.kill(os.getpid(), signal.SIGSTOP)
+        if message.header.stamp != self.last_stamp:
+            self.last_stamp = message.header.stamp
+            self.until_stop -= 1
+            if self.until_stop == 0:
+                os.kill(os.getpid(), signal.SIGSTOP)
         value = sensed(message)
         if not math.isfinite(value):
             value = 1.0

@@ -60,7 +60,7 @@ std::size_t resident_bytes(pid_t pid);
 /// Waits until it has ended; false if patience ran out.
 bool wait_until_gone(pid_t pid);
 
-/// Processes started by `parent`.
+/// Processes started by `parent`; some may be missing while its processes and threads start and end (proc(5)).
 std::vector<pid_t> children_of(pid_t parent);
 
 /// A DDS domain that no other test of this machine has while this lives.

@@ -181,10 +181,12 @@ void Publications::send(Topic& topic) {
 bool Publications::publish_to_newcomers(std::span<const Gid> participants) {
   bool has_told = false;
   for (Topic& topic : topics_) {
+    const std::span<const Gid> subscribed = topic.writer.participants();
+    std::erase_if(topic.told, [&](const Gid& each) { return !std::ranges::binary_search(subscribed, each); });
     const auto is_newcomer = [&](const Gid& each) {
       return std::ranges::binary_search(participants, each) && !std::ranges::binary_search(topic.told, each);
     };
-    if (topic.last.empty() || std::ranges::none_of(topic.writer.participants(), is_newcomer)) continue;
+    if (topic.last.empty() || std::ranges::none_of(subscribed, is_newcomer)) continue;
     send(topic);
     has_told = true;
   }

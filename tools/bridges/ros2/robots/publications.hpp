@@ -36,8 +36,8 @@ class Publications {
   /// Tells what is due of a frame. `truth`: the robot's pose in the world, if it is wanted.
   void publish(std::span<const double> observation, std::uint64_t tick, std::chrono::nanoseconds time,
                const std::optional<WorldPose>& truth);
-  /// Tells those who have subscribed since the frame was told of it what it told: only in these participants, and only
-  /// topics of which they had not been told. Returns whether there was something to tell.
+  /// Tells a frame to those of these participants who have subscribed since it was published, or once more: only topics
+  /// of which they have not been told. Returns whether there was something to tell.
   bool publish_to_newcomers(std::span<const Gid> participants);
   /// Tells all of the last frame once more.
   void publish_again();
@@ -63,7 +63,7 @@ class Publications {
     Fill fill;
     RosWriter writer;
     messages::Bytes last{};   // message of the last frame; empty: none
-    std::vector<Gid> told{};  // participants that subscribed then
+    std::vector<Gid> told{};  // participants that subscribed then and have not left since
     bool counts_for_reply = true;
   };
 

@@ -224,6 +224,59 @@ TEST_P(Convergence, AChainOfBallJointsKeepsItsEnergy) {
   }
 }
 
+// Six legs of three joints each swing so fast that their links precess, and the chains from foot to foot are stiff.
+double way_of_a_walking_hexapod(description::World world, std::chrono::milliseconds step) {
+  world.step = step;
+  SmallWorld small(world);
+  description::Model model;
+  model.name = "hexapod";
+  const double height = 0.15;
+  const Vector3d size(0.3, 0.2, 0.05);
+  model.links.push_back({"hull", {{0, 0, height}}, solid_box(2.0, size), {{"hull", {}, Box{size}, {0.8, 0.0}}}});
+  for (int leg = 0; leg < 6; ++leg) {
+    const std::string number = std::to_string(leg);
+    const double side = leg % 2 == 0 ? 1.0 : -1.0;
+    const double x = 0.12 * (leg / 2 - 1);
+    const std::size_t first = model.links.size();
+    model.links.push_back({"coxa" + number, {{x, 0.1 * side, height}}, solid_box(0.05, Vector3d::Constant(0.04)), {}});
+    model.links.push_back({"femur" + number, {{x, 0.15 * side, height}}, solid_box(0.08, {0.03, 0.08, 0.03}), {}});
+    model.links.push_back({"tibia" + number,
+                           {{x, 0.23 * side, height}},
+                           solid_box(0.06, {0.02, 0.02, 0.12}),
+                           {{"foot", {{0, 0, -0.12}}, Sphere{0.012}, {0.8, 0.0}}}});
+    const Vector3d axes[] = {Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitX()};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string name = "joint" + number + std::to_string(k);
+      model.joints.push_back(joint_of(name, JointType::revolute, k == 0 ? 0 : first + k - 1, first + k, axes[k]));
+      model.devices.emplace_back(description::PositionMotor{name, model.joints.size() - 1, 6.0, 3.0, 0.0});
+    }
+  }
+  const auto body = small.add(model, at(0, 0, 0));
+  // Three legs swing while the other three push, once per second.
+  const int steps = static_cast<int>(std::chrono::seconds(12) / step);
+  double start = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    if (i == steps / 6) start = small.position(body).x();
+    for (int leg = 0; leg < 6; ++leg) {
+      const double side = leg % 2 == 0 ? 1.0 : -1.0;
+      const double phase = 24.0 * M_PI * i / steps + ((leg / 2 + leg) % 2 == 0 ? 0.0 : M_PI);
+      const double targets[] = {0.25 * side * std::cos(phase), 0.25 * side * std::max(0.0, std::sin(phase)), 0.0};
+      for (int k = 0; k < 3; ++k)
+        small.world().set_joint_target(body, JointId{static_cast<std::size_t>(3 * leg + k)},
+                                       physics::JointTarget::position(targets[k]));
+    }
+    small.world().step();
+  }
+  return small.position(body).x() - start;
+}
+
+TEST_P(Convergence, AHexapodWalksAsFarWithCoarseSteps) {
+  const description::World world = GetParam().world(0.8);
+  const double fine = way_of_a_walking_hexapod(world, std::chrono::milliseconds(1));
+  EXPECT_GT(fine, 1.0);
+  EXPECT_NEAR(way_of_a_walking_hexapod(world, std::chrono::milliseconds(10)), fine, 0.01 * fine);
+}
+
 // Five balls touch; the first falls against the others, and the last one swings as far. The error of the others is the
 // way that the falling ball makes in a step.
 TEST_P(Convergence, OnlyTheLastBallOfACradleSwings) {

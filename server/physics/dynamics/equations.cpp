@@ -28,7 +28,15 @@ void Equations::set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, d
   velocity_.assign(at(stride_), 0.0);
   pushed_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   find_joint_axes(body, axes_);
-  is_symmetric_ = !has_stiff_gyroscopic_torques(body, step, is_held);
+  bool has_mass = false;
+  is_symmetric_ = !has_stiff_gyroscopic_torques(body, step, is_held, [&]() -> const MassMatrix& {
+    if (has_mass) return matrix_;
+    has_mass = true;
+    bias_.set_up(*body_, axes_);
+    matrix_.set_up(*body_, axes_, bias_.inertias());
+    matrix_.factorise();
+    return matrix_;
+  });
   is_recursive_ = !is_symmetric_ || size_ > most_by_matrix;
   const bool is_bullet = body.bullet() != nullptr;
   const bool has_springs = std::ranges::any_of(mechanism_->dofs(), [](const Dof& dof) { return dof.has_spring(); });

@@ -74,9 +74,10 @@ double bound_of_turning(const BodyMotion& body) {
 
 }  // namespace
 
-// Compares, for each joint, the angular momentum of the parts beyond it with the inertia of its segment. Only momentum
-// relative to the segment and perpendicular to the joint's axis counts.
-bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_held) {
+// Compares, for each joint, the angular momentum of the parts beyond it with the inertia that resists its turning. Only
+// momentum relative to the segment and perpendicular to the joint's axis counts. The least inertia of the segment alone
+// is a lower bound for the inertia, and mostly suffices.
+bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_held, const FactorisedMass& mass) {
   // `integrate` handles the rotation of a free rigid body. A loop joint needs all rows solved at once, and for that
   // symmetric equations.
   const bool has_loops = !body.mechanism().model().loop_joints.empty();
@@ -103,8 +104,11 @@ bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_h
     if (segment.motion != Motion::prismatic && segment.motion != Motion::anchored) {
       const Vector3d spin_W = turning[s].angular_momentum_W - turning[s].inertia_W * turning[s].angular_W;
       const Vector3d axis_W = body.segment_poses()[s].orientation * segment.axis_S;
-      const double across = segment.motion == Motion::revolute ? axis_W.cross(spin_W).norm() : spin_W.norm();
-      if (is_fast(across / segment.inertia_S.diagonal().minCoeff(), step)) return true;
+      const bool is_hinge = segment.motion == Motion::revolute;
+      const double across = is_hinge ? axis_W.cross(spin_W).norm() : spin_W.norm();
+      if (is_fast(across / segment.inertia_S.diagonal().minCoeff(), step) &&
+          !(is_hinge && !is_fast(across / mass().articulated_inertia(segment.first_dof), step)))
+        return true;
     }
     if (segment.parent < 0) continue;
     turning[at(segment.parent)].inertia_W += turning[s].inertia_W;

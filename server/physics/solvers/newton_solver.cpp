@@ -8,7 +8,6 @@ namespace {
 
 constexpr double most_elimination_work = 4e6;  // multiplications in one factorisation
 constexpr int most_dofs_of_body = 64;
-constexpr int most_minima = 10;
 constexpr int most_steps = 30;  // steps of Newton's method, in all minima together
 constexpr int most_shares = 20;
 constexpr double flat = 0.1;  // share of the first slope at which a line search ends
@@ -19,12 +18,12 @@ constexpr double limits_tolerance = 100.0;
 
 }  // namespace
 
-bool NewtonSolver::solve(Problem& problem, double negligible) {
+bool NewtonSolver::solve(Problem& problem, double negligible, int most_minima) {
   if (!is_small(problem)) return false;
   problem_ = &problem;
   rows_.gather(problem);
   start();
-  if (!rows_.are_settled(0.1 * negligible) && !(prepare() && follow(negligible))) return false;
+  if (!rows_.are_settled(0.1 * negligible) && !(prepare() && follow(negligible, most_minima))) return false;
   apply();
   return true;
 }
@@ -93,7 +92,7 @@ bool NewtonSolver::prepare() {
 }
 
 // Finds minima until the rows do not yield any more. Returns false if it does not even find the first.
-bool NewtonSolver::follow(double negligible) {
+bool NewtonSolver::follow(double negligible, int most_minima) {
   int steps_left = most_steps;
   for (int minimum = 0; minimum < most_minima; ++minimum) {
     double moved = 0.0;

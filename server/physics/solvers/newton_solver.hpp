@@ -27,14 +27,16 @@ namespace cohort::physics {
 class NewtonSolver {
  public:
   /// Returns false, without any change, if it would cost too much or no minimum was found. `negligible`: an error of
-  /// the velocity of a row that does not matter [m/s or rad/s].
-  bool solve(Problem& problem, double negligible);
+  /// the velocity of a row that does not matter [m/s or rad/s]. `most_minima`: how many of them are found at most; the
+  /// first has an error of about a hundredth of what the impulses change.
+  bool solve(Problem& problem, double negligible, int most_minima = usual_minima);
+  static constexpr int usual_minima = 10;
 
  private:
   bool is_small(const Problem& problem);
   void start();
   bool prepare();
-  bool follow(double negligible);
+  bool follow(double negligible, int most_minima);
   bool minimise(double negligible, int& steps_left, double& moved);
   bool evaluate();
   void factorise();

@@ -63,6 +63,24 @@ TEST_P(Flight, AHullWithASpinningWheelKeepsItsEnergy) {
   expect_kept(small, body, 0.01);
 }
 
+// The axis of the wheel precesses about the angular momentum, and the hull with it.
+TEST_P(Flight, AHullWithAVeryFastWheelTurnsNoFaster) {
+  SmallWorld small(space());
+  const auto body = small.add(hinged(solid_box(1.0, {0.3, 0.2, 0.1}), description::solid_cylinder(0.2, 0.05, 0.02, 0.0),
+                                     {0.05, 0.02, 0.1}, Vector3d::UnitZ()),
+                              at(0, 0, 0));
+  small.world().set_root_twist(body, {Vector3d(1.0, 0, 0), Vector3d::Zero()});
+  const double angle[] = {0.0};
+  const double speed[] = {200.0};
+  small.world().set_joint_state(body, JointId{0}, angle, speed);
+  double fastest = 0.0;
+  for (int i = 0; i < 6000; ++i) {
+    small.world().step();
+    fastest = std::max(fastest, small.world().link_twist(body, LinkId{0}).angular_W.norm());
+  }
+  EXPECT_NEAR(fastest, 1.0, 0.03);
+}
+
 // The motor holds the link in place.
 TEST_P(Flight, ATumblingBoxWithALinkOnAMotorKeepsItsEnergy) {
   SmallWorld small(space());

@@ -70,6 +70,31 @@ TEST_P(Heaps, ABoxOf100000TimesTheMassStandsOnALightOne) {
   }
 }
 
+// A vehicle on two driven wheels and two balls without friction.
+struct DifferentialDrive {
+  double mass = 8.0;
+  Vector3d size{0.4, 0.26, 0.1};
+  double height = 0.12;
+  double wheel = 0.1;  // radius
+  double wheel_mass = 0.5;
+  double wheel_beside = 0.16;
+  double ball = 0.03;  // radius
+  double ball_ahead = 0.15;
+
+  description::Model model() const {
+    description::Model car;
+    car.name = "car";
+    car.links.push_back({"hull", {{0, 0, height}}, solid_box(mass, size), {{"body", {}, Box{size}, {0.5, 0.0}}}});
+    for (const double x : {ball_ahead, -ball_ahead})
+      car.links[0].collisions.push_back(
+          {x > 0.0 ? "front" : "back", {{x, 0, ball - height}}, description::Sphere{ball}, {0.0, 0.0}});
+    for (const double y : {wheel_beside, -wheel_beside}) add_wheel(car, {0, y, wheel}, wheel, 0.03, wheel_mass);
+    for (const std::size_t joint : {std::size_t{0}, std::size_t{1}})
+      car.devices.emplace_back(description::VelocityMotor{car.joints[joint].name, joint, 100.0, 5.0});
+    return car;
+  }
+};
+
 // One wheel of a differential drive of 9 kg rolls onto a marble of 10 g. A free marble carries the wheel but cannot
 // drive it, so that the vehicle turns, as it does with steps of 1 ms.
 TEST_P(Heaps, AWheelDoesNotPressAMarbleIntoTheFloor) {
@@ -77,17 +102,7 @@ TEST_P(Heaps, AWheelDoesNotPressAMarbleIntoTheFloor) {
     description::World world = GetParam().world(0.8);
     world.step = std::chrono::milliseconds(milliseconds);
     SmallWorld small(world);
-    description::Model car;
-    car.name = "car";
-    const Vector3d size(0.4, 0.26, 0.1);
-    car.links.push_back({"hull", {{0, 0, 0.12}}, solid_box(8.0, size), {{"body", {}, Box{size}, {0.5, 0.0}}}});
-    for (const double x : {0.15, -0.15})
-      car.links[0].collisions.push_back(
-          {x > 0.0 ? "front" : "back", {{x, 0, -0.09}}, description::Sphere{0.03}, {0.0, 0.0}});
-    for (const double y : {0.16, -0.16}) add_wheel(car, {0, y, 0.1}, 0.1, 0.03, 0.5);
-    for (const std::size_t joint : {std::size_t{0}, std::size_t{1}})
-      car.devices.emplace_back(description::VelocityMotor{car.joints[joint].name, joint, 100.0, 5.0});
-    const auto body = small.add(car, at(0, 0, 0));
+    const auto body = small.add(DifferentialDrive{}.model(), at(0, 0, 0));
     const auto marble = small.add(loose("marble", description::Sphere{0.01}, solid_sphere(0.01, 0.01), {0.5, 0.0}),
                                   at(0.4, 0.16, 0.01));
     for (const std::size_t joint : {std::size_t{0}, std::size_t{1}})
@@ -104,6 +119,39 @@ TEST_P(Heaps, AWheelDoesNotPressAMarbleIntoTheFloor) {
   const double fine = yaw_after(1);
   EXPECT_GT(fine, 1.0);
   EXPECT_NEAR(yaw_after(10), fine, 0.3);
+}
+
+// Marbles so large that the wheels push them instead of rolling onto them, at 0.2 m/s for 15 s.
+TEST_P(Heaps, AVehiclePushesItsWayThrough200Marbles) {
+  for (const double radius : {0.015, 0.02}) {
+    SCOPED_TRACE(radius);
+    SmallWorld small(GetParam().world(0.8));
+    const DifferentialDrive car{.mass = 5.0,
+                                .size = {0.25, 0.2, 0.06},
+                                .height = 0.07,
+                                .wheel = 0.05,
+                                .wheel_mass = 0.3,
+                                .wheel_beside = 0.12,
+                                .ball = 0.025,
+                                .ball_ahead = 0.1};
+    const auto body = small.add(car.model(), at(0, 0, 0));
+    const RandomStream random(3, "heap", "marbles");
+    const double mass = 2500.0 * 4.0 / 3.0 * M_PI * radius * radius * radius;
+    std::vector<BodyId> marbles;
+    for (int i = 0; i < 200; ++i)
+      marbles.push_back(small.add(loose("marble", description::Sphere{radius}, solid_sphere(mass, radius), {0.5, 0.0}),
+                                  at(0.3 + 0.108 * (i / 8) + 0.065 * random.uniform(i, 0),
+                                     0.1 * (i % 8) + 0.06 * random.uniform(i, 1) - 0.4, radius)));
+    for (const std::size_t joint : {std::size_t{0}, std::size_t{1}})
+      small.world().set_joint_target(body, JointId{joint}, physics::JointTarget::velocity(4.0));
+    double lowest = radius;
+    for (int i = 0; i < 1500; ++i) {
+      small.world().step();
+      for (const BodyId marble : marbles) lowest = std::min(lowest, small.position(marble).z());
+    }
+    EXPECT_GT(small.position(body).x(), 2.9);
+    EXPECT_GT(lowest, radius - 1e-3);
+  }
 }
 
 TEST_P(Heaps, APyramidOf55BoxesStands) {

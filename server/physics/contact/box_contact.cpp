@@ -9,9 +9,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// An edge axis is preferred only if it separates better than the best face axis by this much [m]: faces give more
-// points.
-constexpr double edge_handicap = 1e-4;
+// An edge axis is preferred only if it separates better than the best face axis by this share of the least half width
+// of the two boxes. Faces give more points, and with a smaller share, boxes of a heap would change from faces to edges
+// and back with the last movements, and never rest.
+constexpr double handicap_share = 0.03;
+constexpr double least_handicap = 1e-4;  // [m]
+constexpr double most_handicap = 1e-3;   // [m]
 
 struct Placed {
   Vector3d half;
@@ -128,6 +131,8 @@ void find_box_contact(const description::Box& box_a, const Pose& X_WA, const des
   const Placed a{0.5 * box_a.size, X_WA.position, X_WA.orientation.toRotationMatrix()};
   const Placed b{0.5 * box_b.size, X_WB.position, X_WB.orientation.toRotationMatrix()};
   const Vector3d offset = a.centre - b.centre;
+  const double edge_handicap =
+      std::clamp(handicap_share * std::min(a.half.minCoeff(), b.half.minCoeff()), least_handicap, most_handicap);
 
   struct Best {
     double gap = -std::numeric_limits<double>::infinity();

@@ -230,9 +230,9 @@ TEST_P(Heaps, TwoHundredBoxesComeToRest) {
 }
 
 TEST_P(Heaps, HaveTheSameBitsForAnyNumberOfThreadsAndAfterARestore) {
-  const auto hash_after = [&](unsigned threads, bool restores) {
+  const auto hash_after = [&](bool are_hulls, unsigned threads, bool restores) {
     Heap heap(GetParam().world(), threads);
-    drop(heap, 120, true);
+    drop(heap, 120, are_hulls);
     heap.small.run(1.5);
     if (!restores) {
       heap.small.run(1.0);
@@ -244,9 +244,12 @@ TEST_P(Heaps, HaveTheSameBitsForAnyNumberOfThreadsAndAfterARestore) {
     for (int i = 0; i < 100; ++i) restored->step();
     return hash_of(*restored);
   };
-  const std::uint64_t expected = hash_after(1, false);
-  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(hash_after(threads, false), expected) << threads;
-  EXPECT_EQ(hash_after(1, true), expected) << "restored";
+  for (const bool are_hulls : {true, false}) {
+    SCOPED_TRACE(are_hulls ? "hulls" : "boxes");
+    const std::uint64_t expected = hash_after(are_hulls, 1, false);
+    for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(hash_after(are_hulls, threads, false), expected) << threads;
+    EXPECT_EQ(hash_after(are_hulls, 1, true), expected) << "restored";
+  }
 }
 
 }  // namespace

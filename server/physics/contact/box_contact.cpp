@@ -9,10 +9,13 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// An edge axis is preferred only if it separates better than the best face axis by this share of the least half width
-// of the two boxes. Faces give more points, and with a smaller share, boxes of a heap would change from faces to edges
-// and back with the last movements, and never rest.
+// Faces give more points than edges. So an edge axis is preferred only if it separates better than the best face axis
+// by this share of the least half width of the two boxes.
 constexpr double handicap_share = 0.03;
+// The axis of the last step stays until another one is better by this multiple of the same. Otherwise boxes of a heap
+// would change from faces to edges and back with their last movements, and never rest.
+constexpr double advantage = 2.0;
+constexpr double same_axis = 0.9999;     // cosine
 constexpr double least_handicap = 1e-4;  // [m]
 constexpr double most_handicap = 1e-3;   // [m]
 
@@ -127,7 +130,7 @@ void find_edge_contact(const Placed& a, int i, const Placed& b, int j, const Vec
 }  // namespace
 
 void find_box_contact(const description::Box& box_a, const Pose& X_WA, const description::Box& box_b, const Pose& X_WB,
-                      double margin, ContactPoints& found) {
+                      double margin, const Vector3d& last_normal_W, ContactPoints& found) {
   const Placed a{0.5 * box_a.size, X_WA.position, X_WA.orientation.toRotationMatrix()};
   const Placed b{0.5 * box_b.size, X_WB.position, X_WB.orientation.toRotationMatrix()};
   const Vector3d offset = a.centre - b.centre;
@@ -135,7 +138,8 @@ void find_box_contact(const description::Box& box_a, const Pose& X_WA, const des
       std::clamp(handicap_share * std::min(a.half.minCoeff(), b.half.minCoeff()), least_handicap, most_handicap);
 
   struct Best {
-    double gap = -std::numeric_limits<double>::infinity();
+    double rating = -std::numeric_limits<double>::infinity();
+    double gap = 0.0;
     Vector3d normal = Vector3d::Zero();  // from b to a
     int axis_a = -1;
     int axis_b = -1;
@@ -143,7 +147,9 @@ void find_box_contact(const description::Box& box_a, const Pose& X_WA, const des
   const auto look_along = [&](const Vector3d& axis, int axis_a, int axis_b, double handicap) {
     const double apart = axis.dot(offset);
     const double gap = std::abs(apart) - a.reach(axis) - b.reach(axis);
-    if (gap - handicap > best.gap) best = {gap, apart < 0.0 ? Vector3d(-axis) : axis, axis_a, axis_b};
+    const bool was_last = std::abs(axis.dot(last_normal_W)) > same_axis;
+    const double rating = was_last ? gap + advantage * edge_handicap : gap;
+    if (rating - handicap > best.rating) best = {rating, gap, apart < 0.0 ? Vector3d(-axis) : axis, axis_a, axis_b};
     return gap < margin;
   };
   for (int i = 0; i < 3; ++i)

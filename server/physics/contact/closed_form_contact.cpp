@@ -270,7 +270,7 @@ bool cylinder_on_box(const Cylinder& cylinder, const Pose& X_WC, const Box& box,
 }  // namespace
 
 bool find_closed_form_contact(const geometry::Shape& a, const Pose& X_WA, const geometry::Shape& b, const Pose& X_WB,
-                              double margin, ContactPoints& found) {
+                              double margin, const Vector3d& last_normal_W, ContactPoints& found) {
   if (const auto* plane = std::get_if<Plane>(&b))
     return anything_on_plane(a, X_WA, HalfSpace(*plane, X_WB), margin, false, found);
   if (const auto* plane = std::get_if<Plane>(&a))
@@ -293,7 +293,7 @@ bool find_closed_form_contact(const geometry::Shape& a, const Pose& X_WA, const 
     return known;
   }
   if (box_a == nullptr || box_b == nullptr) return false;
-  find_box_contact(*box_a, X_WA, *box_b, X_WB, margin, found);
+  find_box_contact(*box_a, X_WA, *box_b, X_WB, margin, last_normal_W, found);
   return true;
 }
 

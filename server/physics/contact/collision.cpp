@@ -103,7 +103,9 @@ void Collision::find_contact(SolidPair& pair) {
   const geometry::Solid& a = scene_.solid(pair.a);
   const geometry::Solid& b = scene_.solid(pair.b);
   ContactPoints found;
-  if (find_closed_form_contact(a.shape(), a.X_WC, b.shape(), b.X_WC, margin, found)) {
+  const Eigen::Vector3d last_normal_W =
+      pair.contact.count > 0 ? pair.contact.points[0].normal_W : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  if (find_closed_form_contact(a.shape(), a.X_WC, b.shape(), b.X_WC, margin, last_normal_W, found)) {
     pair.general.reset();
     match_points(pair.contact, found, [](const ContactPoint& old, ContactPoint& point) {
       point.impulse = old.impulse;
@@ -124,7 +126,8 @@ void Collision::find_contact(SolidPair& pair) {
 ContactPoints Collision::contact_at(const Pose& X_WA, std::uint32_t solid, std::uint32_t other) const {
   const geometry::Solid& b = scene_.solid(other);
   ContactPoints found;
-  if (!find_closed_form_contact(scene_.solid(solid).shape(), X_WA, b.shape(), b.X_WC, margin, found))
+  if (!find_closed_form_contact(scene_.solid(solid).shape(), X_WA, b.shape(), b.X_WC, margin, Eigen::Vector3d::Zero(),
+                                found))
     BulletContact(narrow_phase(), shapes_[solid], shapes_[other]).update(X_WA, b.X_WC, found);
   return found;
 }

@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 // Faces give more points than edges. So an edge axis is preferred only if it separates better than the best face axis
 // by this share of the least half width of the two boxes.
 constexpr double handicap_share = 0.03;
-// The axis of the last step stays until another one is better by this multiple of the same. Otherwise boxes of a heap
-// would change from faces to edges and back with their last movements, and never rest.
+// A face axis of the last step stays until another one is better by this multiple of the same. Otherwise boxes of a
+// heap would change from faces to edges and back with their last movements, and never rest.
 constexpr double advantage = 2.0;
 constexpr double same_axis = 0.9999;     // cosine
 constexpr double least_handicap = 1e-4;  // [m]
@@ -147,7 +147,8 @@ void find_box_contact(const description::Box& box_a, const Pose& X_WA, const des
   const auto look_along = [&](const Vector3d& axis, int axis_a, int axis_b, double handicap) {
     const double apart = axis.dot(offset);
     const double gap = std::abs(apart) - a.reach(axis) - b.reach(axis);
-    const bool was_last = std::abs(axis.dot(last_normal_W)) > same_axis;
+    const bool is_face = axis_a < 0 || axis_b < 0;
+    const bool was_last = is_face && std::abs(axis.dot(last_normal_W)) > same_axis;
     const double rating = was_last ? gap + advantage * edge_handicap : gap;
     if (rating - handicap > best.rating) best = {rating, gap, apart < 0.0 ? Vector3d(-axis) : axis, axis_a, axis_b};
     return gap < margin;

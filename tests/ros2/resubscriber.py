@@ -1,4 +1,4 @@
-"""A node that commands like commander.py, but ends its subscription at the fifth scan, unanswered, and subscribes again."""
+"""A node like commander.py that does not answer the fifth scan, ends its subscription and subscribes again."""
 
 import math
 

@@ -24,8 +24,8 @@ class MassMatrix {
 
   /// Factorises the matrix. Call it after all inertia was added and before `solve` and `invert`.
   void factorise();
-  /// Returns the inertia of one dof of the factorised matrix while the dofs before it are held and all it carries is free
-  /// to move.
+  /// Returns the inertia of one dof of the factorised matrix: the dofs before it are held, and all that it carries is
+  /// free to move.
   double articulated_inertia(int dof) const { return 1.0 / matrix_[static_cast<std::size_t>(dof * (stride_ + 1))]; }
   /// Solves matrix * y = x in place.
   void solve(double* x) const;

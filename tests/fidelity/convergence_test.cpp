@@ -224,7 +224,8 @@ TEST_P(Convergence, AChainOfBallJointsKeepsItsEnergy) {
   }
 }
 
-// Six legs of three joints each swing so fast that their links precess, and the chains from foot to foot are stiff.
+// Six legs of three joints each. A leg has much angular momentum for the inertia of its first link, which is small, and
+// the motors of all legs act against each other over the ground.
 double way_of_a_walking_hexapod(description::World world, std::chrono::milliseconds step) {
   world.step = step;
   SmallWorld small(world);

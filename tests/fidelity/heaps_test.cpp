@@ -228,7 +228,7 @@ TEST_P(Heaps, TwoHundredBoxesComeToRest) {
   EXPECT_TRUE(heap.all_sleep());
 }
 
-// A box that others hold by two points only, above its centre, swings like a pendulum, and nothing damps that.
+// A few go on moving by millimetres per second, which keeps the heap awake.
 TEST_P(Heaps, NearlyAllOfAThousandBoxesComeToRest) {
   Heap heap(GetParam().world());
   drop(heap, 1000, false, 0.8);

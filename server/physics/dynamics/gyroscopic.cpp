@@ -107,7 +107,7 @@ bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_h
       const bool is_hinge = segment.motion == Motion::revolute;
       const double across = is_hinge ? axis_W.cross(spin_W).norm() : spin_W.norm();
       if (is_fast(across / segment.inertia_S.diagonal().minCoeff(), step) &&
-          !(is_hinge && !is_fast(across / mass().articulated_inertia(segment.first_dof), step)))
+          (!is_hinge || is_fast(across / mass().articulated_inertia(segment.first_dof), step)))
         return true;
     }
     if (segment.parent < 0) continue;

@@ -18,8 +18,8 @@ constexpr double settled_without_gravity = 1e-5;  // [m/s or rad/s]
 constexpr std::size_t most_lightly_connected = 6;
 // Newton's method solves islands more precisely than passes, by this factor of the settled change.
 constexpr double precise_share = 1e-2;
-// A single body on the ground is solved by passes. If the last pass still changes velocities by this multiple of the
-// settled change, as in a robot with many legs, Newton's method finds one minimum instead.
+// A single body with disc-shaped friction is solved by passes. If the last pass still changes velocities by this
+// multiple of the settled change, as in a robot with many legs, Newton's method finds one minimum instead.
 constexpr double far_from_settled = 1e4;
 // Where Newton's method finds no solution, up to this multiple of the usual number of passes settles an island.
 constexpr std::uint32_t passes_of_unsettled = 5;
@@ -181,14 +181,11 @@ void IslandSolver::solve_rows(const Assembly& assembly) {
 
   const std::uint32_t passes = assembly.settings.iterations * (method_ == Method::many_passes ? passes_where_fast : 1);
   const std::uint32_t most = is_alone || has_connections_ ? passes : passes_of_unsettled * passes;
-  if (!is_alone || method_ != Method::newton) {
-    solve_iteratively(problem_, {passes, most, settled}, has_connections_ ? start_of_connected : 1.0);
-    return;
-  }
   Equations& body = bodies_[0];
   without_impulses_.assign(body.velocity(), body.velocity() + body.stride());
-  const double change = solve_iteratively(problem_, {passes, passes, settled}, 1.0);
-  if (change <= far_from_settled * settled) return;
+  const double change =
+      solve_iteratively(problem_, {passes, most, settled}, has_connections_ ? start_of_connected : 1.0);
+  if (!is_alone || method_ != Method::newton || change <= far_from_settled * settled) return;
   std::swap_ranges(without_impulses_.begin(), without_impulses_.end(), body.velocity());
   if (!newton_.solve(problem_, settled, 1))
     std::copy(without_impulses_.begin(), without_impulses_.end(), body.velocity());

@@ -34,8 +34,8 @@ class IslandSolver {
   Problem problem_{bodies_};
   NewtonSolver newton_;
   Impacts impacts_;
-  std::vector<std::uint32_t> sound_;       // members
-  std::vector<double> without_impulses_;  // velocities of a single body
+  std::vector<std::uint32_t> sound_;      // members
+  std::vector<double> without_impulses_;  // velocities of the first body
   bool has_connections_ = false;
   Method method_ = Method::passes;
 };

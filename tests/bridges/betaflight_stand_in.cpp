@@ -19,8 +19,10 @@ sockaddr_in at(const std::string& address, std::uint16_t port) {
   return endpoint;
 }
 
-int bound_to(const std::string& address, std::uint16_t port) {
-  const int made = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+int bound_to(const std::string& address, std::uint16_t port, int type = SOCK_DGRAM) {
+  const int made = ::socket(AF_INET, type | SOCK_CLOEXEC, 0);
+  const int yes = 1;
+  if (type == SOCK_STREAM) ::setsockopt(made, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   const sockaddr_in endpoint = at(address, port);
   if (::bind(made, reinterpret_cast<const sockaddr*>(&endpoint), sizeof endpoint) != 0)
     throw std::runtime_error(address + " cannot be listened at");
@@ -37,11 +39,20 @@ bool has_datagram(int descriptor, int milliseconds) {
 BetaflightStandIn::BetaflightStandIn(std::uint32_t number)
     : prefix_("127.1." + std::to_string(number % 256) + "."),
       state_(bound_to(address(), 9003)),
-      channels_(bound_to(address(), 9004)) {}
+      channels_(bound_to(address(), 9004)),
+      command_line_(bound_to(address(), 5761, SOCK_STREAM)) {}
 
 BetaflightStandIn::~BetaflightStandIn() {
   ::close(state_);
   ::close(channels_);
+  ::close(command_line_);
+}
+
+void BetaflightStandIn::boot() const { ::listen(command_line_, SOMAXCONN); }
+
+void BetaflightStandIn::shut_down() {
+  ::close(command_line_);
+  command_line_ = bound_to(address(), 5761, SOCK_STREAM);
 }
 
 std::optional<std::array<double, 18>> BetaflightStandIn::receive_state(int milliseconds) const {

@@ -21,6 +21,10 @@ class BetaflightStandIn {
   std::string address() const { return prefix_ + "2"; }
   std::string simulator() const { return prefix_ + "1"; }
 
+  /// Opens the command line, as the program does when it has booted. Before, connections to it are refused.
+  void boot() const;
+  /// Closes it, as a program that ends.
+  void shut_down();
   /// Waits for the next state packet, 18 numbers; nothing if none comes within this.
   std::optional<std::array<double, 18>> receive_state(int milliseconds = 60'000) const;
   /// The channels of the last RC packet that has come.
@@ -33,6 +37,7 @@ class BetaflightStandIn {
   std::string prefix_;
   int state_ = -1;
   int channels_ = -1;
+  int command_line_ = -1;
 };
 
 }  // namespace cohort::test

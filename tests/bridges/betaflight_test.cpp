@@ -70,6 +70,11 @@ class BetaflightBridge : public ::testing::Test {
   BetaflightBridge() : program_(domain_.number()) {}
 
   void simulate(const std::vector<std::string>& options = {}, const std::vector<std::string>& of_server = {}) {
+    program_.boot();
+    simulate_before_boot(options, of_server);
+  }
+  void simulate_before_boot(const std::vector<std::string>& options = {},
+                            const std::vector<std::string>& of_server = {}) {
     std::vector<std::string> all = {"--listen", program_.simulator(), "--at", program_.address()};
     all.insert(all.end(), options.begin(), options.end());
     server_ = std::make_unique<Process>(field_.serve(domain_, of_server));
@@ -151,6 +156,32 @@ TEST_F(BetaflightBridge, MotorsAreThoseOfTheMixer) {
   const auto pitched = program_.receive_state();
   ASSERT_TRUE(pitched);
   EXPECT_LT((*pitched)[2], -0.1) << "nose down";
+}
+
+// Betaflight crashes if a state comes before its sensors are there.
+TEST_F(BetaflightBridge, AProgramThatBootsGetsNoState) {
+  simulate_before_boot();
+  ASSERT_TRUE(server_->wait_for_output("waiting for copter_0")) << server_->output() << bridge_->output();
+  EXPECT_FALSE(program_.receive_state(600)) << "states are sent again every 250 ms";
+  program_.boot();
+  fly();
+  const std::string late = hash();
+  simulate();
+  fly();
+  EXPECT_EQ(late, hash());
+}
+
+TEST_F(BetaflightBridge, AProgramThatIsStartedOnceMoreGetsNoStateBeforeItHasBooted) {
+  simulate();
+  fly(0.1);
+  ASSERT_TRUE(bridge_->wait_for_output("is silent")) << bridge_->output();
+  program_.shut_down();
+  bool is_quiet = false;
+  for (int state = 0; state < 100 && !is_quiet; ++state) is_quiet = !program_.receive_state(600);
+  EXPECT_TRUE(is_quiet);
+  program_.boot();
+  fly();
+  hash();
 }
 
 TEST_F(BetaflightBridge, TwoRunsAndAnyNumberOfThreadsGiveTheSameBitsWithAProgramThatHasNoClock) {

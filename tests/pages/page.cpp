@@ -11,14 +11,19 @@ namespace {
 const char* const functions = R"(
 # until_prints TEXT SCRIPT: runs SCRIPT in a process group of its own, and stops the group when it has printed TEXT.
 until_prints() {
-  local output
+  local output end=$((SECONDS + 120))
   output=$(mktemp)
   set -m
   bash -eu "$2" > "$output" 2>&1 &
   local group=$!
   set +m
   until grep -qF -- "$1" "$output"; do
-    kill -0 $group 2> /dev/null || grep -qF -- "$1" "$output" || { cat "$output"; echo "'$1' was not printed" >&2; exit 1; }
+    if [[ $SECONDS -gt $end ]] || ! kill -0 $group 2> /dev/null && ! grep -qF -- "$1" "$output"; then
+      cat "$output"
+      echo "'$1' was not printed" >&2
+      kill -KILL -- -$group 2> /dev/null || true
+      exit 1
+    fi
     sleep 0.05
   done
   cat "$output"

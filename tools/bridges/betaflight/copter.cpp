@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "tools/bridges/betaflight/program_link.hpp"
+
 namespace cohort::betaflight {
 namespace {
 
@@ -52,6 +54,9 @@ Copter::Copter(const bridges::Patience& patience, std::unique_ptr<Program> progr
                      });
 }
 
+Copter::Copter(const bridges::Patience& patience, std::string address)
+    : patience_(patience), address_(std::move(address)) {}
+
 void Copter::start(const DrivenRobot& robot) {
   const Start& start = robot.start;
   orientation_ = start.observation("imu/0/orientation");
@@ -93,6 +98,7 @@ std::optional<Motors> Copter::exchange_by_the_wall(bridges::Conversation& progra
                                                    const Channels& sticks) {
   const std::vector<std::uint8_t> packet = state_packet(state);
   if (program_ && !flies_) wait_until_ready(program);
+  if (!program_ && !flies_ && !wait_until_booted(program)) return std::nullopt;
   program.drop_received();  // earlier packets do not answer this one
   program.send(rc_packet(state.time, sticks));
   program.send(packet);
@@ -156,25 +162,42 @@ void Copter::wait_until_ready(bridges::Conversation& program) const {
 
 std::optional<Motors> Copter::wait_for_motors(bridges::Conversation& program, const std::vector<std::uint8_t>& state) {
   using Clock = std::chrono::steady_clock;
-  const bool waits = patience_.silence == bridges::Silence::wait;
   const Clock::time_point began = Clock::now();
   bool told = false;
   for (;;) {
-    // The program may not listen yet, and datagrams may be lost.
-    auto at_most = sent_again_after;
-    if (!waits && patience_.at_most) at_most = std::min(at_most, *patience_.at_most);
-    if (const auto packet = program.receive(servo_framing, {bridges::Silence::hold, at_most}))
+    if (const auto packet = program.receive(servo_framing, {bridges::Silence::hold, asked_again_after()}))
       return motors_in(*packet);
     const auto waited = Clock::now() - began;
-    if (!waits && patience_.at_most && waited >= *patience_.at_most) return std::nullopt;
+    if (!has_patience_after(waited)) return std::nullopt;
     if (!told && waited > silence_told_after) {
       program.tell("is silent: no servo packet answers the state packets");
       told = true;
     }
     if (program_)
       if (const auto how = program_->ended()) throw std::runtime_error("Betaflight " + *how);
-    program.send(state);
+    // Datagrams may be lost. The program may also have been started once more.
+    if (program_ || has_booted(address_)) program.send(state);
   }
+}
+
+// A state packet before would make a program crash that boots. Returns false when patience ends.
+bool Copter::wait_until_booted(bridges::Conversation& program) const {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point began = Clock::now();
+  while (!has_booted(address_)) {
+    program.receive(servo_framing, {bridges::Silence::hold, asked_again_after()});
+    if (!has_patience_after(Clock::now() - began)) return false;
+  }
+  return true;
+}
+
+bool Copter::has_patience_after(std::chrono::steady_clock::duration waited) const {
+  return patience_.silence == bridges::Silence::wait || !patience_.at_most || waited < *patience_.at_most;
+}
+
+std::chrono::milliseconds Copter::asked_again_after() const {
+  if (patience_.silence == bridges::Silence::wait) return sent_again_after;
+  return std::min(sent_again_after, patience_.at_most.value_or(sent_again_after));
 }
 
 void Copter::act(Command& command) const {

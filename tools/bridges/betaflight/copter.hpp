@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "tools/bridges/betaflight/pilot.hpp"
 #include "tools/bridges/betaflight/sitl_packets.hpp"
@@ -16,8 +17,10 @@ namespace cohort::betaflight {
 /// commands the motors once.
 class Copter final : public bridges::Firmware {
  public:
-  /// `patience` outlives this. `program`: started and ended with the run; null if it is started outside of the bridge.
+  /// `patience` outlives this. `program`: started and ended with the run.
   Copter(const bridges::Patience& patience, std::unique_ptr<Program> program);
+  /// A program that is started outside of the bridge, at this IPv4 address.
+  Copter(const bridges::Patience& patience, std::string address);
 
   /// The robot has the channels of worlds/robots/quadcopter_x.
   void start(const DrivenRobot& robot) override;
@@ -29,6 +32,9 @@ class Copter final : public bridges::Firmware {
   State sense(const Observation& observation);
   void look_for_pad(const Observation& observation, State& state);
   void wait_until_ready(bridges::Conversation& program) const;
+  bool wait_until_booted(bridges::Conversation& program) const;
+  std::chrono::milliseconds asked_again_after() const;
+  bool has_patience_after(std::chrono::steady_clock::duration waited) const;
   std::optional<Motors> exchange_by_the_wall(bridges::Conversation& program, const State& state,
                                              const Channels& sticks);
   std::optional<Motors> exchange_in_virtual_time(bridges::Conversation& program, const State& state,
@@ -36,7 +42,8 @@ class Copter final : public bridges::Firmware {
   std::optional<Motors> wait_for_motors(bridges::Conversation& program, const std::vector<std::uint8_t>& state);
 
   const bridges::Patience& patience_;
-  std::unique_ptr<Program> program_;
+  std::unique_ptr<Program> program_;                     // null if it is started outside of the bridge,
+  std::string address_;                                  // at this address
   const bridges::Conversation* conversation_ = nullptr;  // from the first exchange on
   std::optional<Pilot> pilot_;
   double step_ = 0.0;       // between frames [s]

@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
     if (path.empty()) {
       auto socket = betaflight::open_servo_socket(one_of(listen, i, robots.size(), "--listen"));
       const std::string& address = one_of(at, i, robots.size(), "--at");
-      return {std::make_unique<betaflight::Copter>(program.patience(), nullptr),
+      return {std::make_unique<betaflight::Copter>(program.patience(), address),
               std::make_unique<betaflight::ProgramLink>(std::move(socket), address)};
     }
     auto started = std::make_unique<betaflight::Program>(betaflight::Program::Options{

@@ -1,8 +1,11 @@
 #include "tools/bridges/betaflight/program_link.hpp"
 
 #include <arpa/inet.h>
+#include <poll.h>
 #include <sys/socket.h>
 
+#include <cerrno>
+#include <chrono>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +17,7 @@ namespace cohort::betaflight {
 namespace {
 
 constexpr int most_mistakes_told = 10;
+constexpr std::chrono::milliseconds answered_within{100};
 
 std::string place_text(const sockaddr_in& endpoint) {
   char text[INET_ADDRSTRLEN] = {};
@@ -21,7 +25,26 @@ std::string place_text(const sockaddr_in& endpoint) {
   return std::string(text) + ":" + std::to_string(ntohs(endpoint.sin_port));
 }
 
+/// Waits for the end of a connect() that does not block. Returns its error: 0 if it has connected.
+int error_of_connecting(const bridges::Descriptor& socket) {
+  pollfd waited{socket.number(), POLLOUT, 0};
+  if (::poll(&waited, 1, static_cast<int>(answered_within.count())) <= 0) return ETIMEDOUT;
+  int error = 0;
+  socklen_t size = sizeof error;
+  ::getsockopt(socket.number(), SOL_SOCKET, SO_ERROR, &error, &size);
+  return error;
+}
+
 }  // namespace
+
+bool has_booted(const std::string& address) {
+  const sockaddr_in endpoint = bridges::endpoint_of(address, cli_port);
+  const bridges::Descriptor caller(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  int error = 0;
+  if (::connect(caller.number(), reinterpret_cast<const sockaddr*>(&endpoint), sizeof endpoint) != 0) error = errno;
+  if (error == EINPROGRESS) error = error_of_connecting(caller);
+  return error != ECONNREFUSED;
+}
 
 bridges::Descriptor open_servo_socket(const std::string& address) {
   const sockaddr_in endpoint = bridges::endpoint_of(address, servo_port);

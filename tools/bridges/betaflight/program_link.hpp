@@ -30,6 +30,11 @@ class ProgramLink final : public bridges::Link {
   int mistakes_ = 0;
 };
 
+/// Returns whether the program at this IPv4 address has booted, and takes state packets. It opens its command line
+/// last, so it has booted if it accepts a connection there. Also true if there is no answer within 100 ms, as from
+/// behind a firewall: then nothing is known.
+bool has_booted(const std::string& address);
+
 /// Returns a socket for servo packets that come to this address of the machine. Throws std::runtime_error.
 bridges::Descriptor open_servo_socket(const std::string& address);
 

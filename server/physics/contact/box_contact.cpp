@@ -12,9 +12,9 @@ using Eigen::Vector3d;
 // Faces give more points than edges. So an edge axis is preferred only if it separates better than the best face axis
 // by this share of the least half width of the two boxes.
 constexpr double handicap_share = 0.03;
-// A face axis of the last step stays until another one is better by this multiple of the same. Otherwise boxes of a
-// heap would change from faces to edges and back with their last movements, and never rest.
-constexpr double advantage = 2.0;
+// The axis of the last step stays until another one is better: a face by this multiple of the same, an edge by the
+// same. Otherwise boxes of a heap would change from one to another and back with their last movements, and never rest.
+constexpr double last_face_share = 2.0;
 constexpr double same_axis = 0.9999;     // cosine
 constexpr double least_handicap = 1e-4;  // [m]
 constexpr double most_handicap = 1e-3;   // [m]
@@ -134,7 +134,7 @@ void find_box_contact(const description::Box& box_a, const Pose& X_WA, const des
   const Placed a{0.5 * box_a.size, X_WA.position, X_WA.orientation.toRotationMatrix()};
   const Placed b{0.5 * box_b.size, X_WB.position, X_WB.orientation.toRotationMatrix()};
   const Vector3d offset = a.centre - b.centre;
-  const double edge_handicap =
+  const double handicap =
       std::clamp(handicap_share * std::min(a.half.minCoeff(), b.half.minCoeff()), least_handicap, most_handicap);
 
   struct Best {
@@ -143,28 +143,31 @@ void find_box_contact(const description::Box& box_a, const Pose& X_WA, const des
     Vector3d normal = Vector3d::Zero();  // from b to a
     int axis_a = -1;
     int axis_b = -1;
-  } best;
-  const auto look_along = [&](const Vector3d& axis, int axis_a, int axis_b, double handicap) {
+  } face, edge;
+  // Returns false if the boxes are apart along this axis.
+  const auto look_along = [&](const Vector3d& axis, int axis_a, int axis_b, double disadvantage,
+                              double advantage_of_last, Best& best) {
     const double apart = axis.dot(offset);
     const double gap = std::abs(apart) - a.reach(axis) - b.reach(axis);
-    const bool is_face = axis_a < 0 || axis_b < 0;
-    const bool was_last = is_face && std::abs(axis.dot(last_normal_W)) > same_axis;
-    const double rating = was_last ? gap + advantage * edge_handicap : gap;
-    if (rating - handicap > best.rating) best = {rating, gap, apart < 0.0 ? Vector3d(-axis) : axis, axis_a, axis_b};
+    const bool was_last = std::abs(axis.dot(last_normal_W)) > same_axis;
+    const double rating = was_last ? gap + advantage_of_last : gap;
+    if (rating - disadvantage > best.rating) best = {rating, gap, apart < 0.0 ? Vector3d(-axis) : axis, axis_a, axis_b};
     return gap < margin;
   };
+  const double of_last_face = last_face_share * handicap;
   for (int i = 0; i < 3; ++i)
-    if (!look_along(b.R.col(i), -1, i, 0.0)) return;
+    if (!look_along(b.R.col(i), -1, i, 0.0, of_last_face, face)) return;
   for (int i = 0; i < 3; ++i)
-    if (!look_along(a.R.col(i), i, -1, edge_handicap)) return;  // equal faces: always b's
+    if (!look_along(a.R.col(i), i, -1, handicap, of_last_face, face)) return;  // equal faces: always b's
   constexpr double parallel = 1e-6;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const Vector3d axis = a.R.col(i).cross(b.R.col(j));
       const double length = axis.norm();
-      if (length > parallel && !look_along(axis / length, i, j, edge_handicap)) return;
+      if (length > parallel && !look_along(axis / length, i, j, 0.0, handicap, edge)) return;
     }
   }
+  const Best& best = edge.rating - handicap > face.rating ? edge : face;
   if (best.axis_a >= 0 && best.axis_b >= 0) {
     find_edge_contact(a, best.axis_a, b, best.axis_b, best.normal, best.gap, found);
   } else if (best.axis_b >= 0) {

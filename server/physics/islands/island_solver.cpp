@@ -1,6 +1,7 @@
 #include "server/physics/islands/island_solver.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "server/physics/solvers/active_set_solver.hpp"
 #include "server/physics/solvers/direct_solver.hpp"
@@ -23,6 +24,10 @@ constexpr double precise_share = 1e-2;
 constexpr double far_from_settled = 1e4;
 // Where Newton's method finds no solution, up to this multiple of the usual number of passes settles an island.
 constexpr std::uint32_t passes_of_unsettled = 5;
+// Damping of a calm heap [1/s]: what still rocks there has stopped after a few tenths of a second.
+constexpr double damping_of_calm = 10.0;
+// A single rigid body is nearly at rest below this share of what gravity adds in a step.
+constexpr double slow_share = 0.1;
 // Fast-spinning bodies need more passes: their equations are not symmetric, as the other solvers require.
 constexpr std::uint32_t passes_where_fast = 10;
 
@@ -74,6 +79,18 @@ bool is_calm_heap(std::span<const std::uint32_t> members, Assembly& assembly) {
   return sum < fall * fall * static_cast<double>(members.size()) && !has_connections && has_carried(members, assembly);
 }
 
+void damp_calm_heap(std::span<const std::uint32_t> members, const Assembly& assembly, IslandBodies& bodies) {
+  const double fall = assembly.step * assembly.gravity.norm();
+  const double kept = std::max(1.0 - damping_of_calm * assembly.step, 0.0);
+  for (const std::uint32_t member : members) {
+    if (!assembly.members[member].multibody->mechanism().is_free_body()) continue;
+    const std::span velocity(bodies[assembly.anchors.index_of_member[member]].velocity(), 6);  // angular, linear
+    const bool is_slow = std::ranges::all_of(velocity.last(3), [&](double v) { return std::abs(v) < fall; });
+    if (!is_slow) continue;
+    for (double& v : velocity) v *= kept;
+  }
+}
+
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies) {
   return settings.solver == description::Solver::direct ||
          (settings.solver == description::Solver::hybrid && bodies <= settings.direct_bodies);
@@ -110,8 +127,11 @@ void IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> memb
 
 bool IslandSolver::solve_by_newton(Assembly& assembly, std::span<const std::uint32_t> members) {
   take(assembly, members);
-  return set_up(assembly) && method_ == Method::newton &&
-         newton_.solve(problem_, precise_share * settled_change(assembly)) && finish(assembly);
+  if (!set_up(assembly) || method_ != Method::newton ||
+      !newton_.solve(problem_, precise_share * settled_change(assembly)))
+    return false;
+  damp_calm_heap(sound_, assembly, bodies_);
+  return finish(assembly);
 }
 
 bool IslandSolver::try_to_solve(Assembly& assembly) {
@@ -144,8 +164,7 @@ bool IslandSolver::set_up(Assembly& assembly) {
           has_light_connections || assembly.is_light(connection.a()) || assembly.is_light(connection.b());
     });
   method_ = find_method(assembly, has_light_connections);
-  const FrictionStart start =
-      method_ == Method::newton && sound_.size() > 1 ? FrictionStart::last : FrictionStart::shared;
+  const FrictionStart start = find_start(assembly);
   for (const std::uint32_t member : sound_)
     assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_, start); });
   impacts_.solve(problem_);
@@ -159,6 +178,15 @@ bool IslandSolver::finish(Assembly& assembly) {
   keep_impulses(problem_);
   for (const std::uint32_t member : sound_) assembly.integrate(member, problem_);
   return true;
+}
+
+FrictionStart IslandSolver::find_start(const Assembly& assembly) const {
+  if (sound_.size() > 1) return method_ == Method::newton ? FrictionStart::last : FrictionStart::shared;
+  // Friction that is shared by load would let a body creep that leans on something.
+  const BodyMotion& motion = assembly.members[sound_.front()].multibody->motion();
+  const double slow = slow_share * assembly.step * assembly.gravity.norm();
+  const bool is_slow = motion.segment_twist(0, motion.segment_pose(0).position).linear_W.norm() < slow;
+  return motion.mechanism().is_free_body() && is_slow ? FrictionStart::last : FrictionStart::shared;
 }
 
 IslandSolver::Method IslandSolver::find_method(const Assembly& assembly, bool has_light_connections) const {

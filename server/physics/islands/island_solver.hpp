@@ -27,6 +27,7 @@ class IslandSolver {
   bool set_up(Assembly& assembly);
   bool finish(Assembly& assembly);
   Method find_method(const Assembly& assembly, bool has_light_connections) const;
+  FrictionStart find_start(const Assembly& assembly) const;
   void solve_rows(const Assembly& assembly);
   bool has_cones() const;
 
@@ -46,6 +47,11 @@ double settled_change(const Assembly& assembly);
 /// Returns whether any of these bodies stands on another moving body or is held only by others, as in a stack or
 /// between fingers.
 bool has_carried(std::span<const std::uint32_t> members, const Assembly& assembly);
+
+/// Damps the rigid bodies of a calm heap that move slower than gravity makes a body in one step. Call it after solving.
+/// A body that is held at two points would otherwise swing about them for ever, and friction that has not quite settled
+/// would let others rock.
+void damp_calm_heap(std::span<const std::uint32_t> members, const Assembly& assembly, IslandBodies& bodies);
 
 /// Returns whether an island of this many bodies is solved by Dantzig's algorithm.
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies);

@@ -66,6 +66,7 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   } else if (run_passes(assembly.settings.iterations) > settled && !has_connections && has_carried(sound_, assembly)) {
     run_passes(passes_of_heaps * assembly.settings.iterations);
   }
+  if (is_calm) damp_calm_heap(sound_, assembly, bodies_);
   if (!all_are_finite(assembly)) return false;
 
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)

@@ -281,8 +281,9 @@ void MultibodyWorld::solve_islands() {
       large_island_solver_.solve(assembly_, members);
   }
   if (!assembly_.settings.sleeping) return;
-  workers_.for_each_chunk(awake_.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned) {
-    for (std::size_t i = begin; i < end; ++i) sleep_.count(awake_[i]);
+  workers_.for_each_chunk(islands_.count(), islands_at_once, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
+      for (const std::uint32_t member : islands_.members(island)) sleep_.count(member, is_large(island));
   });
 }
 

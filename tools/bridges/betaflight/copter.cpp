@@ -175,12 +175,12 @@ std::optional<Motors> Copter::wait_for_motors(bridges::Conversation& program, co
     }
     if (program_)
       if (const auto how = program_->ended()) throw std::runtime_error("Betaflight " + *how);
-    // Datagrams may be lost. The program may also have been started once more.
+    // Datagrams may be lost. Or the program has been started again, and is still booting.
     if (program_ || has_booted(address_)) program.send(state);
   }
 }
 
-// A state packet before would make a program crash that boots. Returns false when patience ends.
+// A program that is still booting would crash at a state packet. Returns false when patience ends.
 bool Copter::wait_until_booted(bridges::Conversation& program) const {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point began = Clock::now();

@@ -182,11 +182,12 @@ bool IslandSolver::finish(Assembly& assembly) {
 
 FrictionStart IslandSolver::find_start(const Assembly& assembly) const {
   if (sound_.size() > 1) return method_ == Method::newton ? FrictionStart::last : FrictionStart::shared;
+  const Multibody& body = *assembly.members[sound_.front()].multibody;
+  if (!body.mechanism().is_free_body()) return FrictionStart::shared;
   // Friction that is shared by load would let a body creep that leans on something.
-  const BodyMotion& motion = assembly.members[sound_.front()].multibody->motion();
-  const double slow = slow_share * assembly.step * assembly.gravity.norm();
-  const bool is_slow = motion.segment_twist(0, motion.segment_pose(0).position).linear_W.norm() < slow;
-  return motion.mechanism().is_free_body() && is_slow ? FrictionStart::last : FrictionStart::shared;
+  const Eigen::Map<const Eigen::Vector3d> velocity(body.motion().velocities() + 3);
+  return velocity.norm() < slow_share * assembly.step * assembly.gravity.norm() ? FrictionStart::last
+                                                                                : FrictionStart::shared;
 }
 
 IslandSolver::Method IslandSolver::find_method(const Assembly& assembly, bool has_light_connections) const {

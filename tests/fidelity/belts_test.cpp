@@ -104,6 +104,24 @@ TEST_P(Belts, AccelerateTheirLoadByFriction) {
   }
 }
 
+// Large heaps nearly at rest are damped, but not on a belt.
+TEST_P(Belts, CarryALargeHeapAtTheirVelocity) {
+  if (GetParam().solver == description::Solver::direct) return;  // damps nothing, and takes minutes
+  constexpr double speed = 0.05;
+  SmallWorld small(GetParam().world());
+  const auto belt = small.add(conveyor(0.6), at(0, 0, 1));
+  std::vector<BodyId> boxes;
+  for (int column = 0; column < 50; ++column)
+    for (const double height : {0.03, 0.09}) {
+      const Vector3d size = Vector3d::Constant(0.06);
+      boxes.push_back(small.add(loose("box", Box{size}, solid_box(0.2, size)),
+                                at(-1.0 + 0.08 * (column % 25), column < 25 ? 0.1 : -0.1, 1.0 + height)));
+    }
+  small.world().set_device_target(belt, DeviceId{0}, 0, speed);
+  small.run(1.0);
+  for (const BodyId box : boxes) EXPECT_NEAR(small.velocity(box).x(), speed, 0.01 * speed);
+}
+
 TEST_P(Belts, CarryALoadUpAndDownASlope) {
   constexpr double friction = 0.6, slope = 0.35, speed = 0.5;
   for (const double sense : {1.0, -1.0}) {

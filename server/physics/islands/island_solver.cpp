@@ -80,10 +80,14 @@ bool is_calm_heap(std::span<const std::uint32_t> members, Assembly& assembly) {
 }
 
 void damp_calm_heap(std::span<const std::uint32_t> members, const Assembly& assembly, IslandBodies& bodies) {
+  const auto is_left_alone = [&](std::uint32_t index) {
+    const Member& member = assembly.members[index];
+    return member.multibody->is_inert() && !member.fluid;
+  };
+  if (!std::ranges::all_of(members, is_left_alone)) return;
   const double fall = assembly.step * assembly.gravity.norm();
-  const double kept = std::max(1.0 - damping_of_calm * assembly.step, 0.0);
+  const double kept = 1.0 / (1.0 + damping_of_calm * assembly.step);
   for (const std::uint32_t member : members) {
-    if (!assembly.members[member].multibody->mechanism().is_free_body()) continue;
     const std::span velocity(bodies[assembly.anchors.index_of_member[member]].velocity(), 6);  // angular, linear
     const bool is_slow = std::ranges::all_of(velocity.last(3), [&](double v) { return std::abs(v) < fall; });
     if (!is_slow) continue;

@@ -48,7 +48,8 @@ double settled_change(const Assembly& assembly);
 /// between fingers.
 bool has_carried(std::span<const std::uint32_t> members, const Assembly& assembly);
 
-/// Damps the rigid bodies of a calm heap that move slower than gravity makes a body in one step. Call it after solving.
+/// Damps the bodies of a calm heap that move slower than gravity makes a body in one step, if all are rigid bodies that
+/// nothing drives or carries. Call it after solving.
 /// A body that is held at two points would otherwise swing about them for ever, and friction that has not quite settled
 /// would let others rock.
 void damp_calm_heap(std::span<const std::uint32_t> members, const Assembly& assembly, IslandBodies& bodies);

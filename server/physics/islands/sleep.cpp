@@ -24,7 +24,7 @@ bool is_still(const Member& member, double fall, bool is_in_large_island) {
   if (!member.is_finite || !member.is_inside) return false;
   const Multibody& body = *member.multibody;
   const bool is_free = body.mechanism().is_free_body();
-  const double share = is_in_large_island ? still_share_if_large : still_share;
+  const double share = is_in_large_island && body.is_inert() ? still_share_if_large : still_share;
   const double slow = is_free ? std::max(still, share * fall) : still;
   double slow_turn = slow;  // [rad/s]: as fast at the radius of gyration
   if (is_free) {

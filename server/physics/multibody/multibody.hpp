@@ -47,6 +47,8 @@ class Multibody {
   RunningSurface surface_of(std::size_t link) const { return belts_.of_link(link, motion_.segment_poses()); }
 
   bool has_belts() const { return !belts_.is_empty(); }
+  /// Returns whether it is a single rigid body without any drive.
+  bool is_inert() const { return mechanism().is_free_body() && treels_.empty() && !has_belts(); }
   /// Clears the loads of the belts.
   void unload_belts() { belts_.unload(); }
   /// Adds a force over the last step to the load of a link with a belt, where its surface faces `outward_W`.

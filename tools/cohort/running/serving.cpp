@@ -270,11 +270,12 @@ std::vector<std::string> Serving::command_line_to_run_again() const {
 void Serving::let_look(const std::atomic<bool>& stop) {
   constexpr std::chrono::seconds before_saying{3};
   constexpr std::chrono::milliseconds interval{50};
-  std::optional<std::chrono::steady_clock::time_point> say_at = std::chrono::steady_clock::now() + before_saying;
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point say_at = Clock::now() + before_saying;
   for (; has_view_ && !stop; std::this_thread::sleep_for(interval)) {
-    if (!say_at || std::chrono::steady_clock::now() < *say_at) continue;
+    if (Clock::now() < say_at) continue;
     log_.notice("the run has ended; the view stays open until its pages are closed, or until Ctrl-C");
-    say_at.reset();
+    say_at = Clock::time_point::max();
   }
 }
 

@@ -16,8 +16,8 @@ TEST(Wheel, InstallsInAnEmptyEnvironmentOfACleanDebianAndRunsToTheSameBits) {
   // The dependencies, in the version that is tested.
   const ScratchFolder wheels;
   const std::string script = "cd " COHORT_SOURCE_DIR
-                             " && cp build/wheels/*.whl \"$1\" && build/python/bin/pip freeze | grep '^numpy==' > "
-                             "\"$1/needed\" && build/python/bin/pip download -q --no-deps -r \"$1/needed\" -d \"$1\"";
+                             " && cp build/wheels/*.whl \"$1\" && build/python-wheel/bin/pip freeze | grep '^numpy==' > "
+                             "\"$1/needed\" && build/python-wheel/bin/pip download -q --no-deps -r \"$1/needed\" -d \"$1\"";
   const Ended gathered = run_for_long({"sh", "-ec", script, "sh", wheels.path()});
   ASSERT_EQ(gathered.exit_code, 0) << gathered.out;
 

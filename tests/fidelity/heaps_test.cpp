@@ -275,7 +275,7 @@ TEST_P(Heaps, HaveTheSameBitsForAnyNumberOfThreadsAndAfterARestore) {
   for (const bool are_hulls : {true, false}) {
     SCOPED_TRACE(are_hulls ? "hulls" : "boxes");
     const std::uint64_t expected = hash_after(are_hulls, 1, false);
-    for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(hash_after(are_hulls, threads, false), expected) << threads;
+    for (const unsigned threads : {2u, 3u}) EXPECT_EQ(hash_after(are_hulls, threads, false), expected) << threads;
     EXPECT_EQ(hash_after(are_hulls, 1, true), expected) << "restored";
   }
 }

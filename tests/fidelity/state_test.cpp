@@ -63,7 +63,7 @@ TEST_P(State, HasTheSameBitsForAnyNumberOfThreads) {
     return hash_of(busy.small.world());
   };
   const std::uint64_t expected = hash_with(1);
-  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(hash_with(threads), expected) << threads;
+  for (const unsigned threads : {2u, 3u}) EXPECT_EQ(hash_with(threads), expected) << threads;
 }
 
 TEST_P(State, ContinuesFromASnapshotWithTheSameBits) {

@@ -1,6 +1,9 @@
 # Adds the tests of a GoogleTest program to ctest's. ctest includes this script before it runs tests. Variables:
-# `program`; `suites`: one test of ctest's for each suite instead of each test; `suffix` of the names; `properties`;
-# `folder` for the result, which is used until the program changes.
+# - program: the path of the program
+# - suites: true for one test of ctest's for each suite, false for one for each test
+# - suffix: appended to the names
+# - properties: of the tests
+# - folder: for the result, which is used until the program changes
 #
 # costs.txt and long_tests.txt, in the folder of this script, say which tests take long. Each of these is a test of
 # ctest's by itself, also if `suites` is true.

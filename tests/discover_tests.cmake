@@ -3,6 +3,7 @@
 # - suites: true for one test of ctest's for each suite, false for one for each test
 # - suffix: appended to the names
 # - properties: of the tests
+# - labels: of the tests; those of long_tests.txt also get the label `long`
 # - folder: for the result, which is used until the program changes
 #
 # costs.txt and long_tests.txt, in the folder of this script, say which tests take long. Each of these is a test of
@@ -54,9 +55,10 @@ function(write_test test filter)
   if(DEFINED "seconds_of_${test}${suffix}")
     list(APPEND values COST ${seconds_of_${test}${suffix}})
   endif()
+  set(its_labels ${labels})
   find_long(${test} is_long)
   if(is_long)
-    list(APPEND values LABELS long)
+    list(APPEND its_labels long)
   endif()
   if(test MATCHES "DISABLED_")
     list(APPEND values DISABLED true)
@@ -67,6 +69,9 @@ function(write_test test filter)
   foreach(value IN LISTS values)
     string(APPEND quoted " [==[${value}]==]")
   endforeach()
+  if(its_labels)
+    string(APPEND quoted " LABELS [==[${its_labels}]==]")
+  endif()
   string(APPEND text "add_test([==[${test}${suffix}]==] [==[${program}]==] [==[--gtest_filter=${filter}]==])\n"
     "set_tests_properties([==[${test}${suffix}]==] PROPERTIES${quoted})\n")
   set(text "${text}" PARENT_SCOPE)

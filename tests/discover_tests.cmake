@@ -2,6 +2,7 @@
 # - program: the path of the program
 # - suites: true for one test of ctest's for each suite, false for one for each test
 # - suffix: appended to the names
+# - filter: GoogleTest's filter for the tests, or nothing for all
 # - properties: of the tests
 # - labels: of the tests; those of long_tests.txt also get the label `long`
 # - folder: for the result, which is used until the program changes
@@ -11,7 +12,7 @@
 cmake_path(GET program FILENAME name)
 set(result ${folder}/${name}${suffix}_tests.cmake)
 set(is_current true)
-foreach(source ${program} ${CMAKE_CURRENT_LIST_FILE} ${CMAKE_CURRENT_LIST_DIR}/costs.txt
+foreach(source ${program} ${CMAKE_CURRENT_LIST_FILE} ${CMAKE_PARENT_LIST_FILE} ${CMAKE_CURRENT_LIST_DIR}/costs.txt
     ${CMAKE_CURRENT_LIST_DIR}/long_tests.txt)
   if(${source} IS_NEWER_THAN ${result})
     set(is_current false)
@@ -25,7 +26,10 @@ elseif(NOT EXISTS ${program})
   return()
 endif()
 
-execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
+if(NOT filter)
+  set(filter *)
+endif()
+execute_process(COMMAND ${program} --gtest_list_tests --gtest_filter=${filter} OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX REPLACE "  # [^\n]*" "" listed "${listed}")  # the values of parameters
 string(REPLACE "\n" ";" listed "${listed}")
 

@@ -45,6 +45,32 @@ TEST(Documents, TheSemanticsNameTestsThatExistAndEveryRuleHasOne) {
   EXPECT_GT(named, 200);
 }
 
+// A test that was renamed would no longer be long, and would no longer begin early.
+TEST(Documents, TheListsOfLongTestsNameSuitesAndTestsThatExist) {
+  std::set<std::string> names = {"WithOurOwnDynamics", "Python"};
+  for (const std::string& test : tests_in_the_sources()) {
+    names.insert(test.substr(0, test.find('.')));
+    names.insert(test.substr(test.find('.') + 1));
+  }
+  const std::regex word(R"(\b[A-Z]\w{4,})");
+  int named = 0;
+  for (const char* const list : {"long_tests.txt", "costs.txt"})
+    for (std::string line : test::lines_of(test::read_file(std::string(COHORT_SOURCE_DIR "/tests/") + list))) {
+      if (line.starts_with("#") || line.starts_with(" ")) continue;
+      // A pattern, and then reasons; or seconds, and then a name.
+      std::string test = line.substr(0, line.find(' '));
+      if (std::isdigit(static_cast<unsigned char>(line[0])) != 0) test = line.substr(line.find(' ') + 1);
+      const std::size_t parameters = test.rfind('/');
+      const std::size_t dot = test.find('.');
+      const std::string suite_and_test = test.substr(0, parameters > dot ? parameters : std::string::npos);
+      const std::size_t instance = suite_and_test.find('/');
+      const std::string checked = instance < dot ? suite_and_test.substr(instance + 1) : suite_and_test;
+      for (std::sregex_iterator match(checked.begin(), checked.end(), word), end; match != end; ++match, ++named)
+        EXPECT_TRUE(names.contains(match->str())) << list << ": " << line << ": " << match->str() << " does not exist";
+    }
+  EXPECT_GT(named, 60);
+}
+
 // Code blocks that begin with the name of a file are verbatim excerpts of it.
 TEST(Documents, ExcerptsStandInTheFilesThatTheyName) {
   const std::regex block(R"(```cpp\n// ([\w.]+/[\w/.]+)\n([\s\S]*?)```)");

@@ -84,8 +84,7 @@ TEST_P(LargeIslands, OnAMovingBoardHaveTheSameBitsForAnyNumberOfThreads) {
   const std::uint64_t expected = one.run(100);
   EXPECT_NEAR(one.small.position(one.board).z(), 0.005, 1e-4);
   for (const BodyId robot : one.robots) EXPECT_GT(one.small.up(robot).z(), 0.95);
-  for (const unsigned threads : {2u, 3u})
-    EXPECT_EQ(CrowdedBoard(GetParam(), threads).run(100), expected) << threads;
+  for (const unsigned threads : {2u, 3u}) EXPECT_EQ(CrowdedBoard(GetParam(), threads).run(100), expected) << threads;
 }
 
 TEST_P(LargeIslands, HoldTogetherLikeSmallOnes) {

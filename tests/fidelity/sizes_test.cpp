@@ -106,7 +106,8 @@ TEST_P(Sizes, DoNotAffectTheTimeOfAStep) {
       const double allowed = much_longer * std::max(time_of(1.0), too_short_to_compare);
       for (int decade = 3; decade >= -9; --decade)
         if (const double size = std::pow(10.0, decade); size <= widest()) {
-          ASSERT_TRUE(is_below(allowed, [&] { return time_of(size); })) << kind.name << " of " << size << " m on ground " << ground.index();
+          ASSERT_TRUE(is_below(allowed, [&] { return time_of(size); }))
+              << kind.name << " of " << size << " m on ground " << ground.index();
         }
     }
 }
@@ -127,7 +128,8 @@ TEST_P(Sizes, MayDifferWithinABody) {
     return seconds_of_ticks(small);
   };
   const double allowed = much_longer * std::max(time_of(0.01), too_short_to_compare);
-  for (int decade = -3; decade >= -9; --decade) ASSERT_TRUE(is_below(allowed, [&] { return time_of(std::pow(10.0, decade)); })) << decade;
+  for (int decade = -3; decade >= -9; --decade)
+    ASSERT_TRUE(is_below(allowed, [&] { return time_of(std::pow(10.0, decade)); })) << decade;
 }
 
 TEST_P(Sizes, MayDifferBetweenBodies) {

@@ -150,8 +150,8 @@ std::optional<Motors> Copter::exchange_in_virtual_time(bridges::Conversation& pr
 }
 
 // The program sends a first servo packet by itself, when its loops begin. Before, its sensors may not be there yet: a
-// state packet would make it crash. On a machine with much other work, its loops may never begin. If the first pass comes
-// later than two periods of the gyro, its scheduler waits for a time that has passed. Then it is started again.
+// state packet would make it crash. On a machine with much other work, its loops may never begin. If the first pass
+// comes later than two periods of the gyro, its scheduler waits for a time that has passed. Then it is started again.
 void Copter::wait_until_ready(bridges::Conversation& program) {
   using Clock = std::chrono::steady_clock;
   auto patience = ready_within;

@@ -46,8 +46,8 @@ class Copter final : public bridges::Firmware {
   std::string address_;                                  // at this address
   const bridges::Conversation* conversation_ = nullptr;  // from the first exchange on
   std::optional<Pilot> pilot_;
-  double step_ = 0.0;       // between frames [s]
-  double sent_ = -1.0;      // time of the last state packet [s]
+  double step_ = 0.0;   // between frames [s]
+  double sent_ = -1.0;  // time of the last state packet [s]
   // By resets, which turn the run's time back and must not turn that of packets back, and by packets sent again [s].
   double time_lost_ = 0.0;
   std::array<double, 2> place_{}, velocity_{};  // to the north and west of the pad, as it was seen last

@@ -3,6 +3,7 @@
 #include <optional>
 #include <regex>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 namespace cohort::test {
@@ -51,6 +52,23 @@ std::optional<std::string> note_of(const Block& block, const std::string& kind) 
   return std::nullopt;
 }
 
+/// The block's text as its notes `with A for B` change it.
+std::string text_of(const Block& block) {
+  const std::string between = " for ";
+  std::string text = block.text;
+  for (const std::string& note : block.notes) {
+    if (!note.starts_with("with ")) continue;
+    const std::size_t middle = note.find(between);
+    if (middle == std::string::npos) throw std::invalid_argument("expected 'with A for B', not '" + note + "'");
+    const std::string replaced = note.substr(middle + between.size());
+    const std::size_t at = text.find(replaced);
+    if (at == std::string::npos)
+      throw std::invalid_argument("line " + std::to_string(block.line) + ": no '" + replaced + "' in the block");
+    text.replace(at, replaced.size(), note.substr(5, middle - 5));
+  }
+  return text;
+}
+
 std::string commands_of(const Block& block) {
   if (note_of(block, "needs")) return "";
   if (const auto condition = note_of(block, "where")) {
@@ -64,8 +82,9 @@ std::string commands_of(const Block& block) {
     if (note.starts_with("first ")) script += note.substr(6) + "\n";
   const auto until = note_of(block, "until");
   const auto code = note_of(block, "exit");
-  if (!until && !code) return script + block.text;
-  script += write_file(".block", block.text);
+  const std::string text = text_of(block);
+  if (!until && !code) return script + text;
+  script += write_file(".block", text);
   return script + (until ? "until_prints '" + *until + "' .block\n" : "exits_with " + *code + " .block\n");
 }
 

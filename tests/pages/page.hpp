@@ -20,6 +20,7 @@ std::vector<Block> blocks_of(const std::string& page);
 ///   `first COMMAND`    runs a command before it, which readers do not see
 ///   `until TEXT`       stops the block's programs as soon as they have printed TEXT
 ///   `exit N`           expects that its last command ends with N
+///   `with A for B`     replaces B in the block by A, so that it takes less time
 ///   `where CONDITION`  leaves the block out, with a line on standard error, unless the command CONDITION succeeds
 ///   `needs REASON`     leaves the block out
 std::string script_of(const std::vector<Block>& blocks);

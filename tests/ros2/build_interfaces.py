@@ -96,16 +96,32 @@ def generate(package: Path, work: Path, others: list[str]) -> None:
         (c / "msg" / header).write_text(text)
 
 
+def joined(folder: Path) -> list[Path]:
+    """Makes one source of all those of a kind in a folder: they include the same headers, which take most of the time.
+
+    Descriptions of types stay alone, because they define static variables with the same names.
+    """
+    alone: list[Path] = []
+    kinds: dict[str, list[Path]] = {}
+    for source in sorted(folder.rglob("*.c*")):
+        kind = re.sub(r"^.*?(?=__|_s\.)", "", source.name)
+        (alone if kind == "__description.c" else kinds.setdefault(kind, [])).append(source)
+    for kind, sources in kinds.items():
+        alone.append(folder / f"all{kind}")
+        alone[-1].write_text("".join(f'#include "{source}"\n' for source in sources))
+    return alone
+
+
 def compile_package(name: str, work: Path, libraries: list[Path]) -> list[Path]:
     """Compiles a package's sources into a library with its types and an extension module; returns both."""
     includes = [work / "c", work / "described", *(PREFIX / "include").iterdir(), PREFIX / "include"]
     includes += [sysconfig.get_paths()["include"], numpy.get_include()]
     flags = ["-fPIC", "-O0", "-w", *(f"-I{include}" for include in includes)]
-    of_python = sorted((work / "python" / name).rglob("*.c"))
-    of_types = sorted([*(work / "c" / name).rglob("*.c*"), *(work / "described" / name).rglob("*.c")])
+    of_types = [*joined(work / "c" / name), *joined(work / "described" / name)]
+    of_python = joined(work / "python" / name)
 
     def compile_one(source: Path) -> Path:
-        target = source.with_suffix(".o")
+        target = source.with_name(f"{source.name}.o")
         compiler = ["g++", "-std=c++17"] if source.suffix == ".cpp" else ["gcc"]
         subprocess.run([*compiler, *flags, "-c", source, "-o", target], check=True)
         return target

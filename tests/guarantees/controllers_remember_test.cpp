@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cinttypes>
 #include <csignal>
+#include <cstdio>
 #include <map>
 #include <mutex>
 
@@ -117,10 +119,11 @@ TEST_P(ControllersRemember, ARunFromASnapshotOfAnyTickHasTheSameBits) {
 
 TEST_P(ControllersRemember, InAnyPlaceAndFromAnyPlace) {
   Snapshots snapshots;
-  RunHere(GetParam(), 2).finish(&snapshots);
+  char expected[17];
+  std::snprintf(expected, sizeof expected, "%016" PRIx64, RunHere(GetParam(), 2).finish(&snapshots));
   ASSERT_FALSE(snapshots.empty());
   const std::string tick = std::to_string(snapshots.begin()->first);
-  const std::string expected = summary_of({"--controllers", "inprocess", "--seed", seed_, "--duration", seconds_});
+  int combination = 0;  // each place meets each number of threads, as saver and after it
   for (const std::string saved_by : {"process", "per-robot"}) {
     const ReservedDomain domain;
     const std::string file = (folder_ / (saved_by + ".snap")).string();
@@ -136,12 +139,13 @@ TEST_P(ControllersRemember, InAnyPlaceAndFromAnyPlace) {
     }
     ASSERT_EQ(run.wait_for_exit(), 0) << run.output();
     EXPECT_NE(run.output().find(expected), std::string::npos) << "saving changes nothing: " << run.output();
-    for (const std::string placement : {"inprocess", "process", "per-robot"})
-      for (const std::string threads : {"1", "2"})
-        EXPECT_EQ(summary_of({"--controllers", placement, "--seed", seed_, "--duration", seconds_, "--from", file,
-                              "--threads", threads}),
-                  expected)
-            << saved_by << " to " << placement << " with " << threads << " threads";
+    for (const std::string placement : {"inprocess", "process", "per-robot"}) {
+      const std::string threads = combination++ % 2 == 0 ? "1" : "2";
+      EXPECT_EQ(summary_of({"--controllers", placement, "--seed", seed_, "--duration", seconds_, "--from", file,
+                            "--threads", threads}),
+                expected)
+          << saved_by << " to " << placement << " with " << threads << " threads";
+    }
   }
 }
 

@@ -5,6 +5,7 @@ import {
   atTick,
   coloursIn,
   drawCoarsely,
+  drawFewPixels,
   drawn,
   expectRobots,
   patience,
@@ -51,6 +52,7 @@ async function draws(page, file) {
 
 async function drawsMany(page, file) {
   const expected = JSON.parse(readFileSync(file, "utf8"));
+  await drawFewPixels(page);
   await run(page, `pause; seek ${expected.time}`);
   await atTick(page, expected.tick);
   const { places, calls } = await page.evaluate(() => {

@@ -26,9 +26,11 @@ export const setShadows = (page, on) =>
       ),
     on,
   );
+/** A picture with so few pixels that software draws it fast. */
+export const drawFewPixels = (page) => page.evaluate(() => window.cohort.viewer.stage.renderer.setPixelRatio(0.25));
 /** A picture that is coarse enough for software to draw it often: people steer by what they see. */
 export async function drawCoarsely(page) {
-  await page.evaluate(() => window.cohort.viewer.stage.renderer.setPixelRatio(0.25));
+  await drawFewPixels(page);
   await setShadows(page, false);
 }
 /** The next pictures are drawn, so many of them. */

@@ -256,6 +256,7 @@ async function usesTheHeight(page) {
 // No finding of axe in any state, in both themes.
 async function isAccessible(page) {
   await onDesktop(page);
+  await drawCoarsely(page);
   await page.emulateMedia({ reducedMotion: "reduce" });
   await page.evaluate(axeSource);
   const check = async (state) => {

@@ -60,6 +60,8 @@ const surfaces = {
   movable: { roughness: 0.65, metalness: 0.02 },
   static: { roughness: 0.9, metalness: 0 },
 };
+/** The least roughness of any surface. */
+export const smoothest = Math.min(...Object.values(surfaces).map(({ roughness }) => roughness));
 
 /** Splits a geometry into one for each texture, whose attributes are those of `whole`. */
 function partsByTexture(

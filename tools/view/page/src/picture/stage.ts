@@ -1,19 +1,12 @@
 import {
-  BackSide,
-  BufferAttribute,
-  Color,
   DirectionalLight,
   Fog,
   HemisphereLight,
-  Mesh,
-  MeshBasicMaterial,
   NeutralToneMapping,
   type Object3D,
   PCFShadowMap,
   PerspectiveCamera,
-  PMREMGenerator,
   type Sphere,
-  SphereGeometry,
   type Texture,
   Scene as ThreeScene,
   Vector3,
@@ -22,6 +15,7 @@ import {
 import { type Scene, ShapeKind } from "../data/messages";
 import { Ground } from "./ground";
 import { levels, Quality } from "./quality";
+import { reflectionsOf } from "./reflections";
 import { Sky } from "./sky";
 
 export type Theme = "light" | "dark";
@@ -100,6 +94,10 @@ export class Stage {
   }
 
   wear(theme: Theme): void {
+    if (theme !== this.theme) {
+      this.reflections?.dispose();
+      this.reflections = undefined;
+    }
     this.theme = theme;
     const look = looks[theme];
     this.sky.wear(look.sky, look.glow);
@@ -109,8 +107,6 @@ export class Stage {
     this.sun.color.set(look.sun.color);
     this.fill.color.set(look.fill.sky);
     this.fill.groundColor.set(look.fill.ground);
-    this.reflections?.dispose();
-    this.reflections = undefined;
     this.reflect();
   }
 
@@ -222,7 +218,7 @@ export class Stage {
   private reflect(): void {
     const look = looks[this.theme];
     const isOn = levels[this.quality.level].reflections;
-    if (isOn && !this.reflections) this.reflections = reflectionsOf(this.renderer, look);
+    if (isOn && !this.reflections) this.reflections = reflectionsOf(this.renderer, look, sunDirection);
     this.scene.environment = isOn ? (this.reflections ?? null) : null;
     this.scene.environmentIntensity = look.reflections;
     this.fill.intensity = look.fill.intensity * (isOn ? 1 : fillWithoutReflections);
@@ -234,31 +230,4 @@ function drawsInSoftware(renderer: WebGLRenderer): boolean {
   const names = gl.getExtension("WEBGL_debug_renderer_info");
   const name = String(names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : gl.getParameter(gl.RENDERER));
   return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
-}
-
-// A picture of the sky and the ground all around, which surfaces reflect.
-function reflectionsOf(renderer: WebGLRenderer, { sky, ground }: (typeof looks)[Theme]): Texture {
-  const geometry = new SphereGeometry(10, 32, 32).rotateX(Math.PI / 2);
-  const [zenith, horizon, below] = [sky.zenith, sky.horizon, ground.color].map((each) => new Color(each));
-  const positions = geometry.getAttribute("position");
-  const colors = new Float32Array(3 * positions.count);
-  for (let i = 0; i < positions.count; ++i) {
-    const up = positions.getZ(i) / 10;
-    const color = up < -0.02 ? below.clone() : horizon.clone().lerp(zenith, Math.max(0, up) ** 0.6);
-    const towardsSun = new Vector3().fromBufferAttribute(positions, i).normalize().dot(sunDirection);
-    color
-      .lerp(new Color(0xffffff), 0.3)
-      .multiplyScalar(1 + 6 * Math.max(0, towardsSun) ** 24)
-      .toArray(colors, 3 * i);
-  }
-  geometry.setAttribute("color", new BufferAttribute(colors, 3));
-  const material = new MeshBasicMaterial({ vertexColors: true, side: BackSide, toneMapped: false });
-  const surroundings = new ThreeScene();
-  surroundings.add(new Mesh(geometry, material));
-  const generator = new PMREMGenerator(renderer);
-  const { texture } = generator.fromScene(surroundings, 0.03);
-  generator.dispose();
-  geometry.dispose();
-  material.dispose();
-  return texture;
 }

@@ -52,20 +52,15 @@ TEST(Documents, TheListsOfLongTestsNameSuitesAndTestsThatExist) {
     names.insert(test.substr(0, test.find('.')));
     names.insert(test.substr(test.find('.') + 1));
   }
-  const std::regex word(R"(\b[A-Z]\w{4,})");
+  // A pattern, and then reasons; or seconds, and then a name. Instances and parameters are left out.
+  const std::regex entry(R"(^(?:\d+ )?(?:[^ /.]+/)?([^ /]+))"), word(R"(\b[A-Z]\w{4,})");
   int named = 0;
   for (const char* const list : {"long_tests.txt", "costs.txt"})
-    for (std::string line : test::lines_of(test::read_file(std::string(COHORT_SOURCE_DIR "/tests/") + list))) {
-      if (line.starts_with("#") || line.starts_with(" ")) continue;
-      // A pattern, and then reasons; or seconds, and then a name.
-      std::string test = line.substr(0, line.find(' '));
-      if (std::isdigit(static_cast<unsigned char>(line[0])) != 0) test = line.substr(line.find(' ') + 1);
-      const std::size_t parameters = test.rfind('/');
-      const std::size_t dot = test.find('.');
-      const std::string suite_and_test = test.substr(0, parameters > dot ? parameters : std::string::npos);
-      const std::size_t instance = suite_and_test.find('/');
-      const std::string checked = instance < dot ? suite_and_test.substr(instance + 1) : suite_and_test;
-      for (std::sregex_iterator match(checked.begin(), checked.end(), word), end; match != end; ++match, ++named)
+    for (const std::string& line : test::lines_of(test::read_file(std::string(COHORT_SOURCE_DIR "/tests/") + list))) {
+      std::smatch test;
+      if (line.starts_with("#") || !std::regex_search(line, test, entry)) continue;
+      const std::string name = test[1];
+      for (std::sregex_iterator match(name.begin(), name.end(), word), end; match != end; ++match, ++named)
         EXPECT_TRUE(names.contains(match->str())) << list << ": " << line << ": " << match->str() << " does not exist";
     }
   EXPECT_GT(named, 60);

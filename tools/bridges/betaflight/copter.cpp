@@ -18,7 +18,7 @@ constexpr std::chrono::milliseconds at_once{0};
 constexpr std::chrono::seconds boots_within{20};  // by its clock
 constexpr std::chrono::seconds silence_told_after{2};
 constexpr double velocity_smoothing = 0.1;  // [s]
-constexpr double clock_nudge = 1e-4;        // [s], short beside a frame, so that many of them are, too
+constexpr double clock_nudge = 1e-4;        // [s], short beside a frame, even many times
 
 // Turns a vector of the body into the axes of the earth.
 Vector turned(const std::array<double, 4>& q, const Vector& v) {
@@ -176,7 +176,8 @@ std::optional<Motors> Copter::wait_for_motors(bridges::Conversation& program, St
     const auto waited = Clock::now() - began;
     if (!has_patience_after(waited)) return std::nullopt;
     if (!told && waited > silence_told_after) {
-      program.tell("is silent: no servo packet answers the state packets. If it does not begin to, start it again");
+      program.tell("is silent: no servo packet answers the state packets" +
+                   std::string(program_ ? "" : ". If it does not begin to, start it again"));
       told = true;
     }
     if (program_)

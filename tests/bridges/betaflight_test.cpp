@@ -154,7 +154,7 @@ TEST_F(BetaflightBridge, AStateThatComesAgainHasALaterTimeSoonAfter) {
     ASSERT_TRUE(state);
     EXPECT_GE((*state)[0], (*before)[0]) << "the program ignores packets with an earlier time";
     EXPECT_LT((*state)[0], (*before)[0] + 0.001) << "time stands still";
-    later += (*state)[0] > (*before)[0];
+    if ((*state)[0] > (*before)[0]) ++later;
     before = state;
   }
   EXPECT_GE(later, 9);

@@ -34,7 +34,7 @@ inline bool comes_to_drive(const ReservedDomain& domain, std::uint32_t robot) {
   return eventually([&] {
     const auto status = nlohmann::json::parse(control(domain, {"status", "--json"}));
     return std::ranges::any_of(status["controllers"], [&](const auto& each) {
-      return each["alive"] == true && std::ranges::count(each["robots"], nlohmann::json(robot)) > 0;
+      return each["alive"].get<bool>() && std::ranges::count(each["robots"], nlohmann::json(robot)) > 0;
     });
   });
 }

@@ -1,6 +1,7 @@
 // The time of a step does not depend on the size of bodies, from tiny to a metre.
 
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <ctime>

@@ -33,7 +33,7 @@ inline std::string control(const ReservedDomain& domain, std::vector<std::string
 inline bool comes_to_drive(const ReservedDomain& domain, std::uint32_t robot) {
   return eventually([&] {
     const auto status = nlohmann::json::parse(control(domain, {"status", "--json"}));
-    return std::ranges::any_of(status["controllers"], [&](const auto& each) {
+    return std::ranges::any_of(status["controllers"], [&](const nlohmann::json& each) {
       return each["alive"].get<bool>() && std::ranges::count(each["robots"], nlohmann::json(robot)) > 0;
     });
   });

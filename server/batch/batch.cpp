@@ -86,7 +86,7 @@ void Batch::reset(std::size_t world, std::uint64_t seed, std::span<const Pose> X
   take(world);
 }
 
-void Batch::step(std::uint64_t ticks, std::span<const std::uint8_t> only) {
+void Batch::step(std::uint64_t ticks, std::span<const std::uint8_t> only, const std::atomic<bool>* stop) {
   if (ticks == 0) throw std::invalid_argument("expected at least one tick");
   if (!only.empty() && only.size() != worlds())
     throw std::invalid_argument("the selection has " + std::to_string(only.size()) + " worlds, expected " +
@@ -99,7 +99,7 @@ void Batch::step(std::uint64_t ticks, std::span<const std::uint8_t> only) {
   const auto visit = [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t world = is_on_its_way_back_ ? worlds() - 1 - i : i;
-      if (is_stepped(world)) run(world, ticks);
+      if (is_stepped(world)) run(world, ticks, stop);
     }
   };
   workers_.for_each_chunk(worlds(), worlds_a_chunk(worlds(), workers_.threads()), visit);
@@ -110,11 +110,11 @@ void Batch::step(std::uint64_t ticks, std::span<const std::uint8_t> only) {
   throw std::runtime_error(text);
 }
 
-void Batch::run(std::size_t world, std::uint64_t ticks) {
+void Batch::run(std::size_t world, std::uint64_t ticks, const std::atomic<bool>* stop) {
   Simulation& simulation = *worlds_[world];
   for (std::uint32_t robot = 0; robot < robots_; ++robot) simulation.set_command(robot, command(world, robot));
   try {
-    for (std::uint64_t left = ticks; left > 0; --left) {
+    for (std::uint64_t left = ticks; left > 0 && (stop == nullptr || !*stop); --left) {
       simulation.step();
       if (simulation.stop_reason() || simulation.tick() >= last_tick_) break;
     }

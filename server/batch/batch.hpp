@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -68,8 +69,8 @@ class Batch {
   /// each world; worlds with 0 are not stepped. Throws std::invalid_argument before any world has moved if a command is
   /// invalid, naming world, robot and channel. Throws std::runtime_error after all worlds have moved if an event cannot
   /// be carried out, or a body breaks in a `strict` world. It names the first such world, and each of them has
-  /// `failed`.
-  void step(std::uint64_t ticks = 1, std::span<const std::uint8_t> only = {});
+  /// `failed`. Ends early if `stop` becomes true; null: never.
+  void step(std::uint64_t ticks = 1, std::span<const std::uint8_t> only = {}, const std::atomic<bool>* stop = nullptr);
 
   /// Restarts a world with `seed`, as if the experiment had been read with it. Reads no file. Throws
   /// std::invalid_argument, and changes nothing, if there is no such world or the experiment cannot have this seed.
@@ -88,7 +89,7 @@ class Batch {
   void take(std::size_t world);
   void fill_neutral(std::size_t world);
   void check_commands(std::size_t world) const;
-  void run(std::size_t world, std::uint64_t ticks);
+  void run(std::size_t world, std::uint64_t ticks, const std::atomic<bool>* stop);
   bool stands_still(std::size_t world) const { return (done_[world] & (stopped | timed_out | failed)) != 0; }
   std::span<const double> command(std::size_t world, std::uint32_t robot) const;
 

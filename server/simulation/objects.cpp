@@ -5,6 +5,7 @@
 
 #include "server/core/random.hpp"
 #include "server/core/state_visitors.hpp"
+#include "server/description/fingerprint.hpp"
 
 namespace cohort {
 
@@ -29,6 +30,7 @@ Objects::Objects(SharedExperiment& experiment, physics::World& world, const Obje
 void Objects::add_instance(description::Instance instance) {
   by_name_->emplace(instance.name, present_.size());
   present_.push_back(1);
+  fingerprints_.push_back(description::fingerprint(experiment_->world.models[instance.model]));
   experiment_.edit().world.instances.push_back(std::move(instance));
 }
 
@@ -80,7 +82,7 @@ void Objects::hash(StateHash& hash) const {
   for (std::uint32_t object = 0; object < size(); ++object) {
     if (object >= described_) {
       hash.add(hash_name(instances[object].name));
-      hash.add(static_cast<std::uint64_t>(instances[object].model));
+      hash.add(fingerprints_[object - described_]);
     }
     if (is_present(object) != instances[object].is_present)
       hash.add(static_cast<std::uint64_t>(object) << 1 | static_cast<std::uint64_t>(is_present(object)));

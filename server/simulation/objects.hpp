@@ -68,7 +68,8 @@ class Objects {
   physics::World& world_;
   std::uint32_t described_;
   std::vector<char> present_;
-  std::shared_ptr<ByName> by_name_;  // for lookup only, never iterated; shared like the experiment
+  std::vector<std::uint64_t> fingerprints_;  // of the models of the added objects
+  std::shared_ptr<ByName> by_name_;          // for lookup only, never iterated; shared like the experiment
   std::uint64_t history_ticks_ = 1;
   std::vector<std::deque<PastPose>> histories_;  // in the order of History::objects
 };

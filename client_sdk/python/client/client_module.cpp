@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "client_sdk/python/hosting/python_team.hpp"
+#include "client_sdk/python/hosting/unlocked.hpp"
 #include "client_sdk/src/attachment.hpp"
 
 /// The extension module `cohort._client`: controllers as clients of a server, over DDS.
@@ -65,7 +66,7 @@ std::pair<std::string, std::string> host(nb::handle maker, const std::vector<std
   const SignalsOfPython restored;
   std::atomic<bool>& stop = stop_on_signals();
   stop = false;
-  const nb::gil_scoped_release no_gil;
+  const Unlocked unlocked(&stop);
   const ClientEnd end = run_client(kind, options, stop);
   return {word_of(end), error};
 }
@@ -76,8 +77,9 @@ int run_program(nb::handle maker, std::vector<std::string> arguments) {
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   const SignalsOfPython restored;
-  stop_on_signals() = false;
-  const nb::gil_scoped_release no_gil;
+  std::atomic<bool>& stop = stop_on_signals();
+  stop = false;
+  const Unlocked unlocked(&stop);
   return run_controller(kind, static_cast<int>(arguments.size()), argv.data());
 }
 
@@ -87,6 +89,7 @@ int run_program(nb::handle maker, std::vector<std::string> arguments) {
 NB_MODULE(_client, module) {
   using namespace nanobind::literals;
   nanobind::set_leak_warnings(false);  // about objects that are alive when Python exits
+  cohort::python::watch_for_the_end_of_python();
   module.def("host", &cohort::python::host, "maker"_a, "robots"_a, "server"_a, "domain"_a, "secure"_a);
   module.def("run_program", &cohort::python::run_program, "maker"_a, "arguments"_a);
 }

@@ -14,18 +14,19 @@ PythonController::~PythonController() {
   const Lock lock;
   step_ = Owned();
   adapter_ = Owned();
+  observation_ = SharedValues();
+  command_ = SharedValues();
 }
 
 void PythonController::start(const Start& start) {
   const Lock lock;
-  // Arrays that the controller has kept refer to this memory, so it is never moved; a robot's layout stays the same.
   observation_.resize(size_of(start.observation_channels));
   command_.resize(size_of(start.command_channels));
   neutral_ = neutral_of(start.command_channels);
   command_channels_ = command_channels_of(start.command_channels);
   const Owned facts = facts_of(start);
-  const Owned observation = memory_of(observation_, false);
-  const Owned command = memory_of(command_, true);
+  const Owned observation = observation_.view(false);
+  const Owned command = command_.view(true);
   const Owned asked =
       checked(PyObject_CallMethod(adapter_.get(), "start", "OOO", facts.get(), observation.get(), command.get()));
   note_asked(start.parameters, asked.get());
@@ -34,11 +35,12 @@ void PythonController::start(const Start& start) {
 
 void PythonController::step(const Observation& observation, Command& command) {
   const Lock lock;
-  std::ranges::copy(observation.values({0, static_cast<std::uint32_t>(observation_.size())}), observation_.begin());
-  std::ranges::copy(neutral_, command_.begin());
+  std::ranges::copy(observation.values({0, static_cast<std::uint32_t>(observation_.size())}),
+                    observation_.values().begin());
+  std::ranges::copy(neutral_, command_.values().begin());
   checked(PyObject_CallFunction(step_.get(), "KL", static_cast<unsigned long long>(observation.tick()),
                                 static_cast<long long>(observation.time().count())));
-  set_all(command, command_channels_, command_);
+  set_all(command, command_channels_, command_.values());
 }
 
 void PythonController::save(StateWriter& state) const {

@@ -8,7 +8,7 @@
 namespace cohort::python {
 
 /// One robot's controller: an object of `cohort._hosting.Adapter`, which calls the user's class. Observations and
-/// commands are NumPy arrays that refer to the memory of this object.
+/// commands are NumPy arrays in memory that Python keeps as long as the arrays.
 class PythonController final : public Controller {
  public:
   /// Calls `make_adapter` without arguments. Throws std::runtime_error with the Python exception.
@@ -25,8 +25,8 @@ class PythonController final : public Controller {
  private:
   Owned adapter_;
   Owned step_;  // its bound method
-  std::vector<double> observation_;
-  std::vector<double> command_;
+  SharedValues observation_;
+  SharedValues command_;
   std::vector<double> neutral_;
   std::vector<CommandChannel> command_channels_;
 };

@@ -1,7 +1,9 @@
 #include "client_sdk/python/hosting/python_objects.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace cohort::python {
 namespace {
@@ -110,11 +112,17 @@ void note_asked(const Parameters& parameters, PyObject* asked) {
   for (Py_ssize_t i = 0; i < PyList_Size(asked); ++i) parameters.has(text_of(PyList_GetItem(asked, i)));
 }
 
-Owned memory_of(std::vector<double>& values, bool is_written) {
-  values.reserve(1);  // Python requires an address even if there are no values
-  return checked(PyMemoryView_FromMemory(reinterpret_cast<char*>(values.data()),
-                                         static_cast<Py_ssize_t>(values.size() * sizeof(double)),
-                                         is_written ? PyBUF_WRITE : PyBUF_READ));
+// Python never moves the memory of a bytearray of which there is a view, and aligns it like malloc.
+void SharedValues::resize(std::size_t size) {
+  if (bytes_ && size == values_.size()) return;
+  bytes_ = checked(PyByteArray_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(size * sizeof(double))));
+  values_ = {reinterpret_cast<double*>(PyByteArray_AsString(bytes_.get())), size};
+  std::ranges::fill(values_, 0.0);
+}
+
+Owned SharedValues::view(bool is_written) const {
+  Owned view = checked(PyMemoryView_FromObject(bytes_.get()));
+  return is_written ? std::move(view) : checked(PyObject_CallMethod(view.get(), "toreadonly", nullptr));
 }
 
 std::size_t size_of(const std::vector<ChannelInfo>& channels) {

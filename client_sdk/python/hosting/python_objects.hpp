@@ -67,9 +67,21 @@ Owned facts_of(const Start& start);
 /// Marks the parameters that Python has read; `asked` is a list of names.
 void note_asked(const Parameters& parameters, PyObject* asked);
 
-/// Returns a Python object that refers to the memory of these values and must not be used after they are destroyed. It
-/// is writable if `is_written`.
-Owned memory_of(std::vector<double>& values, bool is_written);
+/// Values in memory that belongs to Python, so that arrays that a program has kept remain valid. The lock must be held
+/// when they are created or destroyed.
+class SharedValues {
+ public:
+  /// Moves them to new memory, with zeros, if the size changes.
+  void resize(std::size_t size);
+  /// Returns a memoryview of them, which is writable if `is_written`.
+  Owned view(bool is_written) const;
+  std::span<double> values() const { return values_; }
+  std::size_t size() const { return values_.size(); }
+
+ private:
+  Owned bytes_;
+  std::span<double> values_;
+};
 
 /// Returns the number of values of channels.
 std::size_t size_of(const std::vector<ChannelInfo>& channels);

@@ -34,6 +34,8 @@ PythonTeam::PythonTeam(PyObject* make_adapter, std::string name)
 PythonTeam::~PythonTeam() {
   const Lock lock;
   adapter_ = Owned();
+  observations_ = SharedValues();
+  commands_ = SharedValues();
 }
 
 void PythonTeam::start(const wire::Admit& admit, std::span<const wire::RobotDescription> descriptions) {
@@ -58,14 +60,13 @@ void PythonTeam::start(const wire::Admit& admit, std::span<const wire::RobotDesc
     observation_size_ = size_of(starts[0].observation_channels);
     neutral_ = neutral_of(starts[0].command_channels);
     command_channels_ = command_channels_of(starts[0].command_channels);
-    observations_ = std::vector<double>(robots_.size() * observation_size_);
-    commands_ = std::vector<double>(robots_.size() * neutral_.size());
+    observations_.resize(robots_.size() * observation_size_);
+    commands_.resize(robots_.size() * neutral_.size());
     const Owned facts = checked(PyList_New(0));
     for (const Start& start : starts)
       if (PyList_Append(facts.get(), facts_of(start).get()) != 0) checked(nullptr);
-    const Owned asked =
-        checked(PyObject_CallMethod(adapter_.get(), "start", "OOO", facts.get(), memory_of(observations_, false).get(),
-                                    memory_of(commands_, true).get()));
+    const Owned asked = checked(PyObject_CallMethod(adapter_.get(), "start", "OOO", facts.get(),
+                                                    observations_.view(false).get(), commands_.view(true).get()));
     for (const Start& start : starts) {
       note_asked(start.parameters, asked.get());
       start.parameters.check_all_were_asked_for();
@@ -80,9 +81,9 @@ std::span<const double> PythonTeam::answer(const wire::Observation& frame) {
                             " does not match the robots of this process");
   const Lock lock;
   return guarded(name_, "step", frame.tick, [&]() -> std::span<const double> {
-    std::ranges::copy(frame.values, observations_.begin());
+    std::ranges::copy(frame.values, observations_.values().begin());
     for (std::size_t row = 0; row < count; ++row)
-      std::ranges::copy(neutral_, commands_.begin() + static_cast<std::ptrdiff_t>(row * neutral_.size()));
+      std::ranges::copy(neutral_, commands_.values().begin() + static_cast<std::ptrdiff_t>(row * neutral_.size()));
     // None if all robots are due, else the rows of those due.
     Owned rows;
     if (count < robots_.size()) {
@@ -100,8 +101,7 @@ std::span<const double> PythonTeam::answer(const wire::Observation& frame) {
     values_.resize(count * neutral_.size());
     for (std::size_t row = 0; row < count; ++row) {
       Command command(std::span<double>(values_).subspan(row * neutral_.size(), neutral_.size()));
-      set_all(command, command_channels_,
-              std::span<const double>(commands_).subspan(row * neutral_.size(), neutral_.size()));
+      set_all(command, command_channels_, commands_.values().subspan(row * neutral_.size(), neutral_.size()));
     }
     return values_;
   });

@@ -35,8 +35,8 @@ class PythonTeam final : public FrameHandler {
   std::size_t observation_size_ = 0;   // size for one robot
   std::vector<double> neutral_;        // values of one robot
   std::vector<CommandChannel> command_channels_;
-  std::vector<double> observations_;  // [robot, value]
-  std::vector<double> commands_;
+  SharedValues observations_;  // [robot, value]
+  SharedValues commands_;
   std::vector<double> values_;
 };
 

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "client_sdk/python/hosting/unlocked.hpp"
 #include "client_sdk/python/native/array_simulation.hpp"
 #include "client_sdk/python/native/arrays.hpp"
 #include "client_sdk/python/native/channels.hpp"
@@ -50,7 +51,7 @@ struct HeldBatch {
 
 std::unique_ptr<HeldBatch> make_batch(const std::shared_ptr<const description::Experiment>& experiment,
                                       std::size_t worlds, unsigned threads) {
-  const nb::gil_scoped_release no_gil;
+  const Unlocked unlocked;
   return std::make_unique<HeldBatch>(*experiment, worlds, threads);
 }
 
@@ -61,13 +62,14 @@ void step_batch(HeldBatch& held, std::uint64_t ticks, const std::optional<Mask>&
   const OneUser::Turn turn(held.user);
   std::span<const std::uint8_t> chosen;
   if (only) chosen = {reinterpret_cast<const std::uint8_t*>(only->data()), only->shape(0)};
-  const nb::gil_scoped_release no_gil;
+  std::atomic<bool> stop = false;
+  const Unlocked unlocked(&stop);
   Batch& batch = held.batch;
   for (std::size_t row = 0; row < batch.worlds() * batch.robots(); ++row) {
     const RobotKind& kind = batch.kinds()[batch.kind_of(static_cast<std::uint32_t>(row % batch.robots()))];
     take_bounds_of_float32(kind.command, batch.commands().subspan(row * batch.command_size(), kind.command_size));
   }
-  batch.step(ticks, chosen);
+  batch.step(ticks, chosen, &stop);
 }
 
 // Resets the worlds in the mask, each to its seed.
@@ -77,7 +79,7 @@ void reset_worlds(HeldBatch& held, const Mask& mask, const Seeds& seeds) {
   if (mask.shape(0) != worlds || seeds.shape(0) != worlds)
     throw std::invalid_argument("`only` and `seeds` must each have " + std::to_string(worlds) +
                                 " elements, one for each world");
-  const nb::gil_scoped_release no_gil;
+  const Unlocked unlocked;
   for (std::size_t world = 0; world < worlds; ++world)
     if (mask(world)) held.batch.reset(world, seeds(world));
 }

@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "client_sdk/python/hosting/unlocked.hpp"
 #include "client_sdk/python/native/parts.hpp"
 #include "server/core/snapshot.hpp"
 #include "server/description/input_error.hpp"
@@ -46,7 +47,7 @@ double seconds_of(std::chrono::nanoseconds time) { return std::chrono::duration<
 ExperimentPtr read(const fs::path& file, std::optional<std::uint64_t> seed, std::optional<double> duration,
                    const std::vector<fs::path>& model_folders) {
   const auto time = nanoseconds_of(duration);
-  const nb::gil_scoped_release no_gil;
+  const Unlocked unlocked;
   return std::make_shared<const Experiment>(parsing::read_experiment(file, seed, time, model_folders));
 }
 
@@ -56,7 +57,7 @@ ExperimentPtr read_texts(const std::vector<std::pair<std::string, std::string>>&
   const auto time = nanoseconds_of(duration);
   std::vector<description::KeptFile> files;
   for (const auto& [path, text] : texts) files.push_back({path, text});
-  const nb::gil_scoped_release no_gil;
+  const Unlocked unlocked;
   return std::make_shared<const Experiment>(parsing::read_experiment_texts(files, seed, time, model_folders));
 }
 

@@ -6,9 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include "client_sdk/python/hosting/unlocked.hpp"
+
 namespace cohort::python {
 
-/// Detects Ctrl-C while C++ runs without Python's global lock. For one thread.
+/// Detects Ctrl-C, and the end of Python, while C++ runs without Python's global lock. For one thread.
 class Interruption {
  public:
   /// Returns true if the work must end. It is cheap, because it checks only occasionally. Python's signal handlers run
@@ -17,6 +19,7 @@ class Interruption {
     const auto now = std::chrono::steady_clock::now();
     if (error_ || now - looked_ < std::chrono::milliseconds(50)) return error_.has_value();
     looked_ = now;
+    if (Unlocked::must_end()) return true;
     const nanobind::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) error_.emplace();
     return error_.has_value();

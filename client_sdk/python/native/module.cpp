@@ -5,10 +5,12 @@
 #include "client_sdk/math/library_calls.hpp"
 #include "client_sdk/math/portable_math.hpp"
 #include "client_sdk/python/hosting/file_controllers.hpp"
+#include "client_sdk/python/hosting/unlocked.hpp"
 #include "client_sdk/python/native/parts.hpp"
 
 NB_MODULE(_native, module) {
   nanobind::set_leak_warnings(false);  // about objects that are alive when Python exits
+  cohort::python::watch_for_the_end_of_python();
   cohort::bind_library_calls();
   module.attr("version") = COHORT_VERSION;
   module.def("bind_library_calls", &cohort::bind_library_calls);

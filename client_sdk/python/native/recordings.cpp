@@ -20,6 +20,7 @@
 #include <variant>
 #include <vector>
 
+#include "client_sdk/python/hosting/unlocked.hpp"
 #include "client_sdk/python/native/arrays.hpp"
 #include "client_sdk/python/native/collected_tables.hpp"
 #include "client_sdk/python/native/interruption.hpp"
@@ -60,7 +61,7 @@ void raise_recording_error(const std::exception_ptr& error, void* type) {
 }
 
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& file) {
-  const nb::gil_scoped_release no_gil;
+  const Unlocked unlocked;
   try {
     return std::make_unique<Recording>(file);
   } catch (const recording::FileError& error) {
@@ -139,7 +140,7 @@ nb::dict tables_of(const Recording& recording, const std::vector<std::string>& n
                          if (++rows % look_every == 0 && interruption.is_wanted()) throw Interrupted{};
                        });
   try {
-    const nb::gil_scoped_release no_gil;
+    const Unlocked unlocked;
     data::write_tables(recording, {.robots = {robots.begin(), robots.end()}}, sink);
     sink.finish();
   } catch (const Interrupted&) {
@@ -156,7 +157,7 @@ nb::dict tables_of(const Recording& recording, const std::vector<std::string>& n
 }
 
 std::shared_ptr<const Experiment> experiment_of(const Recording& recording, std::size_t world) {
-  const nb::gil_scoped_release no_gil;
+  const Unlocked unlocked;
   return std::make_shared<const Experiment>(recording.experiment(recording.worlds().at(world)));
 }
 
@@ -176,7 +177,7 @@ nb::tuple verify(const Recording& recording, unsigned threads) {
   Interruption interruption;
   recording::Verification found;
   {
-    const nb::gil_scoped_release no_gil;
+    const Unlocked unlocked;
     recording::Replay replay(recording, threads);
     found = recording::verify(replay, std::chrono::nanoseconds(0), std::chrono::nanoseconds::max(),
                               [&](std::chrono::nanoseconds) { return !interruption.is_wanted(); });
@@ -192,7 +193,7 @@ nb::tuple compare(const Recording& first, const Recording& second, unsigned thre
   Interruption interruption;
   recording::Comparison found;
   {
-    const nb::gil_scoped_release no_gil;
+    const Unlocked unlocked;
     found =
         recording::compare(first, second, threads, [&](std::chrono::nanoseconds) { return !interruption.is_wanted(); });
   }
@@ -217,7 +218,7 @@ nb::object state_at(const Recording& recording, double time) {
   std::vector<std::byte> state;
   std::size_t world = 0;
   {
-    const nb::gil_scoped_release no_gil;
+    const Unlocked unlocked;
     recording::Replay replay(recording, 1);
     if (replay.seek(log_time)) state = replay.simulation().save();
     for (std::size_t i = 0; !state.empty() && i < recording.worlds().size(); ++i)

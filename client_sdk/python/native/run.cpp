@@ -15,6 +15,7 @@
 
 #include "client_sdk/hosting/plugin_loader.hpp"
 #include "client_sdk/python/hosting/python_team.hpp"
+#include "client_sdk/python/hosting/unlocked.hpp"
 #include "client_sdk/python/native/interruption.hpp"
 #include "client_sdk/python/native/parts.hpp"
 #include "server/recording/recorder.hpp"
@@ -80,7 +81,7 @@ nb::dict run(const std::shared_ptr<const Experiment>& experiment, unsigned threa
   Interruption interruption;
   session::RunResult result;
   {
-    const nb::gil_scoped_release no_gil;
+    const Unlocked unlocked(&stop);
     Simulation simulation(*experiment, threads);
     session::RunListener listener{.boundary = [&] {
       if (interruption.is_wanted()) stop = true;

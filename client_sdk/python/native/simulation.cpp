@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client_sdk/python/hosting/unlocked.hpp"
 #include "client_sdk/python/native/array_simulation.hpp"
 #include "client_sdk/python/native/arrays.hpp"
 #include "client_sdk/python/native/channels.hpp"
@@ -126,12 +127,12 @@ std::uint64_t step_simulation(Held& held, std::uint64_t ticks, bool stop_when_ov
   std::uint64_t done = 0;
   while (done < ticks && !(stop_when_over && held.arrays.is_over())) {
     {
-      const nb::gil_scoped_release no_gil;
+      const Unlocked unlocked;
       do {
         held.arrays.step();
         turn.show();
         ++done;
-      } while (done < ticks && !(stop_when_over && held.arrays.is_over()) &&
+      } while (done < ticks && !Unlocked::must_end() && !(stop_when_over && held.arrays.is_over()) &&
                std::chrono::steady_clock::now() - looked < look_every);
     }
     looked = std::chrono::steady_clock::now();
@@ -256,18 +257,18 @@ std::uint64_t state_hash(Held& held) {
 void restore(Held& held, const nb::bytes& bytes) {
   const Held::Turn turn(held);
   const auto* data = static_cast<const std::byte*>(bytes.data());
-  const nb::gil_scoped_release no_gil;
+  const Unlocked unlocked;
   held.arrays.restore({data, bytes.size()});
 }
 
 void reset_simulation(Held& held, std::shared_ptr<const description::Experiment> experiment) {
   const Held::Turn turn(held);
-  const nb::gil_scoped_release no_gil;
+  const Unlocked unlocked;
   held.arrays.reset(std::move(experiment));
 }
 
 std::unique_ptr<Held> make(std::shared_ptr<const description::Experiment> experiment, unsigned threads) {
-  const nb::gil_scoped_release no_gil;
+  const Unlocked unlocked;
   return std::make_unique<Held>(std::move(experiment), threads);
 }
 
@@ -281,7 +282,7 @@ void add_simulation(nb::module_& module) {
   nb::class_<LiveView>(module, "LiveView")
       .def_prop_ro("port", &LiveView::port)
       .def_prop_ro("is_closed", &LiveView::is_closed)
-      .def("close", &LiveView::close, nb::call_guard<nb::gil_scoped_release>());
+      .def("close", &LiveView::close, nb::call_guard<Unlocked>());
   nb::class_<Held>(module, "Simulation")
       .def(nb::new_(&make), nb::arg("experiment"), nb::arg("threads"))
       .def("step", &step_simulation, nb::arg("ticks"), nb::arg("stop_when_over"))

@@ -44,6 +44,20 @@ class ExportedWorlds : public Description {
     }
     return simulation.state_hash();
   }
+  // Returns the hash of each boundary of an experiment without commands, beside which `world` is.
+  std::vector<std::uint64_t> hashes_of(const std::string& world, const std::string& events, int ticks) const {
+    const Experiment experiment = parsing::read_experiment(write(
+        "course.yaml", "world: " + world +
+                           "\nseed: 5\nduration: 9\nteams: [{name: t, robots: '*', controller: obstacle_avoidance}]\n" +
+                           events));
+    Simulation simulation(experiment, 1);
+    std::vector<std::uint64_t> hashes;
+    for (int tick = 0; tick < ticks; ++tick) {
+      simulation.step();
+      hashes.push_back(simulation.state_hash());
+    }
+    return hashes;
+  }
   void expect_the_same_again(const World& world, std::uint64_t seed = 1) const {
     const World again = parsing::read_world(write_back(world), seed);
     EXPECT_TRUE(again.warnings.empty()) << texts_of(again.warnings);
@@ -241,6 +255,36 @@ TEST_F(ExportedWorlds, KeepActionsAndBreakableJoints) {
       "<cohort:breaking_force>35.7</cohort:breaking_force></cohort:breakable_joint>");
   EXPECT_NE(text_of(world).find("<cohort:breaking_torque>0.37</cohort:breaking_torque>"), std::string::npos);
   expect_the_same_again(world);
+}
+
+// The exported world has other models in another order: those of the objects that events add come last.
+TEST_F(ExportedWorlds, GiveTheSameHashWithEventsOfEachKind) {
+  const std::string events =
+      "events:\n"
+      "  - {at: 0.1, add: {model: crate.yaml, name: added, pose: [3, 0, 1, 0, 0, 0]}}\n"
+      "  - {at: 0.2, spawn: {model: model://sbot, name: r, area: [2, 2], every: 0.1, most: 4}}\n"
+      "  - {at: 0.2, spawn: {model: crate.yaml, name: c, pose: 0 0 1 0 0 0, area: [2, 2], every: 0.05, most: 9}}\n"
+      "  - {at: 0.3, remove: {objects: added}}\n"
+      "  - {at: 0.3, disable: {objects: o1}}\n"
+      "  - {at: 0.5, enable: {objects: o1}}\n"
+      "  - {at: 0.4, move: {objects: o2, pose: [2, 2, 1, 0, 0, 0]}}\n"
+      "  - {at: 0.4, set_velocity: {objects: o3, linear: [1, 0, 0]}}\n"
+      "  - {at: 0.4, apply_force: {objects: o4, force: [2, 0, 0], for: 0.2}}\n";
+  const auto box = [](int i) {
+    return "<model name=\"o" + std::to_string(i) + "\"><pose>" + std::to_string(0.3 * i) +
+           " -2 0.05 0 0 0</pose><link name=\"l\"><cohort:density>700</cohort:density><collision name=\"c\"><geometry>"
+           "<box><size>0.1 0.12 0.08</size></box></geometry></collision></link></model>";
+  };
+  write("crate.yaml",
+        "model: {name: crate, link: {'cohort:density': 700, collision: {geometry: {box: {size: [0.1, 0.12, 0.08]}}}}}");
+  std::string content = static_model_sdf(collision("<plane/>"), "floor");
+  for (int i = 0; i < 6; ++i) content += box(i);
+  content += "<include><uri>model://sbot</uri><name>first</name></include>";
+  const World world = read(content);
+  write_back(world, "again.sdf");
+  const std::vector<std::uint64_t> expected = hashes_of("world.sdf", events, 100);
+  EXPECT_EQ(hashes_of("again.sdf", events, 100), expected);
+  EXPECT_NE(hashes_of("again.sdf", "", 100), expected);
 }
 
 TEST_F(ExportedWorlds, FlattenNestedModels) {

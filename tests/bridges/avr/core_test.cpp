@@ -16,6 +16,7 @@
 #include "tools/bridges/avr/board.hpp"
 #include "tools/bridges/avr/image.hpp"
 #include "tools/bridges/avr/pins.hpp"
+#include "tools/bridges/avr/simavr.hpp"
 
 namespace cohort::avr {
 namespace {
@@ -174,6 +175,25 @@ TEST_F(AvrCore, AWatchdogResetsItAlsoFromASleepWithoutEnd) {
     // It runs again after the reset, and drives its pins again.
     EXPECT_EQ(motor.waveform().duty, 1.0);
   }
+}
+
+TEST_F(AvrCore, AWatchdogResetsItAgainAndAgainAfterTheSameTime) {
+  Core core(read_image(firmware("watchdog.elf")), uno);
+  core.set_input({'D', 2}, false);  // the pin of an interrupt by level
+  std::vector<std::uint64_t> starts;
+  core.outputs().watch({'B', 0}).edge = [&](std::uint64_t cycle, bool high) {
+    if (high) starts.push_back(cycle);
+  };
+  for (int frame = 1; frame <= 100; ++frame) {
+    core.run_until(static_cast<std::uint64_t>(frame) * 10 * millisecond);
+    // Nothing to do until then: simavr is slow if a timer ends in each cycle.
+    ASSERT_NE(core.handle()->cycle_timers.timer, nullptr);
+    EXPECT_GT(core.handle()->cycle_timers.timer->when, core.cycle() + 1) << "after " << starts.size() << " starts";
+  }
+  ASSERT_EQ(starts.size(), 8U);
+  for (std::size_t i = 1; i < starts.size(); ++i)
+    EXPECT_NEAR(static_cast<double>(starts[i] - starts[i - 1]), 128.0 * millisecond, 100.0)
+        << "16,384 periods of 128 kHz";
 }
 
 TEST_F(AvrCore, ImagesThatAreNoneAreRefusedWithWhatWasExpected) {

@@ -37,6 +37,10 @@ void correct_time_of_byte(avr_irq_t*, std::uint32_t, void* serial) {
   uart->cycles_per_byte = (divisor + 1U) * (avr_regbit_get(avr, uart->u2x) != 0 ? 8U : 16U) * bits;
 }
 
+unsigned prescaler_of(avr_watchdog_t& watchdog) {
+  return avr_regbit_get_array(watchdog.io.avr, watchdog.wdp, static_cast<int>(std::size(watchdog.wdp)));
+}
+
 Core* core_of(const avr_t* avr) { return static_cast<Core*>(avr->custom.data); }
 
 // The ATmega328 and its variants of lower power run each other's images.
@@ -126,6 +130,7 @@ void Core::connect() {
   }
   for (avr_io_t* module = avr_->io_port; module != nullptr; module = module->next) {
     if (std::strcmp(module->kind, "usb") == 0) disconnect_usb();
+    if (std::strcmp(module->kind, "watchdog") == 0) connect_watchdog(reinterpret_cast<avr_watchdog_t*>(module));
     if (std::strcmp(module->kind, "uart") != 0) continue;
     auto* uart = reinterpret_cast<avr_uart_t*>(module);
     const std::array<unsigned, 4> registers{uart->ubrrl.reg, uart->ubrrh.reg, uart->r_ucsra, uart->r_ucsrc};
@@ -134,10 +139,29 @@ void Core::connect() {
         avr_irq_register_notify(avr_iomem_getirq(avr_, static_cast<avr_io_addr_t>(address), nullptr, AVR_IOMEM_IRQ_ALL),
                                 correct_time_of_byte, uart);
   }
-  // A pin of an interrupt by level, which all are after a reset, would be looked at in each cycle while it is low.
-  for (std::uint8_t number = 0; number < EXTINT_COUNT; ++number) avr_extint_set_strict_lvl_trig(avr_, number, 0);
+  watch_edges_only();
   outputs_ = std::make_unique<Outputs>(avr_, chip_.mcu);
   arm();
+}
+
+// A pin of an interrupt by level, which all are after a reset, would be looked at in each cycle while it is low.
+void Core::watch_edges_only() {
+  for (std::uint8_t number = 0; number < EXTINT_COUNT; ++number) avr_extint_set_strict_lvl_trig(avr_, number, 0);
+}
+
+// A new prescaler has an effect at once. simavr would use it from the next instruction `wdr` on if the watchdog is on
+// already, as it is after it has reset the chip.
+void Core::connect_watchdog(avr_watchdog_t* watchdog) {
+  watchdog_ = watchdog;
+  const auto on_write = [](avr_irq_t*, std::uint32_t, void* its) {
+    auto* core = static_cast<Core*>(its);
+    const unsigned prescaler = prescaler_of(*core->watchdog_);
+    if (std::exchange(core->watchdog_prescaler_, prescaler) != prescaler)
+      avr_ioctl(core->avr_, AVR_IOCTL_WATCHDOG_RESET, nullptr);
+  };
+  avr_irq_register_notify(
+      avr_iomem_getirq(avr_, static_cast<avr_io_addr_t>(watchdog->wdce.reg), nullptr, AVR_IOMEM_IRQ_ALL), on_write,
+      this);
 }
 
 // simavr ends the process where firmware accesses the endpoints of USB in another way than it knows. With no computer
@@ -160,7 +184,10 @@ void Core::run_until(std::uint64_t cycle) {
   while (avr_->cycle < cycle) {
     switch (avr_->state) {
       case cpu_Running:
-      case cpu_Sleeping: avr_run(avr_); break;
+      case cpu_Sleeping:
+        avr_run(avr_);
+        if (std::exchange(was_reset_, false)) watch_edges_only();
+        break;
       case cpu_Done: sleep_for_ever(cycle); break;
       default:
         if (!fault_) on_message("crash");
@@ -213,6 +240,8 @@ void Core::on_reset() {
   if (reset_of_chip_ != nullptr) reset_of_chip_(avr_);
   if (notes_.size() < most_notes) notes_.emplace_back("was reset by its watchdog");
   said_that_it_sleeps_ = false;
+  was_reset_ = true;
+  watchdog_prescaler_ = 0;
   for (avr_io_t* module = avr_->io_port; module != nullptr; module = module->next) {
     if (std::strcmp(module->kind, "port") != 0) continue;
     // simavr tells of changes only, and does not know that these have changed.

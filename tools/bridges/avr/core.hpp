@@ -13,6 +13,8 @@
 #include "tools/bridges/avr/image.hpp"
 #include "tools/bridges/avr/output_pins.hpp"
 
+struct avr_watchdog_t;
+
 namespace cohort::avr {
 
 /// A microcontroller and how it is wired up.
@@ -75,7 +77,9 @@ class Core {
   void load(const Image& image);
   void enlarge_memories();
   void connect();
+  void connect_watchdog(avr_watchdog_t* watchdog);
   void disconnect_usb();
+  void watch_edges_only();
   void arm();
   void sleep_for_ever(std::uint64_t cycle);
   void on_reset();
@@ -102,6 +106,9 @@ class Core {
   std::optional<std::string> fault_;
   std::vector<std::string> notes_;
   bool said_that_it_sleeps_ = false;
+  bool was_reset_ = false;
+  avr_watchdog_t* watchdog_ = nullptr;
+  unsigned watchdog_prescaler_ = 0;
 };
 
 }  // namespace cohort::avr

@@ -14,4 +14,5 @@
 #include <avr_ioport.h>
 #include <avr_timer.h>
 #include <avr_uart.h>
+#include <avr_watchdog.h>
 #pragma GCC diagnostic pop

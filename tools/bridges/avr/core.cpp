@@ -149,7 +149,7 @@ void Core::watch_edges_only() {
   for (std::uint8_t number = 0; number < EXTINT_COUNT; ++number) avr_extint_set_strict_lvl_trig(avr_, number, 0);
 }
 
-// A new prescaler has an effect at once. simavr would use it from the next instruction `wdr` on if the watchdog is on
+// A new prescaler has an effect at once. In simavr, it has none before the next instruction `wdr` if the watchdog is on
 // already, as it is after it has reset the chip.
 void Core::connect_watchdog(avr_watchdog_t* watchdog) {
   watchdog_ = watchdog;

@@ -60,8 +60,11 @@ TEST(Documents, TheListsOfLongTestsNameSuitesAndTestsThatExist) {
       std::smatch test;
       if (line.starts_with("#") || !std::regex_search(line, test, entry)) continue;
       const std::string name = test[1];
-      for (std::sregex_iterator match(name.begin(), name.end(), word), end; match != end; ++match, ++named)
-        EXPECT_TRUE(names.contains(match->str())) << list << ": " << line << ": " << match->str() << " does not exist";
+      for (std::sregex_iterator match(name.begin(), name.end(), word), end; match != end; ++match, ++named) {
+        const auto found = names.lower_bound(match->str());  // a pattern may have the beginning of a name
+        EXPECT_TRUE(found != names.end() && found->starts_with(match->str()))
+            << list << ": " << line << ": " << match->str() << " does not exist";
+      }
     }
   EXPECT_GT(named, 60);
 }

@@ -280,5 +280,20 @@ TEST_F(Installation, MayBeMoved) {
   EXPECT_EQ(built.exit_code, 0) << built.output;
 }
 
+TEST_F(Installation, ContainsTheNoticesOfTheNpmPackagesInThePage) {
+  if (!fs::exists(prefix / "share/cohort/view")) GTEST_SKIP() << "the page is not built";
+  const std::string notices = read_file(prefix / "share/cohort/view/notices.txt");
+  for (const char* package : {"three 0.", "uplot 1.", "Permission is hereby granted"})
+    EXPECT_NE(notices.find(package), std::string::npos) << package;
+}
+
+TEST_F(Installation, ServiceHasFewRights) {
+  if (!fs::exists("/usr/bin/systemd-analyze")) GTEST_SKIP() << "no systemd-analyze here";
+  const fs::path instance = *scratch / "cohort@field.service";
+  fs::copy_file(prefix / "lib/systemd/system/cohort@.service", instance);
+  const Ended rated = run({"/usr/bin/systemd-analyze", "security", "--offline=true", "--threshold=30", instance});
+  EXPECT_EQ(rated.exit_code, 0) << "an exposure above 3.0: " << rated.output;
+}
+
 }  // namespace
 }  // namespace cohort::test

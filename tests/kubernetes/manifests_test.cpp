@@ -29,7 +29,7 @@ TEST_F(Manifests, AreAsKubernetesWantsThem) {
     EXPECT_EQ(checked.exit_code, 0) << checked.out << checked.err;
     ++files;
   }
-  EXPECT_EQ(files, 2);
+  EXPECT_EQ(files, 3);
 }
 
 TEST_F(Manifests, WithAKeyOrAValueThatIsWrongAreFound) {

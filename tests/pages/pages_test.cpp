@@ -42,24 +42,27 @@ class Reader {
     fs::copy(source / "worlds", clone / "worlds",
              fs::copy_options::recursive);  // experiments in it read no other folder
     fs::create_directory_symlink(COHORT_BUILD_DIR, clone / "build/release");
+    if (fs::exists(source / "build/python")) fs::create_symlink(source / "build/python", clone / "build/python");
   }
 
-  /// Runs a script in a network of its own, in which hosts of the pages (10.0.0.5 …) are this one.
-  Ended run(const std::string& script) {
+  /// Runs a script in a network of its own, in which hosts of the pages (10.0.0.5 …) are this one. Cohort is on the
+  /// paths, as if it were installed, unless `is_new`.
+  Ended run(const std::string& script, bool is_new = false) {
     std::ofstream(*home_ / "page.sh") << "mount -t tmpfs none /run\nip link set lo up\n"
                                          "for host in 5 7 8; do ip address add 10.0.0.$host/32 dev lo; done\n"
                                          "cd ~/cohort\n"
                                       << script;
-    const std::string path = COHORT_PROGRAMS ":" + std::string(std::getenv("PATH"));
+    Process::Environment environment = {{"HOME", home_->path()},     {"PATH", std::getenv("PATH")},
+                                        {"COHORT_MODEL_PATH", ""},   {"COHORT_PLUGIN_PATH", ""},
+                                        {"PYTHONPATH", ""},          {"COHORT_PYTHON", ""},
+                                        {"CXX", COHORT_CXX},         {"CXXFLAGS", COHORT_CXX_FLAGS},
+                                        {"CMAKE_GENERATOR", "Ninja"}};
+    if (!is_new) {
+      environment["PATH"].insert(0, COHORT_PROGRAMS ":");
+      environment["PYTHONPATH"] = COHORT_BUILD_DIR "/python";
+    }
     return run_to_end({"/usr/bin/unshare", "--map-root-user", "--net", "--mount", "/bin/bash", *home_ / "page.sh"},
-                      {{"HOME", home_->path()},
-                       {"PATH", path},
-                       {"COHORT_MODEL_PATH", ""},
-                       {"COHORT_PLUGIN_PATH", ""},
-                       {"PYTHONPATH", COHORT_BUILD_DIR "/python"},
-                       {"CXX", COHORT_CXX},
-                       {"CXXFLAGS", COHORT_CXX_FLAGS},
-                       {"CMAKE_GENERATOR", "Ninja"}});
+                      environment);
   }
 
  private:
@@ -81,7 +84,7 @@ TEST_P(Pages, EveryCommandWorks) {
   if (const Ended possible = reader.run(""); possible.exit_code != 0)
     GTEST_SKIP() << "no network namespaces here: " << possible.err;
   const auto begin = std::chrono::steady_clock::now();
-  const Ended ended = reader.run(script_of(blocks));
+  const Ended ended = reader.run(script_of(blocks), GetParam() == "README.md");
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   EXPECT_EQ(ended.exit_code, 0) << ended.out << ended.err;
   std::istringstream errors(ended.err);

@@ -82,6 +82,21 @@ def test_a_reset_is_a_new_simulation_with_that_seed(simulation):
     assert simulation.state_hash == cohort.Simulation("obstacle_avoidance", seed=7).state_hash
 
 
+def test_what_happened_names_a_quarantined_object(tmp_path):
+    (tmp_path / "world.yaml").write_text(
+        "world: {name: w, 'cohort:physics': {lowest: -0.1}, model: {name: crate, link: {collision: {geometry: {sphere: "
+        "{radius: 0.1}}}}}}"
+    )
+    (tmp_path / "fall.yaml").write_text("world: world.yaml\nduration: 1\nteams: []\n")
+    simulation = cohort.Simulation(tmp_path / "fall.yaml")
+    while simulation.tick < 100 and not simulation.happened:
+        simulation.step()
+    assert simulation.happened == ["'crate' has left the world"]
+    assert 0.13 < simulation.time < 0.17, "0.1 m of free fall"
+    simulation.step()
+    assert simulation.happened == []
+
+
 def test_an_object_is_spawned_falls_is_pushed_and_is_removed(simulation):
     name = simulation.spawn(CRATE, position=(0.0, 0.0, 0.5), yaw=0.5, name="crate")
     assert simulation.pose(name)[2] == pytest.approx(0.5)

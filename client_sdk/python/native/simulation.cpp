@@ -295,7 +295,11 @@ void add_simulation(nb::module_& module) {
                    simulation([](const Simulation& of) { return std::chrono::duration<double>(of.time()).count(); }))
       .def_prop_ro("state_hash", &state_hash)
       .def_prop_ro("stop_reason", simulation([](const Simulation& of) { return of.stop_reason(); }))
-      .def_prop_ro("happened", simulation([](const Simulation& of) { return of.happened(); }))
+      .def_prop_ro("happened", simulation([](const Simulation& of) {
+                     std::vector<std::string> all = of.quarantined();
+                     all.insert(all.end(), of.happened().begin(), of.happened().end());
+                     return all;
+                   }))
       .def_prop_ro("quarantined", simulation([](const Simulation& of) { return of.quarantined(); }))
       .def_prop_ro("robot_count", simulation([](const Simulation& of) { return of.robot_count(); }))
       .def_prop_ro("is_over",

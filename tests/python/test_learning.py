@@ -1,5 +1,7 @@
 """Learning environments: what Gymnasium and PettingZoo ask of them, and the same trajectories for the same seeds."""
 
+import copy
+import pickle
 import warnings
 
 import cohort
@@ -52,11 +54,11 @@ def assert_same(first, second):
 
 
 def test_gymnasiums_checker_accepts_the_environment():
-    env = cohort.gym.Env("obstacle_avoidance", reward=reward, horizon=20)
+    env = cohort.gym.Env("obstacle_avoidance", reward=reward, horizon=20, render_mode="rgb_array")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warnings.filterwarnings("ignore", message=".*(infinity|symmetric and normalized|spec).*")
-        check_env(env, skip_render_check=True)
+        check_env(env)
 
 
 def test_pettingzoos_test_accepts_the_environment_of_many_agents():
@@ -68,6 +70,67 @@ def test_pettingzoos_test_accepts_the_environment_of_many_agents():
 
     parallel_api_test(make(), num_cycles=100)
     parallel_seed_test(make, num_cycles=10)
+
+
+def test_tasks_have_an_id():
+    env = gymnasium.make("cohort/ObstacleAvoidance-v0", render_mode="rgb_array")
+    env.reset(seed=1)
+    assert env.action_space.shape == (32,)
+    reward, ended, truncated = env.step(env.action_space.high)[1:4]
+    assert isinstance(reward, float) and not ended and not truncated
+    assert env.render().shape == (240, 320, 3)
+    envs = gymnasium.make_vec("cohort/Aggregation-v0", num_envs=2, vectorization_mode="vector_entry_point")
+    envs.reset(seed=1)
+    assert (envs.step(envs.action_space.high)[1] < -0.1).all()
+
+
+def test_the_reward_of_one_world_may_be_a_number():
+    env = cohort.gym.Env("obstacle_avoidance", reward=lambda state: 2, done=lambda state: True)
+    env.reset(seed=1)
+    assert env.step(env.action_space.high)[1:3] == (2.0, True)
+
+
+def test_a_picture_shows_robots_where_they_are():
+    batch = cohort.Batch("obstacle_avoidance", worlds=2)
+    batch.reset(numpy.array([1, 2]))
+    for world in range(2):
+        for x, y, z, *_ in batch.poses[world]:
+            picture = batch.render(world, 64, 48, position=(x, y - 1.0, z + 1.0), target=(x, y, z + 0.05))
+            red, green, blue = picture[24, 32].astype(float)
+            assert red > 1.5 * green and red > 3.0 * blue, "the hull of an s-bot is orange"
+    assert batch.render(0, 64, 48).shape == (48, 64, 3)
+    assert (batch.render(0) != batch.render(1)).any()
+    with pytest.raises(ValueError, match="the picture has 0 x 240 pixels, expected 1 to 4096"):
+        batch.render(0, width=0)
+    with pytest.raises(ValueError, match="finite"):
+        batch.render(0, position=(numpy.nan, 0, 0))
+
+
+def test_an_unknown_render_mode_is_named():
+    with pytest.raises(ValueError, match="render_mode is 'human', expected None or one of \\['rgb_array'\\]"):
+        environments(1, render_mode="human")
+
+
+def test_pickled_and_copied_environments_give_the_same_trajectories():
+    envs = environments(2, robots="explorers/sbot_1")
+    expected = trajectory(envs, 3, 10)
+    for other in (pickle.loads(pickle.dumps(envs)), copy.deepcopy(envs)):
+        assert_same(expected, trajectory(other, 3, 10))
+
+
+def test_a_pickled_experiment_contains_its_files(tmp_path):
+    world = tmp_path / "world.yaml"
+    world.write_text("{world: {name: w, include: {uri: 'model://sbot', name: a}}}")
+    experiment = cohort.Experiment(
+        folder=tmp_path, world="world.yaml", duration=1, seed=7, teams=[{"name": "t", "robots": "all"}]
+    )
+    expected = cohort.run_seeds(experiment, [3]).state_hash[3]
+    pickled = pickle.dumps(experiment)
+    world.unlink()
+    again = pickle.loads(pickled)
+    assert (again.seed, again.duration, again.robots) == (7, 1.0, ["a"])
+    assert cohort.run_seeds(again, [3]).state_hash[3] == expected
+    assert copy.deepcopy(again).run().state_hash == experiment.run().state_hash
 
 
 @pytest.mark.parametrize("threads", [1, 2])

@@ -11,7 +11,7 @@ from cohort.controller import Controller, ParameterError, Start, TeamController
 
 
 class Adapter:
-    """One robot's controller. C++ reads and writes the memory of `observation` and `command` too."""
+    """One robot's controller. C++ also uses the memory of `observation` and `command`."""
 
     __slots__ = ("_controller", "_command", "_observation", "_start")
 
@@ -44,7 +44,7 @@ class Adapter:
 
 
 class TeamAdapter:
-    """The controller of all robots of a process. C++ reads and writes the memory of `observations` and `commands` too."""
+    """The controller of all robots of a process. C++ also uses the memory of `observations` and `commands`."""
 
     __slots__ = ("_commands", "_controller", "_observations")
 

@@ -90,6 +90,26 @@ class Batch:
             only = numpy.ones(self.worlds, dtype=bool)
         self._native.reset(only, seeds)
 
+    def render(
+        self,
+        world: int = 0,
+        width: int = 320,
+        height: int = 240,
+        position: tuple[float, float, float] | None = None,
+        target: tuple[float, float, float] | None = None,
+    ) -> numpy.ndarray:
+        """Draws a world without a window, in a simple way: collision shapes in the colours of their links.
+
+        Args:
+            world: index of the world.
+            width, height: size of the picture [pixel], from 1 to 4096.
+            position, target: place of the camera and the point at which it looks, in the world frame [m]. By default,
+                all static objects and the robots' initial places are in the picture.
+
+        Returns an array [row, column, 3] of uint8: red, green and blue.
+        """
+        return self._native.render(world, width, height, position, target)
+
     def tick(self, world: int) -> int:
         """Returns the tick of a world."""
         return self._native.tick(world)

@@ -178,6 +178,20 @@ class Experiment:
         experiment._classes = {}
         return experiment
 
+    @classmethod
+    def _of_kept_files(cls, kept, classes):
+        experiment = cls._of(_native.Experiment.read_kept_files(kept))
+        experiment._classes = classes
+        return experiment
+
+    # A pickled experiment contains its files, so that another machine can read it.
+    def __reduce__(self):
+        return self._of_kept_files, (self._native.kept_files(), self._classes)
+
+    # Experiments are never changed.
+    def __deepcopy__(self, memo):
+        return self.with_seed(self.seed)
+
     def with_seed(self, seed: int) -> Experiment:
         """Returns the same experiment with another seed, which changes random placements."""
         experiment = self._of(self._native.with_seed(seed))

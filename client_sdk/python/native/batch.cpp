@@ -1,11 +1,13 @@
 #include "server/batch/batch.hpp"
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -17,6 +19,7 @@
 #include "client_sdk/python/native/channels.hpp"
 #include "client_sdk/python/native/one_user.hpp"
 #include "client_sdk/python/native/parts.hpp"
+#include "server/viewing/picture.hpp"
 
 namespace cohort::python {
 namespace {
@@ -84,6 +87,21 @@ void reset_worlds(HeldBatch& held, const Mask& mask, const Seeds& seeds) {
     if (mask(world)) held.batch.reset(world, seeds(world));
 }
 
+using Point = std::array<double, 3>;
+
+nb::ndarray<nb::numpy, std::uint8_t, nb::c_contig> render(const HeldBatch& held, std::size_t world, int width,
+                                                          int height, const std::optional<Point>& position,
+                                                          const std::optional<Point>& target) {
+  return held.read_world(world, [&](const Batch& batch) {
+    const Simulation& simulation = batch.simulation(world);
+    viewing::PictureCamera camera = viewing::camera_for(simulation, width / std::max(1.0, static_cast<double>(height)));
+    if (position) camera.position_W = Eigen::Map<const Eigen::Vector3d>(position->data());
+    if (target) camera.target_W = Eigen::Map<const Eigen::Vector3d>(target->data());
+    return owned_array(viewing::draw_picture(simulation, camera, width, height),
+                       {static_cast<std::size_t>(height), static_cast<std::size_t>(width), 3});
+  });
+}
+
 template <class Value>
 nb::ndarray<nb::numpy, const Value, nb::c_contig> rows_of(nb::handle self, std::span<const Value> values,
                                                           std::size_t columns) {
@@ -98,6 +116,8 @@ void add_batch(nb::module_& module) {
       .def(nb::new_(&make_batch), nb::arg("experiment"), nb::arg("worlds"), nb::arg("threads"))
       .def("step", &step_batch, nb::arg("ticks"), nb::arg("only").none())
       .def("reset", &reset_worlds, nb::arg("mask"), nb::arg("seeds"))
+      .def("render", &render, nb::arg("world"), nb::arg("width"), nb::arg("height"), nb::arg("position").none(),
+           nb::arg("target").none())
       .def_prop_ro("worlds", [](const HeldBatch& held) { return held.batch.worlds(); })
       .def_prop_ro("robots", [](const HeldBatch& held) { return held.batch.robots(); })
       .def("robot_name",

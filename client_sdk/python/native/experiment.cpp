@@ -61,6 +61,35 @@ ExperimentPtr read_texts(const std::vector<std::pair<std::string, std::string>>&
   return std::make_shared<const Experiment>(parsing::read_experiment_texts(files, seed, time, model_folders));
 }
 
+// As a tuple of Python's own objects, for pickle. Throws std::invalid_argument if the experiment was not read from
+// files.
+nb::tuple kept_files_of(const Experiment& experiment) {
+  if (experiment.inputs == nullptr) throw std::invalid_argument("this experiment was not read from files");
+  const description::KeptFiles& kept = *experiment.inputs;
+  nb::list files;
+  for (const description::KeptFile& file : kept.files)
+    files.append(nb::make_tuple(file.path, nb::bytes(file.bytes.data(), file.bytes.size())));
+  return nb::make_tuple(kept.experiment, kept.working_folder, kept.model_path, kept.last_model_folders, kept.folders,
+                        files, experiment.seed, experiment.duration.count());
+}
+
+ExperimentPtr read_kept_files(const nb::tuple& kept) {
+  auto inputs = std::make_shared<description::KeptFiles>();
+  inputs->experiment = nb::cast<std::string>(kept[0]);
+  inputs->working_folder = nb::cast<std::string>(kept[1]);
+  inputs->model_path = nb::cast<std::string>(kept[2]);
+  inputs->last_model_folders = nb::cast<std::vector<std::string>>(kept[3]);
+  inputs->folders = nb::cast<std::vector<std::string>>(kept[4]);
+  for (const nb::handle file : nb::cast<nb::list>(kept[5])) {
+    const auto bytes = nb::cast<nb::bytes>(file[1]);
+    inputs->files.push_back({nb::cast<std::string>(file[0]), std::string(bytes.c_str(), bytes.size())});
+  }
+  const auto seed = nb::cast<std::uint64_t>(kept[6]);
+  const std::chrono::nanoseconds duration(nb::cast<std::int64_t>(kept[7]));
+  const Unlocked unlocked;
+  return std::make_shared<const Experiment>(parsing::read_experiment(inputs, seed, duration));
+}
+
 nb::list teams_of(const Experiment& experiment) {
   nb::list teams;
   for (const description::Team& team : experiment.teams) {
@@ -84,6 +113,8 @@ void add_experiment(nb::module_& module) {
       .def_static("read", &read, nb::arg("file"), nb::arg("seed"), nb::arg("duration"), nb::arg("model_folders"))
       .def_static("read_texts", &read_texts, nb::arg("texts"), nb::arg("seed"), nb::arg("duration"),
                   nb::arg("model_folders"))
+      .def("kept_files", &kept_files_of)
+      .def_static("read_kept_files", &read_kept_files, nb::arg("kept"))
       .def("with_seed",
            [](const ExperimentPtr& experiment, std::uint64_t seed) { return session::with_seed(experiment, seed); })
       .def_ro("name", &Experiment::name)

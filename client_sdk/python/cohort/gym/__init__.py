@@ -9,11 +9,17 @@
     envs = cohort.gym.VectorEnv("obstacle_avoidance", num_envs=256, reward=reward, horizon=500,
                                 observe=["proximity/*/reading"], act=["treel/*/velocity"])
 
+Some tasks have an id: `gymnasium.make("cohort/ObstacleAvoidance-v0")`, after `import cohort.gym` or with an installed
+package (`cohort.gym.tasks`).
+
 Requires the package gymnasium; `parallel_env` also requires pettingzoo.
 """
 
 from cohort.gym.environments import Env, VectorEnv
 from cohort.gym.parallel import parallel_env
+from cohort.gym.tasks import register
 from cohort.gym.worlds import State
+
+register()
 
 __all__ = ["Env", "State", "VectorEnv", "parallel_env"]

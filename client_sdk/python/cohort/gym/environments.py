@@ -12,7 +12,7 @@ def _box(bounds, shape, dtype):
     return gymnasium.spaces.Box(lower, upper, dtype=dtype)
 
 
-class VectorEnv(gymnasium.vector.VectorEnv):
+class VectorEnv(gymnasium.utils.EzPickle, gymnasium.vector.VectorEnv):
     """Many worlds of one experiment as a `gymnasium.vector.VectorEnv`. Worlds are stepped in C++.
 
     In each world, one agent observes and commands all selected robots. Observations and actions are arrays [env,
@@ -35,7 +35,10 @@ class VectorEnv(gymnasium.vector.VectorEnv):
         threads: number of threads that step the worlds.
         autoreset_mode: a `gymnasium.vector.AutoresetMode`.
         dtype: type of observations and actions.
+        render_mode: "rgb_array" if `render` is called.
     """
+
+    render_modes = ["rgb_array"]
 
     def __init__(
         self,
@@ -52,23 +55,34 @@ class VectorEnv(gymnasium.vector.VectorEnv):
         threads=1,
         autoreset_mode=AutoresetMode.NEXT_STEP,
         dtype=numpy.float32,
+        render_mode=None,
     ):
-        self.worlds = Worlds(
-            experiment,
-            num_envs,
-            reward=reward,
-            done=done,
-            horizon=horizon,
-            observe=observe,
-            act=act,
-            robots=robots,
-            ticks_per_step=ticks_per_step,
-            threads=threads,
-            dtype=dtype,
+        arguments = {
+            "reward": reward,
+            "done": done,
+            "horizon": horizon,
+            "observe": observe,
+            "act": act,
+            "robots": robots,
+            "ticks_per_step": ticks_per_step,
+            "threads": threads,
+            "dtype": dtype,
+        }
+        # A pickled or copied environment is made from the same arguments, and begins with a reset.
+        gymnasium.utils.EzPickle.__init__(
+            self, experiment, num_envs, autoreset_mode=autoreset_mode, render_mode=render_mode, **arguments
         )
+        if render_mode not in (None, *self.render_modes):
+            raise ValueError(f"render_mode is {render_mode!r}, expected None or one of {self.render_modes}")
+        self.render_mode = render_mode
+        self.worlds = Worlds(experiment, num_envs, **arguments)
         self.num_envs = num_envs
         self._autoreset_mode = AutoresetMode(autoreset_mode)
-        self.metadata = {"autoreset_mode": self._autoreset_mode, "render_modes": []}
+        self.metadata = {
+            "autoreset_mode": self._autoreset_mode,
+            "render_modes": self.render_modes,
+            "render_fps": self.worlds.steps_per_second,
+        }
         robot_count = len(self.worlds.robots)
         self._action_shape = (num_envs, robot_count, len(self.worlds.command_bounds[0]))
         shape_of = lambda bounds: (robot_count, len(bounds[0]))
@@ -152,17 +166,26 @@ class VectorEnv(gymnasium.vector.VectorEnv):
     def _observations(self):
         return self.worlds.observations().reshape(self.num_envs, -1)
 
+    def render(self):
+        """Returns a tuple of pictures [row, column, 3] of uint8, one of each world, drawn by `cohort.Batch.render`."""
+        if self.render_mode is None:
+            return None
+        return tuple(self.worlds.batch.render(world) for world in range(self.num_envs))
 
-class Env(gymnasium.Env):
+
+class Env(gymnasium.utils.EzPickle, gymnasium.Env):
     """One world as a `gymnasium.Env`: one agent observes and commands all selected robots.
 
-    Its arguments are those of `VectorEnv`.
+    Its arguments are those of `VectorEnv`. `reward` and `done` may also return a single value.
     """
 
-    metadata = {"render_modes": []}
+    metadata = {"render_modes": VectorEnv.render_modes, "render_fps": 30}
 
     def __init__(self, experiment, *, autoreset_mode=AutoresetMode.DISABLED, **arguments):
+        gymnasium.utils.EzPickle.__init__(self, experiment, autoreset_mode=autoreset_mode, **arguments)
         self._envs = VectorEnv(experiment, 1, autoreset_mode=autoreset_mode, **arguments)
+        self.render_mode = self._envs.render_mode
+        self.metadata = self.metadata | {"render_fps": self._envs.worlds.steps_per_second}
         self.observation_space = self._envs.single_observation_space
         self.action_space = self._envs.single_action_space
 
@@ -176,3 +199,8 @@ class Env(gymnasium.Env):
         """Steps the world with an action, an array [robots * values]."""
         observations, rewards, terminations, truncations, _ = self._envs.step(numpy.asarray(action)[None])
         return observations[0], float(rewards[0]), bool(terminations[0]), bool(truncations[0]), {}
+
+    def render(self):
+        """Returns a picture [row, column, 3] of uint8, drawn by `cohort.Batch.render`; None without a render mode."""
+        pictures = self._envs.render()
+        return None if pictures is None else pictures[0]

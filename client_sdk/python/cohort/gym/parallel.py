@@ -1,5 +1,7 @@
 """Environments for PettingZoo."""
 
+import functools
+
 import numpy
 
 from cohort.gym.environments import _box
@@ -29,6 +31,9 @@ def parallel_env(experiment, *, done=None, **arguments):
             }
             self._action_spaces = {agent: _box(commanded, commanded[0].shape, dtype) for agent in self.possible_agents}
             self._is_seeded = False
+
+        def __reduce__(self):
+            return functools.partial(parallel_env, experiment, done=done, **arguments), ()
 
         def observation_space(self, agent):
             return self._observation_spaces[agent]

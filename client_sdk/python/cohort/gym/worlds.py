@@ -117,6 +117,7 @@ class Worlds:
         self.command_bounds = commanded.lower[command_places], commanded.upper[command_places]
         self._observation_places = observation_places
         self._command_places = command_places
+        self.steps_per_second = 1.0 / (ticks_per_step * experiment.step)
         self.dtype = numpy.dtype(dtype)
         self.state = State(self.batch, rows, ticks_per_step * experiment.step)
         self._reward, self._done, self._horizon = reward, done, horizon
@@ -188,6 +189,8 @@ class Worlds:
 
     def _per_env(self, values, name):
         values = numpy.asarray(values)
+        if values.size == self.batch.worlds == 1:
+            values = values.reshape(1)
         if values.shape != (self.batch.worlds,):
             raise ValueError(f"{name}(state) returned shape {values.shape}, expected {(self.batch.worlds,)}")
         return values

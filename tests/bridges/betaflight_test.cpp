@@ -410,6 +410,14 @@ TEST_F(Betaflight, IsStartedAgainIfItNeverBegins) {
   EXPECT_TRUE(server_->running());
 }
 
+TEST_F(Betaflight, IsConfiguredByADumpThatEndsWithSave) {
+  const Field& field = lay_out(1, 0.5, 7, 70);
+  write_file(field / "dump.txt", "# dump\nbatch start\nset angle_limit = 30\n\nbatch end\nsave\n");
+  simulate(field, "copter_0", {}, {"--configure", (field / "dump.txt").string()});
+  expect_end();
+  EXPECT_TRUE(std::filesystem::exists(field / "betaflight/copter_0/eeprom.bin"));
+}
+
 TEST_F(Betaflight, ItsEndInTheMiddleOfARunIsNamed) {
   const Field& field = lay_out(1, 60, 7, 70);
   simulate(field, "copter_0");

@@ -98,7 +98,8 @@ TEST_F(Px4Rover, IsToldWhatItsSensorsMeasureInTheUnitsOfPx4) {
   px4.steers_by_two_sides = true;
   px4.fly([](const Seen&) { return Outputs{0.5, 0.5, 0.5}; }, 250);
   EXPECT_NEAR(px4.sensor.acceleration[2], -9.81, 0.3);
-  EXPECT_NEAR(px4.sensor.absolute_pressure, 1013.25, 0.2);
+  EXPECT_NEAR(px4.sensor.absolute_pressure, 956.0, 0.2) << "of the standard atmosphere at 488 m";
+  EXPECT_NEAR(px4.sensor.pressure_altitude, 1e-3 * px4.gps.altitude, 2.0);
   // SDF's field is 5.6 uT to the east and 22.9 uT to the north, and the robot looks east.
   EXPECT_NEAR(px4.sensor.magnetic_field[0], 0.056, 0.02);
   EXPECT_NEAR(px4.sensor.magnetic_field[1], -0.229, 0.02);
@@ -234,7 +235,7 @@ TEST(Px4Wire, PymavlinkDecodesAllMessagesAndItsControlsDriveTheRover) {
     EXPECT_EQ(seen["counts"].size(), 4U) << seen["counts"];
     const auto& sensor = seen["last"]["HIL_SENSOR"];
     EXPECT_NEAR(sensor["zacc"], -9.81, 2.0);
-    EXPECT_NEAR(sensor["abs_pressure"], 1013.25, 0.2);
+    EXPECT_NEAR(sensor["abs_pressure"], 956.0, 0.2);
     EXPECT_NEAR(sensor["ymag"], -0.229, 0.02);
     EXPECT_EQ(sensor["fields_updated"], 0x1bff);
     EXPECT_NEAR(sensor["temperature"], 25.0, 1e-6);

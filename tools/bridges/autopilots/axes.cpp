@@ -6,6 +6,12 @@
 namespace cohort::autopilots {
 namespace {
 
+// The standard atmosphere.
+constexpr double at_sea = 101325.0;     // [Pa]
+constexpr double temperature = 288.15;  // [K]
+constexpr double lapse_rate = 0.0065;   // [K/m]
+constexpr double exponent = 5.25588;    // g M / (R L)
+
 constexpr double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 constexpr double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
@@ -33,11 +39,9 @@ Geodetic place_of(const Geodetic& home, const Vector3& ned) {
 }
 
 double pressure_altitude(double pressure) {
-  constexpr double at_sea = 101325.0;     // [Pa]
-  constexpr double temperature = 288.15;  // [K]
-  constexpr double lapse_rate = 0.0065;   // [K/m]
-  constexpr double exponent = 5.25588;    // g M / (R L)
   return temperature / lapse_rate * (1.0 - std::pow(pressure / at_sea, 1.0 / exponent));
 }
+
+double pressure_at(double altitude) { return at_sea * std::pow(1.0 - lapse_rate * altitude / temperature, exponent); }
 
 }  // namespace cohort::autopilots

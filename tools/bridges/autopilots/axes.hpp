@@ -37,5 +37,7 @@ Geodetic place_of(const Geodetic& home, const Vector3& ned);
 /// Returns the altitude of a pressure [Pa] in the lowest layer of the International Standard Atmosphere (ICAO Doc 7488)
 /// [m].
 double pressure_altitude(double pressure);
+/// Returns the pressure at an altitude [m] in it [Pa].
+double pressure_at(double altitude);
 
 }  // namespace cohort::autopilots

@@ -32,6 +32,8 @@ std::vector<std::string> commands_in(const std::string& file) {
   std::vector<std::string> commands;
   for (std::string line; std::getline(in, line);)
     if (!line.empty() && !line.starts_with('#')) commands.push_back(line);
+  // Dumps end with it; the bridge saves after the last command.
+  if (!commands.empty() && commands.back() == "save") commands.pop_back();
   return commands;
 }
 

@@ -106,8 +106,8 @@ void Autopilot::send_state(bridges::Conversation& px4, const Observation& observ
   }
   if (is_due(gps_interval)) send(px4, gps_message(time_, motion, options_.home));
   if (state_interval_ > 0 && is_due(state_interval_)) send(px4, state_message(time_, motion, options_.home));
-  send(px4,
-       sensor_message(time_, motion, autopilots::to_frd(observation.values(magnetic_field_)), observation[pressure_]));
+  send(px4, sensor_message(time_, motion, autopilots::to_frd(observation.values(magnetic_field_)),
+                           observation[pressure_], options_.home));
   time_before_ = time_;
 }
 

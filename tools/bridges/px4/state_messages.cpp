@@ -50,7 +50,7 @@ std::uint16_t course_of(const Vector3& velocity) {
 }  // namespace
 
 mavlink::HilSensor sensor_message(std::uint64_t time, const Motion& motion, const Vector3& magnetic_field,
-                                  double pressure) {
+                                  double pressure, const Geodetic& home) {
   // Accelerometer, gyroscope and magnetometer have three bits each, then pressure, altitude and temperature; that of
   // the differential pressure, which is not measured, is between.
   constexpr std::uint32_t updated = 0x1ff | 1 << 9 | 1 << 11 | 1 << 12;
@@ -59,8 +59,9 @@ mavlink::HilSensor sensor_message(std::uint64_t time, const Motion& motion, cons
   message.acceleration = floats(motion.acceleration);
   message.turn_rate = floats(motion.turn_rate);
   message.magnetic_field = floats(magnetic_field, gauss_in_a_tesla);
-  message.absolute_pressure = static_cast<float>(pressure / 100.0);
-  message.pressure_altitude = static_cast<float>(autopilots::pressure_altitude(pressure));
+  const double altitude = home.altitude + autopilots::pressure_altitude(pressure);
+  message.absolute_pressure = static_cast<float>(autopilots::pressure_at(altitude) / 100.0);
+  message.pressure_altitude = static_cast<float>(altitude);
   message.temperature = room_temperature;
   message.fields_updated = updated;
   return message;

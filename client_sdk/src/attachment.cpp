@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <cstdio>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "client_sdk/src/frame_queue.hpp"
 #include "client_sdk/src/network_clock.hpp"
 #include "client_sdk/src/robot_descriptions.hpp"
+#include "client_sdk/src/standard_streams.hpp"
 #include "client_sdk/src/this_process.hpp"
 #include "client_sdk/text/printable.hpp"
 #include "idl/dds/transport.hpp"
@@ -408,7 +408,7 @@ void Attachment::tell(Severity severity, const std::string& said) const {
   if (options_.tell)
     options_.tell(severity, text);
   else
-    std::fprintf(stderr, "%s: %s\n", name_.c_str(), text.c_str());
+    print_message(name_ + ": " + text);
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -8,6 +7,7 @@
 #include "client_sdk/src/attachment.hpp"
 #include "client_sdk/src/hand_over.hpp"
 #include "client_sdk/src/loop_host.hpp"
+#include "client_sdk/src/standard_streams.hpp"
 
 namespace cohort {
 
@@ -19,7 +19,7 @@ struct Client::State {
       if (tell_user)
         tell_user(severity, text);
       else if (severity != Severity::info)
-        std::fprintf(stderr, "%s: %s\n", options.name.c_str(), text.c_str());
+        print_message(options.name + ": " + text);
       if (severity != Severity::error) return;
       const std::lock_guard lock(mutex);
       why = text;

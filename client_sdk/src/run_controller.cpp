@@ -7,6 +7,7 @@
 #include "client_sdk/include/cohort/client.hpp"
 #include "client_sdk/src/attachment.hpp"
 #include "client_sdk/src/domains.hpp"
+#include "client_sdk/src/standard_streams.hpp"
 
 namespace cohort {
 namespace {
@@ -87,6 +88,7 @@ Arguments parse(int argc, char** argv) {
 }  // namespace
 
 int run_controller(const ControllerKind& kind, int argc, char** argv) {
+  open_standard_streams();
   try {
     const Arguments arguments = parse(argc, argv);
     if (arguments.help) {
@@ -95,9 +97,9 @@ int run_controller(const ControllerKind& kind, int argc, char** argv) {
     }
     return exit_code_of(run_client(kind, arguments.options, stop_on_signals()));
   } catch (const UsageError& error) {
-    std::fprintf(stderr, "%s: %s. Try --help.\n", kind.name.c_str(), error.what());
+    print_message(kind.name + ": " + error.what() + ". Try --help.");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", kind.name.c_str(), error.what());
+    print_message(kind.name + ": " + error.what());
   }
   return exit_usage;
 }

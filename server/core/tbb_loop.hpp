@@ -12,7 +12,7 @@ class TbbLoop {
  public:
   using Call = void (*)(void* argument, std::size_t index, unsigned worker);
 
-  /// `threads` >= 2, including the caller's; may exceed the number of cores.
+  /// `threads` >= 2, including the caller's; may exceed the number of cores. Throws ThreadLimit.
   explicit TbbLoop(unsigned threads);
   ~TbbLoop();
 

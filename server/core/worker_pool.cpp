@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "server/core/tbb_loop.hpp"
@@ -37,7 +38,10 @@ struct WorkerPool::Threads {
 };
 
 WorkerPool::WorkerPool(unsigned threads) : threads_(threads) {
-  if (threads == 0) throw std::invalid_argument("a worker pool needs at least one thread");
+  constexpr unsigned most_threads = 1024;
+  if (threads == 0 || threads > most_threads)
+    throw std::invalid_argument("the number of threads is " + std::to_string(threads) + ", expected 1 to " +
+                                std::to_string(most_threads));
   if (threads > 1) pool_ = std::make_unique<Threads>(threads);
 }
 

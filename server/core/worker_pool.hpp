@@ -11,7 +11,7 @@ namespace cohort {
 /// Scratch memory must not carry over from one chunk to the next.
 class WorkerPool {
  public:
-  /// `threads` >= 1, including the caller's; may exceed the number of cores.
+  /// `threads` from 1 to 1024, including the caller's; may exceed the number of cores. Throws ThreadLimit.
   explicit WorkerPool(unsigned threads);
   ~WorkerPool();
 

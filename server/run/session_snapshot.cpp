@@ -1,15 +1,15 @@
 #include "server/run/session_snapshot.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <system_error>
+#include <stdexcept>
+#include <string>
 
 #include "client_sdk/text/printable.hpp"
+#include "server/core/bounded_file.hpp"
 #include "server/core/hash.hpp"
 #include "server/run/exchange.hpp"
+#include "server/run/snapshot_size.hpp"
 #include "server/simulation/simulation.hpp"
 
 namespace cohort::session {
@@ -182,10 +182,12 @@ void restore(const SessionSnapshot& snapshot, Exchange& exchange) {
 }
 
 SessionSnapshot read_snapshot(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in.is_open() || in.bad())
-    throw SnapshotError("cannot read " + file.string() + ": " + std::generic_category().message(errno));
+  std::string bytes;
+  try {
+    bytes = read_bounded(file, most_snapshot_bytes);
+  } catch (const std::runtime_error& error) {
+    throw SnapshotError(error.what());
+  }
   try {
     return snapshot_from_bytes(std::as_bytes(std::span(bytes)));
   } catch (const SnapshotError& error) {

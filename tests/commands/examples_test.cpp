@@ -73,7 +73,7 @@ TEST(Seeds, ShowATableThatDoesNotDependOnHowManyRunAtOnce) {
                                 "--controllers", controllers, "--csv", csv});
     EXPECT_EQ(ended.exit_code, 0) << ended.err;
     EXPECT_TRUE(ended.out.starts_with("experiment obstacle_avoidance, 3 runs (Cohort ")) << ended.out;
-    EXPECT_EQ(ended.out.find("barrier latency"), std::string::npos) << "no summary of a run: " << ended.out;
+    EXPECT_EQ(ended.out.find("contacts          "), std::string::npos) << "no summary of a run: " << ended.out;
     std::vector<std::string> shown = lines_of(ended.out);
     EXPECT_EQ(shown.size(), 7u) << ended.out;
     shown.resize(7);

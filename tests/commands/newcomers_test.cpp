@@ -133,6 +133,8 @@ TEST(AModelThatIsLookedAt, EndsAfterTheDurationThatIsAskedFor) {
   const std::string summary = folder / "summary.json";
   write_bare_robot(file);
   Process run({cohort_program(), "run", file, "--view", "--speed", "max", "--duration", "0.5", "--summary", summary});
+  ASSERT_TRUE(run.wait_for_output("the run has ended; the view stays open")) << run.output();
+  run.signal(SIGINT);
   EXPECT_EQ(run.wait_for_exit(), 0) << run.output();
   EXPECT_EQ(read_json(summary)["sim_time_ns"], 500'000'000);
 }

@@ -62,8 +62,9 @@ def test_parameters_that_are_wrong_end_the_run(parameters, message):
     ],
 )
 def test_mistakes_have_the_messages_of_check(keys, message):
-    with pytest.raises(cohort.InputError, match=message):
+    with pytest.raises(cohort.InputError, match=f"^Experiment: .*{message}") as refused:
         made(**keys)
+    assert "experiment.yaml" not in str(refused.value)
 
 
 def test_each_team_has_its_own_controller():
@@ -116,5 +117,5 @@ def test_a_world_is_made_with_the_keys_of_sdf():
     simulation = cohort.Simulation(experiment)
     assert simulation.poses[:, 0].tolist() == pytest.approx([0.0, 0.3, 0.6])
     assert experiment.run().ticks == 200
-    with pytest.raises(cohort.InputError, match="experiment-world.yaml:.*gravitie"):
+    with pytest.raises(cohort.InputError, match="^Experiment: .*gravitie"):
         made(world=world | {"gravitie": 3}, teams=[])

@@ -1,12 +1,16 @@
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 
 #include "client_sdk/include/cohort/client.hpp"
+#include "client_sdk/src/standard_streams.hpp"
 #include "idl/dds/transport.hpp"
 #include "server/core/atomic_file.hpp"
+#include "server/core/thread_room.hpp"
 #include "server/description/input_error.hpp"
 #include "tools/cohort/cli/build_facts.hpp"
+#include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
 
 namespace {
@@ -21,7 +25,13 @@ void log_dds_to(Log& log) {
   cohort::wire::set_dds_log([](std::string_view message, cohort::wire::DdsLogKind kind) noexcept {
     using cohort::wire::DdsLogKind;
     if (kind == DdsLogKind::refusal) return dds_log->warning(std::string(message));
-    dds_log->write(kind == DdsLogKind::fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
+    if (kind != DdsLogKind::fatal) return dds_log->debug("dds: " + std::string(message));
+    // Cyclone ends the process after this message.
+    if (message.find("ddsrt_thread_create failed") != std::string_view::npos) {
+      dds_log->error(cohort::ThreadLimit("a thread of DDS").what());
+      std::_Exit(exit_failed);
+    }
+    dds_log->error("dds: " + std::string(message));
   });
 }
 
@@ -55,7 +65,8 @@ int run_chosen(const std::vector<Subcommand>& commands, Log& log, const std::ato
     log.error(text_of(error));
     return exit_failed;
   } catch (const std::exception& error) {
-    log.error(error.what());
+    log.error(text_of(error));
+    if (cohort::is_thread_limit(error)) return exit_failed;
   }
   return exit_usage;
 }
@@ -63,6 +74,8 @@ int run_chosen(const std::vector<Subcommand>& commands, Log& log, const std::ato
 }  // namespace
 
 int main(int argc, char** argv) {
+  cohort::open_standard_streams();
+  cohort::outlive_readers();
   CommandLine line("Cohort: a deterministic simulator for groups of robots", "cohort");
   line.set_version(version_text, "Print the version and build information");
   line.set_help("Print this help and exit");
@@ -78,7 +91,10 @@ int main(int argc, char** argv) {
 
   LogOptions options;
   try {
-    if (!line.parse(argc, argv)) return exit_ok;
+    if (!line.parse(argc, argv)) {
+      Log log(options);
+      return code_after_output(exit_ok, log);
+    }
     options = log_options(flags);
   } catch (const UsageError& error) {
     Log({.format = format_of_unreadable(argc, argv)}).error(error.what());
@@ -86,5 +102,5 @@ int main(int argc, char** argv) {
   }
   Log log(options);
   log_dds_to(log);
-  return run_chosen(commands, log, cohort::stop_on_signals());
+  return code_after_output(run_chosen(commands, log, cohort::stop_on_signals()), log);
 }

@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "server/core/thread_room.hpp"
 #include "tools/processes/external_program.hpp"
 
 namespace cohort::tool {
@@ -35,8 +36,8 @@ std::string description_of(int signal_number) {
   return "Real-time signal " + std::to_string(signal_number - SIGRTMIN);
 }
 
-std::string end_of(pid_t pid, int status) {
-  const std::string process = "controller process " + std::to_string(pid);
+std::string end_of(const Children::Command& command, pid_t pid, int status) {
+  const std::string process = (command.is_controller ? "controller process " : "process ") + std::to_string(pid);
   if (!WIFSIGNALED(status)) return process + " ended with exit code " + std::to_string(WEXITSTATUS(status));
   const int number = WTERMSIG(status);
   return process + " was terminated by signal " + std::to_string(number) + " (" + description_of(number) + ")";
@@ -108,7 +109,9 @@ void Children::start(Child& child) {
   if (pid < 0) {
     close_if_open(child.output);
     if (listener_.gave_up)
-      listener_.gave_up(child.command.name + ": cannot start a process: " + std::generic_category().message(error));
+      listener_.gave_up(child.command.name + ": " +
+                        (error == EAGAIN ? ThreadLimit("a process").what()
+                                         : "cannot start a process: " + std::generic_category().message(error)));
     return;
   }
   setpgid(pid, pid);  // parent and child both set it, so the order does not matter
@@ -126,7 +129,7 @@ void Children::watch() {
   if (reap_until(Clock::now() + patience)) return;
   for (const Child& child : children_)
     if (child.pid > 0 && listener_.killed)
-      listener_.killed(child.command, child.command.name + ": controller process " + std::to_string(child.pid) +
+      listener_.killed(child.command, child.command.name + ": process " + std::to_string(child.pid) +
                                           " did not end on request and was killed");
   signal_all(SIGKILL);
   reap_until(Clock::now() + patience);
@@ -183,14 +186,15 @@ void Children::handle_end(Child& child, int status) {
   close_if_open(child.output);
   close_if_open(child.pidfd);
   if (listener_.ended) listener_.ended(child.pid, WIFEXITED(status) ? WEXITSTATUS(status) : -1);
-  const std::string text = child.command.name + ": " + end_of(std::exchange(child.pid, -1), status);
+  const std::string text = child.command.name + ": " + end_of(child.command, std::exchange(child.pid, -1), status);
   // A controller must not end during a run, even without an error.
   if (!restarting_ || finishing_) return;
   if (WIFEXITED(status) && listener_.may_end_with && listener_.may_end_with(WEXITSTATUS(status))) return;
   const auto give_up = [&](const std::string& why) {
     if (listener_.gave_up) listener_.gave_up(text + why);
   };
-  if (!child.command.restarts) return give_up("; the experiment specifies 'restart: never'");
+  if (!child.command.restarts)
+    return give_up(child.command.is_controller ? "; the experiment specifies 'restart: never'" : "");
   if (child.restarts == most_restarts)
     return give_up("; it had been restarted " + std::to_string(most_restarts) + " times before");
   ++child.restarts;

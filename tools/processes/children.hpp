@@ -22,6 +22,7 @@ class Children {
     std::vector<std::string> arguments;  ///< the program's path first
     std::string name;                    ///< name in messages
     bool restarts = true;                ///< restart it if it dies
+    bool is_controller = true;           ///< it drives robots; only for messages
   };
 
   /// Callbacks, called on a thread of this class, one at a time. `gave_up`, `restarted` and `killed` get a message for

@@ -6,6 +6,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Union
 
@@ -93,6 +94,13 @@ class Result:
     seed: int
 
 
+def _without_places(problems: str, files: list[str]) -> str:
+    """Returns the problems without the lines of these files, which the program has not written."""
+    for file in files:
+        problems = re.sub(rf"^{re.escape(file)}(:\d+)?: ", "Experiment: ", problems, flags=re.MULTILINE)
+    return problems
+
+
 class Experiment:
     """A world with robots in teams, checked and ready to run.
 
@@ -107,7 +115,7 @@ class Experiment:
     `world` is a path, or a dictionary with the keys of world files in YAML, which are those of SDF. The controller of a
     team may be a class derived from `cohort.Controller` or `cohort.TeamController`. If a team has none, pass it to
     `run`; otherwise, its robots keep neutral commands. Paths are relative to `folder`, by default the working
-    directory. Raises `cohort.InputError` with all problems, in the format of `cohort check`.
+    directory. Raises `cohort.InputError` with all problems and the keys that have them, as `cohort check` does.
     """
 
     def __init__(
@@ -135,7 +143,10 @@ class Experiment:
         texts = [(os.fspath(folder / f"{name}.yaml"), text)]
         if world is not None:
             texts.append((os.fspath(folder / keys["world"]), world))
-        self._native = _native.Experiment.read_texts(texts, None, None, _files.model_folders())
+        try:
+            self._native = _native.Experiment.read_texts(texts, None, None, _files.model_folders())
+        except _native.InputError as error:
+            raise _native.InputError(_without_places(str(error), [file for file, _ in texts])) from None
 
     def _named_team(self, team):
         """Returns a team whose controller is a name, and stores its class if it has one."""

@@ -6,18 +6,19 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+
+#include "server/core/bounded_file.hpp"
 
 namespace cohort::parsing {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t most_bytes_of_file = std::size_t{1} << 30U;
 constexpr const char* is_a_folder = "this is a folder; expected a file";
 
 std::string variable(const char* name) {
@@ -129,10 +130,7 @@ const std::string& InputFiles::read(const fs::path& file) {
   const std::string key = key_of(file);
   if (const std::string* const known = find(key)) return *known;
   if (auto reason = why_unreadable(file)) throw std::runtime_error(*std::move(reason));
-  std::ifstream stream(key, std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(stream), {});
-  if (!stream) throw std::runtime_error("the file cannot be read");
-  return files_.emplace(key, std::move(bytes)).first->second;
+  return files_.emplace(key, read_bounded(key, most_bytes_of_file)).first->second;
 }
 
 std::uintmax_t InputFiles::size(const fs::path& file) const {

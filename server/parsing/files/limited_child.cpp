@@ -15,6 +15,8 @@
 #include <new>
 #include <system_error>
 
+#include "server/core/thread_room.hpp"
+
 namespace cohort::parsing {
 namespace {
 
@@ -159,6 +161,7 @@ LimitedChild::LimitedChild(Ends ends, const ChildLimits& limits, const Work& wor
   if (process_ == 0) be_child(ends.of_child, parent, limits, work);
   const int error = errno;
   close(ends.of_child);
+  if (process_ < 0 && error == EAGAIN) throw ThreadLimit("a process");
   if (process_ < 0) throw std::system_error(error, std::generic_category(), "cannot start a process");
 }
 

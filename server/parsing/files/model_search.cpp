@@ -116,6 +116,20 @@ std::string ModelSearch::searched_folders() const {
   return searched;
 }
 
+std::vector<std::string> ModelSearch::known_models() const {
+  std::vector<std::string> names;
+  if (!input_.is_disk()) return names;
+  for (const auto* const folders : {&folders_, &others_})
+    for (const fs::path& folder : *folders) {
+      std::error_code is_over;
+      for (fs::directory_iterator each(folder, is_over); !is_over && each != fs::directory_iterator();
+           each.increment(is_over))
+        if (input_.is_file(each->path() / "model.config")) names.push_back(each->path().filename().string());
+    }
+  std::ranges::sort(names);
+  return names;
+}
+
 void ModelSearch::fail_to_find_file(const std::string& file, const fs::path& folder) const {
   const std::string name = file.substr(0, file.find('/'));
   const std::string searched = searched_folders();
@@ -131,8 +145,10 @@ void ModelSearch::fail_to_find(const std::string& name) const {
     throw std::runtime_error("there is no model '" + name +
                              "': there is no folder 'robots' or 'objects' beside the world file or up to " +
                              std::to_string(parent_levels) + " levels above it, and COHORT_MODEL_PATH lists none");
-  throw std::runtime_error("there is no model '" + name + "' in " + searched +
-                           "; set COHORT_MODEL_PATH to search more folders");
+  const auto near = nearest(name, known_models());
+  throw std::runtime_error(
+      "there is no model '" + name + "' in " + searched +
+      (near ? "; did you mean '" + *near + "'?" : std::string("; set COHORT_MODEL_PATH to search more folders")));
 }
 
 // Returns whether a folder is marked as a model or a package.
@@ -227,9 +243,10 @@ fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder, bo
 
 FoundModel ModelSearch::find(const std::string& uri, const fs::path& folder) const {
   const fs::path path = path_of(uri, folder, true);
-  if (input_.is_folder(path)) return {sdf_file_of(path)};
-  if (input_.is_file(path)) return {path};
-  throw std::runtime_error("there is no '" + path.string() + "'");
+  if (!input_.is_folder(path) && !input_.is_file(path)) throw std::runtime_error("there is no '" + path.string() + "'");
+  const fs::path file = input_.is_folder(path) ? sdf_file_of(path) : path;
+  if (const auto reason = input_.why_unreadable(file)) throw std::runtime_error(*reason + ": '" + file.string() + "'");
+  return {file};
 }
 
 fs::path ModelSearch::find_file(const std::string& uri, const fs::path& folder) const {

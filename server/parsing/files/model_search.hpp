@@ -42,6 +42,8 @@ class ModelSearch {
   [[noreturn]] void fail_to_find(const std::string& name) const;
   [[noreturn]] void fail_to_find_file(const std::string& file, const std::filesystem::path& folder) const;
   std::string searched_folders() const;
+  // Returns the names of the models on the disk, for suggestions.
+  std::vector<std::string> known_models() const;
   /// `folder` is that of the file that contains the name.
   std::optional<std::filesystem::path> look_for(const std::string& name, const std::filesystem::path& folder,
                                                 const std::filesystem::path& inside) const;

@@ -260,12 +260,16 @@ std::vector<Problem> replace_bad_values(SdfFile& file) {
 }
 
 std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file) {
+  // An error without a position is searched for in the whole file.
+  constexpr std::size_t most_problems = 100;
   const XmlNode& tree = file.tree;
   std::vector<Problem> problems;
-  PlacedNames named;     // the invalid ones
-  PlacedNames misspelt;  // attributes that misspelt ones were taken for
+  std::set<std::string> without_position;  // messages: equal ones lead to the same place
+  PlacedNames named;                       // the invalid ones
+  PlacedNames misspelt;                    // attributes that misspelt ones were taken for
   std::string last_path;
   for (const sdf::Error& error : errors) {
+    if (problems.size() == most_problems) break;
     if (is_said_by_us(error)) continue;
     const std::string path = error.XmlPath().value_or("");
     const bool follows = !problems.empty() && is_consequence(error, path, last_path);
@@ -281,6 +285,7 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file)
       if (misspelt.contains({problem.element, name})) continue;
       problem.message = "missing: the attribute '" + name + "'";
     } else if (node == nullptr && path.empty()) {
+      if (!without_position.insert(error.Message()).second) continue;
       if (const auto place = place_named_in(error.Message(), tree)) {
         node = place->node;
         problem.element = place->path;

@@ -21,6 +21,7 @@
 #include "server/parsing/sdf/sdf_files.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
 #include "server/parsing/world/mass_ratio.hpp"
+#include "server/parsing/world/model_size.hpp"
 #include "server/parsing/world/physics_settings.hpp"
 #include "server/parsing/world/read_breakable_joints.hpp"
 #include "server/parsing/world/stand_on_plane.hpp"
@@ -76,6 +77,7 @@ World WorldReader::finished() {
   if (!problems_.empty()) throw InputError(std::move(problems_));
   placement::set_robots(world_);
   warn_of_mass_ratio(world_);
+  warn_of_sizes(world_);
   return std::move(world_);
 }
 

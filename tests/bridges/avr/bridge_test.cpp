@@ -203,6 +203,20 @@ TEST_F(AvrBridge, MistakesInOptionsAndFilesEndItBeforeItAttaches) {
   }
 }
 
+TEST_F(AvrBridge, PrintsTextsOfFilesWithoutControlSequencesAndShortens) {
+  const std::string avoid = firmware("avoid.elf");
+  const std::string pins = (folder_ / "pins.yaml").string();
+  for (const std::string& text : {std::string("mcu: \"\\e]0;title\\a\\x9b31m\""), "mcu: " + std::string(900'000, 'x'),
+                                  std::string("wires: [{led: leds/0/color, pin: \"\\e]0;title\\a\"}]")}) {
+    write_file(pins, text + "\n");
+    const Ended bridge = run_to_end({program, "--robots", "0", "--image", avoid, "--pins", pins});
+    EXPECT_EQ(bridge.exit_code, 2);
+    EXPECT_LT(bridge.err.size(), 20'000u);
+    for (const char control : {'\x1b', '\a', '\x9b'})
+      EXPECT_EQ(bridge.err.find(control), std::string::npos) << bridge.err;
+  }
+}
+
 TEST_F(AvrBridge, SaysHowFastItIs) {
   const Ended ended =
       run_to_end({program, "--image", firmware("avoid.elf"), "--frequency", "16000000", "--benchmark", "0.5"});

@@ -24,6 +24,11 @@ TEST(WorkerPool, CoversEveryIndexOnceInChunksIndependentOfThreads) {
   }
 }
 
+TEST(WorkerPool, RefusesNumbersOfThreadsThatNoMachineHas) {
+  EXPECT_THROW(WorkerPool(0), std::invalid_argument);
+  EXPECT_THROW(WorkerPool(1'000'000), std::invalid_argument);
+}
+
 TEST(WorkerPool, PassesAnExceptionOn) {
   WorkerPool workers(2);
   EXPECT_THROW(workers.for_each_chunk(100, 1,

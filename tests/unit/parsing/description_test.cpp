@@ -300,7 +300,9 @@ TEST_F(Description, ReportsTheSearchedFoldersForAMissingModel) {
   fs::create_directories(folder_ / "installed");
   EXPECT_EQ(message_of({folder_ / "nowhere", folder_ / "installed"}),
             "there is no model 'sbit' in " + (folder_ / "robots").string() + ", " + (folder_ / "installed").string() +
-                "; set COHORT_MODEL_PATH to search more folders");
+                "; did you mean 'sbot'?");
+  write_world("<include><uri>model://zeppelin</uri></include>");
+  EXPECT_NE(message_of({}).find("; set COHORT_MODEL_PATH to search more folders"), std::string::npos);
   fs::remove_all(folder_ / "robots");
   EXPECT_NE(message_of({}).find("there is no folder 'robots' or 'objects' beside the world file"), std::string::npos);
 }
@@ -458,6 +460,61 @@ TEST_F(Description, ReportsProblemsOfIncludedFilesOnce) {
                  {"", 3, "model[worse]/link[l]/inertial/mass", "cannot have the value 'x'"});
   expect_problem(problems, file, {"", 3, "world/cohort:population[p]/cohort:uri", "missing"});
   EXPECT_EQ(problems.size(), 5u);  // the population misses three things
+}
+
+TEST_F(Description, ReportsAnIncludeOutsideOfAllFoldersAtItsLine) {
+  const fs::path file = write_world("\n<include><uri>/etc/passwd</uri></include>");
+  const auto problems = problems_of([&] { parsing::read_world(file, 1); });
+  expect_problem(problems, file, {"", 3, "world/include/uri", "the file is outside of all allowed folders"});
+}
+
+TEST_F(Description, ReportsNamesOfMergedModelsOnceEach) {
+  write_model("part", links("a b"));
+  std::string includes = links("base");
+  for (int i = 0; i < 400; ++i)
+    includes += "<include merge=\"true\"><name>p" + std::to_string(i) + "</name><uri>model://part</uri></include>";
+  write_model("whole", includes);
+  const fs::path file = write_world("<include><uri>model://whole</uri></include>");
+  const auto problems = problems_of([&] { parsing::read_world(file, 1); });
+  ASSERT_EQ(problems.size(), 2u);
+  for (const Problem& problem : problems)
+    EXPECT_NE(problem.message.find("is already used"), std::string::npos) << problem.text();
+}
+
+TEST_F(Description, ReportsAtMostAHundredNamesThatAreUsedTwice) {
+  std::string model = "<model name=\"m\">";
+  for (int i = 0; i < 300; ++i)
+    model += "<link name=\"l" + std::to_string(i) + "\"/><link name=\"l" + std::to_string(i) + "\"/>";
+  EXPECT_LE(problems_of([&] { read(model + "</model>"); }).size(), 100u);
+}
+
+TEST_F(Description, ShortensValuesOfAnyLengthInMessages) {
+  const std::string value(1'000'000, 'x');
+  const auto problems = problems_of([&] { read("<gravity>" + value + "</gravity>"); });
+  ASSERT_FALSE(problems.empty());
+  EXPECT_LT(problems.front().text().size(), 10'000u);
+  EXPECT_NE(problems.front().message.find("'xxxx"), std::string::npos);
+}
+
+TEST_F(Description, WarnsOfRobotsWhoseSizesMayBeInMillimetres) {
+  const auto robot = [](const std::string& radius) {
+    return "<model name=\"m\"><link name=\"hull\"><inertial><mass>1</mass></inertial></link>"
+           "<link name=\"wheel\"><inertial><mass>1</mass></inertial><collision name=\"c\"><geometry><sphere><radius>" +
+           radius + "</radius></sphere></geometry></collision></link>" + joint("axle", "hull", "wheel") + "</model>";
+  };
+  const auto warning_of = [&](const std::string& world) {
+    const auto warnings = read(world).warnings;
+    const auto found = std::ranges::find_if(warnings, [](const Problem& warning) {
+      return warning.message.find("sizes are in metres") != std::string::npos;
+    });
+    return found == warnings.end() ? "" : found->message;
+  };
+  EXPECT_TRUE(warning_of(robot("30")).starts_with("is 60 x 60 x 60 m large; sizes are in metres"))
+      << warning_of(robot("30"));
+  EXPECT_EQ(warning_of(robot("0.03")), "");
+  EXPECT_EQ(warning_of("<model name=\"hall\"><static>true</static><link name=\"l\"><collision name=\"c\"><geometry>"
+                       "<box><size>100 100 10</size></box></geometry></collision></link></model>"),
+            "");
 }
 
 TEST_F(Description, ReportsInvalidValuesTogetherWithOtherProblems) {

@@ -155,6 +155,14 @@ TEST(Mcap, AChunkEndsAtItsMaximumSize) {
   EXPECT_EQ(messages_of(reader), all_said(100));
 }
 
+TEST(Mcap, ChunksThatExpandBeyondTheLimitAreNotRead) {
+  const TemporaryFile file(small_recording(100, 1000, {.chunk_size = 1000}));
+  const McapReader reader(file.path(), {.limits = {.chunk_size = 2000, .expansion = 0}});
+  EXPECT_THROW(messages_of(reader), McapError);
+  const McapReader with_room(file.path(), {.limits = {.chunk_size = 2000, .expansion = 1024}});
+  EXPECT_EQ(messages_of(with_room), all_said(100));
+}
+
 TEST(Mcap, AWriterIsUnchangedAfterItsSinkFails) {
   Bytes bytes;
   bool is_full = false;

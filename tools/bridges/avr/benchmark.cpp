@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cstdio>
 
+#include "client_sdk/text/printable.hpp"
+
 namespace cohort::avr {
 
 void run_benchmark(const Image& image, const Chip& chip, double seconds) {
@@ -16,9 +18,9 @@ void run_benchmark(const Image& image, const Chip& chip, double seconds) {
   }
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   std::printf("%s on an %s at %.3g MHz: %.4g s in %.3g s, %.1f simulated MHz, %.3g times real time\n",
-              image.file.c_str(), chip.mcu.c_str(), chip.frequency / 1e6, seconds, took,
+              printable(image.file).c_str(), printable(chip.mcu).c_str(), chip.frequency / 1e6, seconds, took,
               static_cast<double>(cycles) / took / 1e6, seconds / took);
-  if (core.fault()) std::printf("the microcontroller has crashed: %s\n", core.fault()->c_str());
+  if (core.fault()) std::printf("the microcontroller has crashed: %s\n", printable(*core.fault()).c_str());
 }
 
 }  // namespace cohort::avr

@@ -1,12 +1,13 @@
 #include "tools/bridges/avr/bridge.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 #include <variant>
+
+#include "client_sdk/src/standard_streams.hpp"
 
 namespace cohort::avr {
 namespace {
@@ -62,7 +63,7 @@ void guard(std::exception_ptr& failure, const Action& action) {
   }
 }
 
-void tell(const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); }
+void tell(const std::string& text) { print_message(text); }
 
 }  // namespace
 

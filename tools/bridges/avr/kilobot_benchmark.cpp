@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "client_sdk/text/printable.hpp"
 #include "tools/bridges/avr/kilobot.hpp"
 
 namespace cohort::avr::kilobot {
@@ -38,9 +39,10 @@ void run_benchmark(const Image& image, unsigned robots, bool overhead, double se
   std::printf(
       "%s on %u Kilobots: simulated %.4g s in %.3g s of wall time on one thread; up to %.3g Kilobots run in real "
       "time\n",
-      image.file.c_str(), robots, seconds, took, robots * seconds / took);
+      printable(image.file).c_str(), robots, seconds, took, robots * seconds / took);
   for (const Member& member : members)
-    if (member.core->fault()) std::printf("a microcontroller has crashed: %s\n", member.core->fault()->c_str());
+    if (member.core->fault())
+      std::printf("a microcontroller has crashed: %s\n", printable(*member.core->fault()).c_str());
 }
 
 }  // namespace cohort::avr::kilobot

@@ -3,14 +3,27 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <exception>
+#include <iostream>
+#include <sstream>
+#include <system_error>
+
+#include "client_sdk/src/domains.hpp"
+#include "client_sdk/src/standard_streams.hpp"
 
 namespace cohort::bridges {
 namespace {
 
 constexpr int exit_usage = 2;
 constexpr std::uint32_t most_robots = 100;
+
+// Returns the exit code of a program that would end with `code`: a failure if its output could not be written.
+int code_after_output(const std::string& program, int code) {
+  const int error = flush_output();
+  if (error == 0) return code;
+  print_message(program + ": standard output cannot be written: " + std::generic_category().message(error));
+  return code == 0 ? 1 : code;
+}
 
 std::uint32_t id_in(const std::string& text) {
   constexpr std::size_t most_digits = 6;
@@ -41,6 +54,7 @@ std::vector<std::string> single_robots(const std::string& list) {
 
 BridgeProgram::BridgeProgram(std::string name, std::string who, const std::string& text)
     : name_(std::move(name)), who_(std::move(who)), app_(text, name_) {
+  open_standard_streams();
   client_.name = name_;
   app_.add_option("--robots", robots_, "Robots: ids, ranges of ids or names, separated by commas")
       ->type_name("ROBOT[,ROBOT...]")
@@ -49,10 +63,19 @@ BridgeProgram::BridgeProgram(std::string name, std::string who, const std::strin
       ->type_name("ADDRESS")
       ->envname("COHORT_SERVER")
       ->capture_default_str();
-  app_.add_option("--domain", client_.domain, "The server's DDS domain")
-      ->type_name("N")
+  app_.add_option_function<std::string>(
+          "--domain",
+          [this](const std::string& domains) {
+            try {
+              client_.domain = domain_of_this_process(parse_domains(domains));
+            } catch (const std::invalid_argument& error) {
+              throw CLI::ValidationError("--domain", error.what());
+            }
+          },
+          "The server's DDS domain, or a range from which one is chosen")
+      ->type_name("N|A..B")
       ->envname("COHORT_DOMAIN")
-      ->capture_default_str();
+      ->default_str("0");
   app_.add_option("--secure", client_.secure, "Folder of this client's identity (default: no security)")
       ->type_name("DIR")
       ->envname("COHORT_SECURE");
@@ -116,14 +139,17 @@ int BridgeProgram::run_to_exit_code(int argc, char** argv, const std::function<i
   try {
     app_.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app_.exit(error) == 0 ? 0 : exit_usage;
+    std::ostringstream text;
+    const int code = app_.exit(error, text, std::cerr) == 0 ? 0 : exit_usage;
+    write_output(text.str());
+    return code_after_output(name_, code);
   }
   try {
-    return body();
+    return code_after_output(name_, body());
   } catch (const UsageError& error) {
-    std::fprintf(stderr, "%s: %s. Try --help.\n", name_.c_str(), error.what());
+    print_message(name_ + ": " + error.what() + ". Try --help.");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", name_.c_str(), error.what());
+    print_message(name_ + ": " + error.what());
   }
   return exit_usage;
 }

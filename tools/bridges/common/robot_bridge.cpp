@@ -1,9 +1,10 @@
 #include "tools/bridges/common/robot_bridge.hpp"
 
-#include <cstdio>
 #include <exception>
 #include <utility>
 #include <variant>
+
+#include "client_sdk/src/standard_streams.hpp"
 
 namespace cohort::bridges {
 namespace {
@@ -140,7 +141,7 @@ void RobotBridge::end_program() {
 }
 
 void RobotBridge::tell(const std::string& text) const {
-  std::fprintf(stderr, "robot %s: %s\n", options_.client.robots.front().c_str(), text.c_str());
+  print_message("robot " + options_.client.robots.front() + ": " + text);
 }
 
 int run_bridges(const std::vector<std::unique_ptr<RobotBridge>>& bridges) {

@@ -1,13 +1,13 @@
 // cohort-ros2-bridge: nodes of ROS 2 drive robots of a simulation (docs/ros2.md).
 
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "client_sdk/src/control/control_client.hpp"
 #include "client_sdk/src/control/experiment_query.hpp"
+#include "client_sdk/src/standard_streams.hpp"
 #include "idl/dds/ros2/ros_names.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "tools/bridges/common/bridge_program.hpp"
@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
     if (distribution != "auto")
       options.gid_format = distribution == "humble" ? ros2::GidFormat::humble : ros2::GidFormat::since_iron;
     options.command = program.command();
-    options.tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
+    options.tell = [](const std::string& text) { print_message(text); };
     if (!has_no_services) {
       ros2::SimulationControl::Options& services = options.services.emplace();
       services.control = control_options(client);

@@ -18,6 +18,8 @@ bool is_above_zero(const std::string& text, double greatest) {
   return number && *number > 0.0 && *number <= greatest;
 }
 
+std::string number_of(const std::string& unit) { return unit.empty() ? "a number" : "a number of " + unit; }
+
 }  // namespace
 
 Check whole_number(std::uint64_t least, std::uint64_t greatest) {
@@ -29,20 +31,20 @@ Check whole_number(std::uint64_t least, std::uint64_t greatest) {
   };
 }
 
-Check number_above_zero(double greatest) {
+Check number_above_zero(double greatest, const std::string& unit) {
   return [=](const std::string& text) {
     return is_above_zero(text, greatest)
                ? std::string()
-               : fmt::format("expected a number above 0 and up to {}, not '{}'", greatest, text);
+               : fmt::format("expected {} above 0 and up to {}, not '{}'", number_of(unit), greatest, text);
   };
 }
 
-Check number_from_zero(double greatest) {
+Check number_from_zero(double greatest, const std::string& unit) {
   return [=](const std::string& text) {
     const auto value = parse_real(text);
     return value && *value >= 0.0 && *value <= greatest
                ? std::string()
-               : fmt::format("expected a number from 0 to {}, not '{}'", greatest, text);
+               : fmt::format("expected {} from 0 to {}, not '{}'", number_of(unit), greatest, text);
   };
 }
 

@@ -13,8 +13,9 @@ using Check = std::function<std::string(const std::string& value)>;
 inline constexpr double most_seconds = 9e9;  ///< fits into nanoseconds
 
 Check whole_number(std::uint64_t least, std::uint64_t greatest);
-Check number_above_zero(double greatest);
-Check number_from_zero(double greatest);
+/// `unit`: that of the number, such as `seconds`.
+Check number_above_zero(double greatest, const std::string& unit = "");
+Check number_from_zero(double greatest, const std::string& unit = "");
 Check max_or_number_above_zero(double greatest);
 Check domain_range();
 Check one_of(std::vector<std::string> names);

@@ -8,9 +8,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <utility>
 #include <vector>
 
+#include "client_sdk/src/standard_streams.hpp"
 #include "server/core/text.hpp"
 
 namespace cohort::tool {
@@ -185,7 +187,9 @@ bool CommandLine::parse(int argc, const char* const* argv) {
     app_->parse(argc, argv);
     return true;
   } catch (const CLI::Success& help) {
-    app_->exit(help);
+    std::ostringstream text;
+    app_->exit(help, text, text);
+    write_output(text.str());
     return false;
   } catch (const CLI::ParseError& error) {
     throw UsageError(usage_error(*app_, error));

@@ -8,8 +8,11 @@
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "client_sdk/src/attachment.hpp"
+#include "server/core/thread_room.hpp"
+#include "server/description/shortened.hpp"
 #include "tools/cohort/cli/shown.hpp"
 
 namespace cohort::tool {
@@ -58,8 +61,9 @@ std::string kind_of(const description::Problem& warning) {
 }  // namespace
 
 std::string text_of(const std::exception& error) {
-  const bool lacks_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
-  return lacks_memory ? "there is not enough memory" : error.what();
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "there is not enough memory";
+  const bool is_of_library = dynamic_cast<const std::system_error*>(&error) != nullptr;
+  return is_of_library && is_thread_limit(error) ? ThreadLimit("a thread").what() : error.what();
 }
 
 LogLevel level_of(Severity severity) {
@@ -90,8 +94,9 @@ void Log::urgent_warning(const std::string& message, const LogFields& fields) {
   if (options_.level != LogLevel::off) print(*messages_, LogLevel::warning, message, fields);
 }
 
-void Log::problem(LogLevel level, const description::Problem& problem) {
+void Log::problem(LogLevel level, const description::Problem& full) {
   if (!shows(level)) return;
+  description::Problem problem = description::shortened(full);
   if (options_.format == LogFormat::json) {
     LogFields fields = {{"file", problem.file.string()}};
     if (problem.line > 0) fields.emplace_back("line", problem.line);
@@ -99,9 +104,8 @@ void Log::problem(LogLevel level, const description::Problem& problem) {
     print(*lines_, level, problem.message, fields);
     return;
   }
-  description::Problem shown = problem;
-  if (level == LogLevel::warning) shown.element = shown.element.empty() ? "warning" : "warning: " + shown.element;
-  print(*lines_, level, shown.text(), {});
+  if (level == LogLevel::warning) problem.element = problem.element.empty() ? "warning" : "warning: " + problem.element;
+  print(*lines_, level, problem.text(), {});
 }
 
 void Log::problems(const description::InputError& error) {

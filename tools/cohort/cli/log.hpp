@@ -24,7 +24,7 @@ namespace cohort::tool {
 enum class LogFormat { text, json };
 enum class LogLevel { debug, info, warning, error, off };
 
-/// Returns the message of an exception; for std::bad_alloc, a readable one.
+/// Returns the message of an exception. Explains a lack of memory, and a limit of threads.
 std::string text_of(const std::exception& error);
 
 /// Returns the level for a client's message of this severity.

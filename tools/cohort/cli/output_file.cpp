@@ -7,7 +7,10 @@
 #include <cerrno>
 #include <system_error>
 
+#include "client_sdk/src/standard_streams.hpp"
 #include "server/core/atomic_file.hpp"
+#include "tools/cohort/cli/exit_codes.hpp"
+#include "tools/cohort/cli/log.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -35,6 +38,13 @@ void write_file(std::string_view what, const std::filesystem::path& file, std::s
   AtomicFile out(what, file);
   out.write(contents);
   out.commit();
+}
+
+int code_after_output(int code, Log& log) {
+  const int error = flush_output();
+  if (error == 0 || error == EPIPE) return code;
+  log.error("standard output cannot be written: " + why_not_written(error));
+  return code == exit_ok ? exit_failed : code;
 }
 
 }  // namespace cohort::tool

@@ -4,8 +4,10 @@
 #include <string>
 #include <string_view>
 
-/// Files that a command writes at its end.
+/// Files that a command writes at its end, and its standard output.
 namespace cohort::tool {
+
+class Log;
 
 /// Checks before a long run that `file` can be written, and leaves no trace. Throws std::runtime_error with the reason
 /// if it cannot. `what` names the contents in the message.
@@ -13,5 +15,9 @@ void check_writable(std::string_view what, const std::filesystem::path& file);
 
 /// Replaces `file` atomically (AtomicFile). Throws std::runtime_error with the reason if it cannot.
 void write_file(std::string_view what, const std::filesystem::path& file, std::string_view contents);
+
+/// Flushes standard output. Returns the exit code of a command that would end with `code`: a failure, which is logged,
+/// if its output could not be written. A pipe whose reader has ended is no failure.
+int code_after_output(int code, Log& log);
 
 }  // namespace cohort::tool

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <string_view>
 
+#include "client_sdk/src/standard_streams.hpp"
 #include "client_sdk/text/printable.hpp"
 
 /// Output for users and programs: valid UTF-8 without terminal control sequences, even if the input is not.
@@ -16,6 +16,6 @@ std::string json_text(const Json& json, int indent = -1) {
 }
 
 /// Prints it to standard output.
-inline void show(std::string_view text) { std::fputs(printable(text, std::string::npos, Lines::kept).c_str(), stdout); }
+inline void show(std::string_view text) { write_output(printable(text, std::string::npos, Lines::kept)); }
 
 }  // namespace cohort::tool

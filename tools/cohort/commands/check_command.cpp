@@ -1,4 +1,4 @@
-#include <iostream>
+#include <fmt/format.h>
 
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
@@ -19,9 +19,9 @@ namespace cohort::tool {
 namespace {
 
 void print_world(const description::World& world) {
-  std::cout << world.file.string() << ": " << counted(world.instances.size(), "model") << ", "
-            << counted(world.robots.size(), "robot") << ", steps of "
-            << std::chrono::duration<double, std::milli>(world.step).count() << " ms\n";
+  show(fmt::format("{}: {}, {}, steps of {:g} ms\n", world.file.string(), counted(world.instances.size(), "model"),
+                   counted(world.robots.size(), "robot"),
+                   std::chrono::duration<double, std::milli>(world.step).count()));
 }
 
 int check(const std::filesystem::path& named, parsing::Xacro xacro, bool loads_controllers, Log& log) {
@@ -50,10 +50,10 @@ int check(const std::filesystem::path& named, parsing::Xacro xacro, bool loads_c
         show("team " + team.name + ": " + counted(team.robots.size(), "robot") + ", controller " + team.controller +
              "\n");
       if (!loads_controllers && !experiment.teams.empty())
-        std::cout << "controllers were not loaded; '--load-controllers' also checks parameters and channels\n";
+        show("controllers were not loaded; '--load-controllers' also checks parameters and channels\n");
       if (const auto model = installed_model(named.string())) show(robot_sheet(*model, named.string(), xacro));
     }
-    std::cout << file.string() << ": no errors found\n";
+    show(file.string() + ": no errors found\n");
     return exit_ok;
   } catch (const description::InputError&) {
     throw;

@@ -83,19 +83,20 @@ std::vector<DifferingSetting> differing_settings(const recording::Recording& fir
 
 void print_settings(const std::vector<DifferingSetting>& settings) {
   if (settings.empty()) return;
-  fmt::print("the runs have different settings:\n");
+  show("the runs have different settings:\n");
   for (const DifferingSetting& each : settings)
     show(fmt::format("  {}: {} | {}\n", each.name, each.first, each.second));
 }
 
 void print_text(const recording::Comparison& found) {
-  if (!found.parting && found.ends.empty()) return fmt::print("identical, {}\n", counted(found.boundaries, "tick"));
+  if (!found.parting && found.ends.empty())
+    return show(fmt::format("identical, {}\n", counted(found.boundaries, "tick")));
   if (!found.parting)
     return show(fmt::format("{}; until then, they are identical, {}\n", found.ends, counted(found.boundaries, "tick")));
-  fmt::print("they diverge at tick {} ({:.3f} s), after {}\n", found.parting->tick,
-             Seconds(found.parting->log_time).count(), counted(found.boundaries, "identical tick"));
+  show(fmt::format("they diverge at tick {} ({:.3f} s), after {}\n", found.parting->tick,
+                   Seconds(found.parting->log_time).count(), counted(found.boundaries, "identical tick")));
   for (const auto& difference : found.parting->differences) show(line_of(difference) + "\n");
-  if (found.parting->more > 0) fmt::print("  and {} more\n", found.parting->more);
+  if (found.parting->more > 0) show(fmt::format("  and {} more\n", found.parting->more));
 }
 
 void print_json(const std::vector<DifferingSetting>& settings, const recording::Comparison& found) {
@@ -130,7 +131,7 @@ int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop) {
     if (!each->damage().empty()) log.warning(each->damage());
   const std::vector<DifferingSetting> settings = differing_settings(first, second);
   if (!command.json) print_settings(settings);
-  std::fflush(stdout);
+  flush_output();
   ReplayProgress progress(log);
   const recording::Comparison found =
       recording::compare(first, second, available_processors(), [&](std::chrono::nanoseconds log_time) {

@@ -1,5 +1,6 @@
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -7,6 +8,7 @@
 
 #include "server/core/text.hpp"
 #include "tools/cohort/cli/installed_files.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
 
 namespace cohort::tool {
@@ -29,9 +31,9 @@ std::string first_sentence(const fs::path& file) {
 int list() {
   for (const std::string& name : installed_experiments()) {
     const fs::path file = installed_worlds_folder() / "experiments" / (name + ".yaml");
-    std::printf("%-24s %s\n", name.c_str(), first_sentence(file).c_str());
+    show(fmt::format("{:<24} {}\n", name, first_sentence(file)));
   }
-  std::printf("\n'cohort run NAME' runs one; 'cohort examples --copy DIR' copies all, with their arenas and robots.\n");
+  show("\n'cohort run NAME' runs one; 'cohort examples --copy DIR' copies all, with their arenas and robots.\n");
   return exit_ok;
 }
 
@@ -41,7 +43,7 @@ int copy_to(const fs::path& folder) {
                                 "' exists and is not an empty folder: choose a new or empty folder");
   fs::create_directories(folder);
   fs::copy(installed_worlds_folder(), folder, fs::copy_options::recursive);
-  std::printf("cohort run %s\n", (folder / "experiments/obstacle_avoidance.yaml").c_str());
+  show("cohort run " + (folder / "experiments/obstacle_avoidance.yaml").string() + "\n");
   return exit_ok;
 }
 

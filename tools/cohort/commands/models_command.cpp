@@ -1,9 +1,8 @@
-#include <cstdio>
-
 #include "server/description/experiment.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tools/cohort/cli/installed_files.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
@@ -29,8 +28,7 @@ int show_model(const ShowCommand& command, Log& log, const std::atomic<bool>& st
     if (stop) return exit_interrupted;
     simulation.step();
   }
-  const std::string text = command.as_json ? facts_as_json(simulation) : facts_as_text(simulation);
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) return exit_failed;
+  show(command.as_json ? facts_as_json(simulation) : facts_as_text(simulation));
   return exit_ok;
 }
 
@@ -47,7 +45,7 @@ Subcommand add_models(CommandLine app) {
   of.add_flag("--json", command->as_json, "Print JSON, which also includes inertias, axes, poses and velocities");
   of.add_option("--after", command->seconds,
                 "Simulate for this time first, in seconds; a single model is placed on a plane")
-      .check(number_from_zero(most_seconds))
+      .check(number_from_zero(most_seconds, "seconds"))
       .type_name("SECONDS");
   add_reading_options(of, command->runs_xacro);
   of.footer("Example: cohort models show sbot --json --after 5");

@@ -8,11 +8,11 @@ namespace cohort::tool {
 void add_part_options(CommandLine line, RecordingPart& part) {
   line.add_option("--from", part.from,
                   "Start of the part, in simulated seconds from the start of the recording (default: 0)")
-      .check(number_from_zero(most_seconds))
+      .check(number_from_zero(most_seconds, "seconds"))
       .type_name("S");
   line.add_option("--to", part.to,
                   "End of the part, in simulated seconds from the start of the recording (default: its end)")
-      .check(number_from_zero(most_seconds))
+      .check(number_from_zero(most_seconds, "seconds"))
       .type_name("S");
 }
 

@@ -1,8 +1,7 @@
-#include <iostream>
-
 #include "server/recording/mcap/reading/recover.hpp"
 #include "server/recording/mcap/writing/disk_file.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
 
 namespace cohort::tool {
@@ -21,7 +20,7 @@ int recover(const RecoverCommand& command, Log& log) {
   check_writable("the recording", target);
   try {
     const recording::Recovery recovery = recording::recover(command.file, target);
-    std::cout << target.string() << ": " << recovery.text();
+    show(target.string() + ": " + recovery.text());
     return exit_ok;
   } catch (const recording::McapError& error) {
     log.error(text_of(error));

@@ -117,7 +117,7 @@ class Player {
       show(fmt::format("  {}  {}\n", ros2::absolute_name(channel.topic), reader_.schemas().at(channel.schema).name));
     }
     if (writers_.size() > most_lines) show(fmt::format("  and {} more\n", writers_.size() - most_lines));
-    std::fflush(stdout);
+    flush_output();
   }
 
   std::uint64_t subscriptions() const {

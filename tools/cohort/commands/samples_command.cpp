@@ -58,11 +58,11 @@ Subcommand add_samples(CommandLine app) {
   line.add_option("DEVICE", command->device, "Name of a proximity_ring of the robot").required().type_name("");
   line.add_option("-o,--output", command->output, "Sample file to write").required().type_name("FILE");
   line.add_option("--radius", command->grid.radius, "Radius of the cylinder [m]")
-      .check(number_above_zero(longest))
+      .check(number_above_zero(longest, "metres"))
       .capture_default_str()
       .type_name("M");
   line.add_option("--height", command->grid.height, "Height of the cylinder [m]")
-      .check(number_above_zero(longest))
+      .check(number_above_zero(longest, "metres"))
       .capture_default_str()
       .type_name("M");
   line.add_option("--distances", command->grid.distances, "Number of distances, from contact to the end of the range")

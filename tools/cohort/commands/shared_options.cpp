@@ -74,7 +74,7 @@ void add_recorded_options(CommandLine line, RecordOptions& options, const std::s
       .type_name("SEL[,SEL...]");
   line.add_option(prefix + "snapshots", options.snapshot_interval,
                   "Simulated time between recorded snapshots, in seconds (0: none)")
-      .check(number_from_zero(most_seconds))
+      .check(number_from_zero(most_seconds, "seconds"))
       .type_name("S");
   line.add_flag(
       prefix + "rosbag2", options.makes_rosbag2,

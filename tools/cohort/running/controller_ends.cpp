@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "client_sdk/hosting/controller_call.hpp"
+#include "tools/cohort/cli/output_file.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -152,6 +153,7 @@ void ControllerEnds::end_process() {
   else
     log_.error(std::string(why.text()), {{"tick", call.tick}});
   std::cout.flush();
+  exit_code = code_after_output(exit_code, log_);
   std::fflush(nullptr);
   ::_exit(exit_code);
 }

@@ -84,6 +84,7 @@ Children::Command ros2_bridge_process(const description::Experiment& experiment,
   }
   command.name = "the bridge to ROS 2";
   command.restarts = false;
+  command.is_controller = false;
   return command;
 }
 

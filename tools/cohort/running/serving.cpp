@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "server/core/thread_room.hpp"
 #include "server/description/select_robots.hpp"
 #include "tools/cohort/cli/exit_codes.hpp"
 #include "tools/cohort/cli/wording.hpp"
@@ -32,6 +33,10 @@ constexpr std::size_t processes_per_domain = 64;
 // Two files for each process that is started here: one for its end, one for its output.
 constexpr std::size_t files_per_process = 2;
 constexpr std::size_t files_besides = 200;
+// The threads that Cyclone DDS starts for a participant. It ends the process if it cannot start one of them.
+constexpr std::size_t threads_per_participant = 6;
+// The threads of the run: its watchdog, the one that watches its processes, and the one that reads models.
+constexpr std::size_t threads_of_run = 3;
 
 std::size_t process_count(const RunCommand& command, const description::Experiment& experiment) {
   if (command.controllers == Controllers::external) return 0;
@@ -72,6 +77,9 @@ void open_domain(std::uint32_t domain, const RunCommand& command,
 void open_domains(const RunCommand& command, bool has_outsiders, std::size_t processes,
                   std::vector<std::uint32_t>& domains, std::vector<wire::Participant>& participants) {
   const std::vector<std::optional<wire::Identity>> identities = identities_of(command);
+  const std::size_t first_count = std::max<std::size_t>(1, command.domains.size()) * identities.size();
+  expect_room_for_threads(
+      static_cast<unsigned>(threads_of_run + threads_per_participant * (first_count + processes) + processes));
   if (!command.domains.empty() || has_outsiders) {
     domains = command.domains.empty() ? std::vector<std::uint32_t>{0} : command.domains;
     for (const std::uint32_t domain : domains) open_domain(domain, command, identities, participants);
@@ -224,7 +232,8 @@ void Serving::tell_of_keyboard(const description::Experiment& experiment) {
           command_.secure.empty() ? "" : " --secure " + identity_for(experiment, team, command_.secure).string()));
 }
 
-void Serving::start_view(const description::Experiment& experiment, const std::filesystem::path& recording) {
+void Serving::start_view(const description::Experiment& experiment, const std::filesystem::path& recording,
+                         const std::atomic<bool>& stop) {
   Children::Command view;
   view.arguments = {std::filesystem::read_symlink("/proc/self/exe"),
                     "view",
@@ -241,8 +250,13 @@ void Serving::start_view(const description::Experiment& experiment, const std::f
   if (!command_.secure.empty()) add_identities_of_view(command_, experiment, view.arguments);
   view.name = "the view";
   view.restarts = false;
+  view.is_controller = false;
   Children::Listener listener;
-  listener.gave_up = [this](const std::string& text) { log_.warning(text); };
+  listener.gave_up = [this](const std::string& text) {
+    if (page_port_ != 0) return log_.warning(text + "; the run continues without it");
+    view_failure_ = text;
+    has_failed_view_ = true;
+  };
   listener.wrote = [this](const Children::Command&, const std::string& line) { note_page(line); };
   listener.ended = [this](pid_t, int exit_code) {
     is_asked_again_ = exit_code == exit_run_again;
@@ -250,6 +264,9 @@ void Serving::start_view(const description::Experiment& experiment, const std::f
   };
   has_view_ = true;
   view_ = std::make_unique<Children>(std::vector{std::move(view)}, std::move(listener));
+  constexpr std::chrono::milliseconds interval{10};
+  while (!has_failed_view_ && page_port_ == 0 && !stop) std::this_thread::sleep_for(interval);
+  if (has_failed_view_) throw std::runtime_error(view_failure_ + "; the run is not started");
 }
 
 // Passes a line of the view on, and reads the port of its page from it.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "server/serving/server.hpp"
@@ -26,9 +27,10 @@ class Serving {
   /// robots that events add. `experiment` must outlive this call only, `controllers` must outlive this.
   void start_controllers(const description::Experiment& experiment, const std::vector<TeamController>& controllers);
 
-  /// Starts a process that shows the runs in a browser (`cohort view`); a failure is only a warning. `recording` is the
-  /// file that the last run writes; empty: none.
-  void start_view(const description::Experiment& experiment, const std::filesystem::path& recording);
+  /// Starts a process that shows the runs in a browser (`cohort view`), and returns when its page can be opened.
+  /// `recording` is the file that the last run writes; empty: none. Throws std::runtime_error if the process ends.
+  void start_view(const description::Experiment& experiment, const std::filesystem::path& recording,
+                  const std::atomic<bool>& stop);
   /// Waits while viewers of an ended run are connected, unless `stop` is set.
   void let_look(const std::atomic<bool>& stop);
   /// Returns the command line that repeats the run and shows it at the same address, if the view's page has asked for
@@ -56,7 +58,9 @@ class Serving {
   std::vector<std::unique_ptr<Children>> newcomers_;  // processes for added robots of the present run
   std::atomic<bool> has_view_{false};
   std::atomic<bool> is_asked_again_{false};
-  std::atomic<int> page_port_{0};
+  std::atomic<int> page_port_{0};  // 0: its page cannot be opened yet
+  std::string view_failure_;       // why this will never be; set before the next
+  std::atomic<bool> has_failed_view_{false};
   std::unique_ptr<Children> view_;
 };
 

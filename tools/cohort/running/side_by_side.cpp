@@ -135,7 +135,8 @@ class SideBySide {
     const Outputs files = outputs(run);
     Children::Command process{.arguments = {std::filesystem::read_symlink("/proc/self/exe")},
                               .name = fmt::format("run {}", run),
-                              .restarts = false};
+                              .restarts = false,
+                              .is_controller = false};
     const auto add = [&](const std::string& option, const std::string& value) {
       if (!value.empty()) process.arguments.insert(process.arguments.end(), {option, value});
     };

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <iostream>
 #include <limits>
 
 #include "tools/bench/bench.hpp"
@@ -35,10 +34,12 @@ int measure_scenes(const BenchCommand& command, Log& log, const bench::Surroundi
     log.error(error.what());
     return exit_usage;
   }
-  std::cout << bench::missing_engines() << std::flush;
+  write_output(bench::missing_engines());
+  flush_output();
   const auto print = [&](const std::string& table) {
     log.clear_progress();
-    std::cout << '\n' << table << std::flush;
+    write_output("\n" + table);
+    flush_output();
   };
   const auto results = command.what == BenchCommand::What::thesis
                            ? bench::measure_thesis(command.thesis, surroundings, print)
@@ -64,7 +65,8 @@ int measure_lockstep(const BenchCommand& command, Log& log, const bench::Surroun
       if (name == wanted) options.placements.push_back(placement);
   const auto results = bench::measure_lockstep(options, surroundings, [&](const std::string& line) {
     log.clear_progress();
-    std::cout << line << std::flush;
+    write_output(line);
+    flush_output();
   });
   if (!command.json.empty()) write_file(what, command.json, json_text(results.json, 2) + "\n");
   if (!command.svg.empty()) write_file(graph, command.svg, results.graph);
@@ -105,7 +107,7 @@ void add_scenes_options(CommandLine line, BenchCommand& command) {
       .check(whole_number(1, 100'000))
       .type_name("N[,N...]");
   line.add_option("--seconds", options.seconds, "Duration of each repetition, in simulated seconds")
-      .check(number_above_zero(1e6))
+      .check(number_above_zero(1e6, "seconds"))
       .capture_default_str()
       .type_name("S");
   line.add_option("--repetitions", options.repetitions, "Number of repetitions; the engines alternate")
@@ -137,12 +139,12 @@ void add_scenes_options(CommandLine line, BenchCommand& command) {
 void add_thesis_options(CommandLine line, BenchCommand& command) {
   bench::ThesisOptions& options = command.thesis;
   line.add_option("--seconds", options.seconds, "Simulated seconds for each cell of a table")
-      .check(number_above_zero(1e6))
+      .check(number_above_zero(1e6, "seconds"))
       .capture_default_str()
       .type_name("S");
   line.add_option("--budget", options.budget,
                   "Limit of CPU seconds for each cell; the results of longer runs are extrapolated")
-      .check(number_above_zero(1e6))
+      .check(number_above_zero(1e6, "seconds"))
       .capture_default_str()
       .type_name("S");
   line.add_option("--seed", options.seed, "Seed for poses and commands")
@@ -183,7 +185,7 @@ void add_lockstep_options(CommandLine line, BenchCommand& command) {
       .check(one_of(names))
       .type_name("WHERE[,WHERE...]");
   line.add_option("--seconds", options.seconds, "Wall time of each repetition, for each of Cohort and UDP, in seconds")
-      .check(number_above_zero(1e4))
+      .check(number_above_zero(1e4, "seconds"))
       .capture_default_str()
       .type_name("S");
   line.add_option("--repetitions", options.repetitions, "Number of repetitions; Cohort and UDP alternate")

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <functional>
-#include <iostream>
 #include <map>
 
+#include "client_sdk/src/standard_streams.hpp"
 #include "tools/cohort/cli/command_tree.hpp"
 #include "tools/cohort/commands/commands.hpp"
 
@@ -209,7 +209,7 @@ Subcommand add_completion(CommandLine app) {
       .type_name("bash|zsh|fish");
   line.footer("Example: source <(cohort completion bash)");
   return {line, [=](Log&, const std::atomic<bool>&) {
-            std::cout << scripts.at(*shell)(command_tree(app));
+            write_output(scripts.at(*shell)(command_tree(app)));
             return exit_ok;
           }};
 }

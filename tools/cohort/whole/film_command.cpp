@@ -259,7 +259,7 @@ Subcommand add_film(CommandLine app) {
   line.add_option("--distance", look.distance,
                   "Distance of the camera from what it looks at, in metres (default: so that all robots, or all "
                   "followed ones, are visible at first)")
-      .check(number_above_zero(1e4))
+      .check(number_above_zero(1e4, "metres"))
       .excludes(camera)
       .type_name("M");
   line.add_option("--caption", look.caption, "Text in the picture").type_name("TEXT");

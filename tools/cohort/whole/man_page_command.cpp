@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <iostream>
 #include <map>
 
+#include "client_sdk/src/standard_streams.hpp"
 #include "tools/cohort/cli/command_tree.hpp"
 #include "tools/cohort/commands/commands.hpp"
 
@@ -101,7 +101,7 @@ Subcommand add_man_page(CommandLine app) {
   CommandLine line = app.add_subcommand(in_whole::man_page.name, in_whole::man_page.text);
   line.footer("Example: cohort man-page | man -l -");
   return {line, [app](Log&, const std::atomic<bool>&) {
-            std::cout << man_page(command_tree(app));
+            write_output(man_page(command_tree(app)));
             return exit_ok;
           }};
 }

@@ -1,17 +1,23 @@
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "server/recording/recording.hpp"
 #include "tools/cohort/cli/installed_files.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/refuse_experiment.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
@@ -68,17 +74,45 @@ std::string say_where(const ViewCommand& command, const view::WebOptions& option
   const std::string host = command.network == "0.0.0.0" ? "127.0.0.1" : command.network;
   const std::string token = options.token.empty() ? "" : "#token=" + options.token;
   std::string address = fmt::format("http://{}:{}/{}", host, port, token);
-  std::printf("%s\n", address.c_str());
-  std::fflush(stdout);
+  show(address + "\n");
+  flush_output();
   return address;
 }
 
-// The browser runs in its own session, so that it survives this process, which does not wait for it.
-void open_browser(const std::string& address, Log& log) {
-  const std::string script = "command -v xdg-open > /dev/null && { setsid xdg-open \"$0\" > /dev/null 2>&1 & }";
-  if (run_program({"sh", "-c", script, address}, "/").exit_code != 0)
-    log.warning("cannot open a browser, because xdg-open is not installed: open " + address + " yourself");
-}
+// Opens an address in a browser. The browser has its own session, so that it survives this process.
+class Browser {
+ public:
+  explicit Browser(std::string address) : address_(std::move(address)) {
+    posix_spawn_file_actions_t streams;
+    posix_spawn_file_actions_init(&streams);
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+      posix_spawn_file_actions_addopen(&streams, descriptor, "/dev/null", O_RDWR, 0);
+    posix_spawnattr_t session;
+    posix_spawnattr_init(&session);
+    posix_spawnattr_setflags(&session, POSIX_SPAWN_SETSID);
+    const std::vector<std::string> words = {"xdg-open", address_};
+    if (posix_spawnp(&process_, "xdg-open", &streams, &session, arguments_of(words).data(), environ) != 0)
+      why_failed_ = "xdg-open is not installed";
+    posix_spawnattr_destroy(&session);
+    posix_spawn_file_actions_destroy(&streams);
+  }
+
+  /// Returns why no browser was opened, once this is known; empty otherwise.
+  const std::string& why_failed() {
+    int status = 0;
+    if (why_failed_.empty() && process_ > 0 && waitpid(process_, &status, WNOHANG) == process_) {
+      process_ = -1;
+      if (exit_code_of(status) != 0)
+        why_failed_ = "xdg-open has ended with exit code " + std::to_string(exit_code_of(status));
+    }
+    return why_failed_;
+  }
+
+ private:
+  std::string address_;
+  pid_t process_ = -1;
+  std::string why_failed_;
+};
 
 // `is_over` is polled, and returns whether the view is no longer needed.
 void serve_until(view::WebServer& server, view::Source& source, const std::atomic<bool>& stop,
@@ -91,7 +125,7 @@ void serve_until(view::WebServer& server, view::Source& source, const std::atomi
   server.run(source);
 }
 
-// Detects that no viewer has been connected for a while; reloading a page interrupts its connection only briefly.
+// Detects that viewers were connected and have all left. Reloading a page interrupts its connection only briefly.
 class Desertion {
  public:
   explicit Desertion(const view::Topics& topics) : topics_(topics) {}
@@ -99,7 +133,7 @@ class Desertion {
     constexpr std::chrono::seconds moment{2};
     const auto now = std::chrono::steady_clock::now();
     if (topics_.is_read()) seen_at_ = now;
-    return !seen_at_ || now - *seen_at_ > moment;
+    return seen_at_ && now - *seen_at_ > moment;
   }
 
  private:
@@ -110,8 +144,8 @@ class Desertion {
 // `make_source` creates the source that publishes to the server's topics.
 template <class MakeSource>
 int serve(const ViewCommand& command, const std::string& name, Log& log, const std::atomic<bool>& stop,
-          MakeSource make_source, const std::function<bool()>& has_ended = {},
-          const std::atomic<bool>& is_done = false) {
+          MakeSource make_source, const std::function<bool()>& has_ended = {}, const std::atomic<bool>& is_done = false,
+          const std::function<void()>& without_browser = {}) {
   view::WebServer* published_to = nullptr;
   view::Topics topics([&] {
     if (published_to != nullptr) published_to->published();
@@ -121,9 +155,17 @@ int serve(const ViewCommand& command, const std::string& name, Log& log, const s
   published_to = server.get();
   const auto source = make_source(topics);
   const std::string address = say_where(command, options, server->port());
-  if (command.opens) open_browser(address, log);
+  std::optional<Browser> browser;
+  if (command.opens) browser.emplace(address);
   Desertion desertion(topics);
-  serve_until(*server, *source, stop, [&] { return is_done || (desertion.is_complete() && has_ended && has_ended()); });
+  serve_until(*server, *source, stop, [&] {
+    if (browser && !browser->why_failed().empty()) {
+      log.warning("cannot open a browser: " + browser->why_failed() + ". Open " + address + " yourself");
+      if (without_browser) without_browser();
+      browser.reset();
+    }
+    return is_done || (desertion.is_complete() && has_ended && has_ended());
+  });
   return stop ? exit_interrupted : exit_ok;
 }
 
@@ -160,7 +202,7 @@ int view_server(const ViewCommand& command, Log& log, const std::atomic<bool>& s
         followed = source.get();
         return source;
       },
-      [&] { return command.while_watched && followed->has_ended(); }, again);
+      [&] { return command.while_watched && followed->has_ended(); }, again, [&] { followed->play_unseen(); });
   return again ? exit_run_again : code;
 }
 
@@ -182,7 +224,7 @@ Subcommand add_view(CommandLine app) {
       .type_name("DIR");
   line.add_flag("--open", command->opens, "Open the page in a browser");
   line.add_flag("--play-when-seen", command->plays_when_seen,
-                "When the first viewer connects, resume a run that started paused");
+                "When the first viewer connects, or no browser can be opened, resume a run that started paused");
   line.add_flag("--while-watched", command->while_watched, "Exit when the server has ended and no viewer is connected");
   line.add_option("--written", command->written,
                   "Recording that the server writes; it is shown when the server has ended")

@@ -42,6 +42,11 @@ bool FollowedRun::has_ended() const {
   return live_ == nullptr || live_->has_ended();
 }
 
+void FollowedRun::play_unseen() {
+  const std::lock_guard lock(mutex_);
+  if (live_ != nullptr) live_->play_unseen();
+}
+
 Answer FollowedRun::run_again() const {
   if (!may_control_) return {false, "this view is read-only: start it with '--control' to run again from the page"};
   if (!run_again_) return {false, "this view was not started by 'cohort run', which can repeat a run"};

@@ -22,8 +22,10 @@ class FollowedRun final : public Source {
   void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) override;
   void watch(const std::vector<std::uint32_t>& robots) override;
   void leave(std::uint64_t visitor) override;
-  /// Any thread.
+  /// Any thread, as the next.
   bool has_ended() const;
+  /// Starts a run that waits for its first visitor.
+  void play_unseen();
 
  private:
   Answer replay();

@@ -297,7 +297,7 @@ void LiveSource::answer_all(const std::string& text) {
 }
 
 void LiveSource::play_if_seen(ControlClient& client) {
-  if (!options_.plays_when_seen || has_played_ || !publisher_.is_read(Topic::frame)) return;
+  if (!options_.plays_when_seen || has_played_ || !(plays_unseen_ || publisher_.is_read(Topic::frame))) return;
   const auto reply = client.ask(operation_of({.operation = "play"}), for_a_reply, is_stopping_);
   has_played_ = reply && reply->is_done();
 }

@@ -51,6 +51,8 @@ class LiveSource final : public Source {
   void leave(std::uint64_t visitor) override;
   /// The server has said that there will be no further run, or is gone after one. Any thread.
   bool has_ended() const { return has_ended_; }
+  /// Starts a run that waits for its first visitor (`plays_when_seen`). Any thread.
+  void play_unseen() { plays_unseen_ = true; }
 
  private:
   using Bytes = recording::Bytes;
@@ -96,6 +98,7 @@ class LiveSource final : public Source {
   std::atomic<bool> is_stopping_{false};
   std::atomic<bool> has_server_{false};  // that can be controlled
   std::atomic<bool> has_ended_{false};
+  std::atomic<bool> plays_unseen_{false};
   Drivers drivers_;
 
   std::mutex mutex_;

@@ -42,7 +42,16 @@ Bytes uncompressed(const ChunkHead& head, Bytes records, const ReadLimits& limit
   return records;
 }
 
-Bytes read_block(const FileBytes& file, const Block& block, const ReadLimits& limits) {
+ReadBudget::ReadBudget(const FileBytes& file, const ReadLimits& limits)
+    : left_(limits.chunk_size + limits.expansion * file.size()) {}
+
+void ReadBudget::spend(std::uint64_t bytes, const Place& place) {
+  if (bytes > left_)
+    place.fail("the chunks up to this one expand to more than is possible for a recording of this size");
+  left_ -= bytes;
+}
+
+Bytes read_block(const FileBytes& file, const Block& block, const ReadLimits& limits, ReadBudget& budget) {
   if (!block.is_chunk) return file.read(block.offset, block.length);
   const Place place = file.at(block.offset);
   std::array<std::byte, record_head_size + longest_chunk_head> first{};
@@ -57,6 +66,7 @@ Bytes read_block(const FileBytes& file, const Block& block, const ReadLimits& li
   const ChunkHead head = read_chunk_head(content, record.size, place);
   const std::uint64_t before = chunk_content_size(head) - head.compressed_size;
   check_sizes(head, limits, place);
+  budget.spend(head.uncompressed_size, place);
   return uncompressed(head, file.read(block.offset + record_head_size + before, head.compressed_size), limits, place);
 }
 

@@ -9,6 +9,20 @@ namespace cohort::recording {
 struct ReadLimits {
   std::uint64_t chunk_size = std::uint64_t{1} << 29U;   ///< uncompressed bytes of a chunk
   std::uint64_t open_chunks = std::uint64_t{1} << 29U;  ///< uncompressed bytes of all chunks that overlap in time
+  /// Uncompressed bytes of all chunks for each byte of the file, beyond `chunk_size`. Recordings of worlds in
+  /// which nothing moves are below 10.
+  std::uint64_t expansion = 1024;
+};
+
+/// The uncompressed bytes that may still be read from a file, in one pass.
+class ReadBudget {
+ public:
+  ReadBudget(const FileBytes& file, const ReadLimits& limits);
+  /// Throws McapError if this exceeds the budget.
+  void spend(std::uint64_t bytes, const Place& place);
+
+ private:
+  std::uint64_t left_;
 };
 
 /// A chunk, or consecutive messages outside of chunks.
@@ -26,7 +40,7 @@ struct Block {
 Bytes uncompressed(const ChunkHead& head, Bytes records, const ReadLimits& limits, const Place& place);
 
 /// Returns the uncompressed records of a block. Throws McapError.
-Bytes read_block(const FileBytes& file, const Block& block, const ReadLimits& limits);
+Bytes read_block(const FileBytes& file, const Block& block, const ReadLimits& limits, ReadBudget& budget);
 
 /// Returns the place of the records that `read_block` returns.
 Place place_in(const FileBytes& file, const Block& block);

@@ -9,7 +9,8 @@ namespace {
 // A scanner of a file's records. Chunks take precedence over data outside of chunks, as they have CRCs.
 class Scanner {
  public:
-  Scanner(const FileBytes& file, const ReadLimits& limits) : file_(file), limits_(limits), window_(file) {}
+  Scanner(const FileBytes& file, const ReadLimits& limits)
+      : file_(file), limits_(limits), budget_(file, limits), window_(file) {}
 
   Scan run() {
     check_magic(file_);
@@ -142,7 +143,7 @@ class Scanner {
     is_after_lost_chunk_ = false;
     try {
       const Block block{offset, length, {}, {}, true, {}};
-      read_chunk(block, read_block(file_, block, limits_));
+      read_chunk(block, read_block(file_, block, limits_, budget_));
       ++scan_.contents.statistics.chunk_count;
     } catch (const McapError& error) {
       add_damage(offset, length, error.problem(), true);
@@ -328,6 +329,7 @@ class Scanner {
 
   const FileBytes& file_;
   ReadLimits limits_;
+  ReadBudget budget_;
   FileWindow window_;
   Scan scan_;
   bool is_at_end_ = false;

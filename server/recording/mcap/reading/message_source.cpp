@@ -15,6 +15,7 @@ MessageStream::Source::Source(std::shared_ptr<const FileBytes> file, std::shared
     : file_(std::move(file)),
       contents_(std::move(contents)),
       limits_(limits),
+      budget_(*file_, limits),
       query_(std::move(query)),
       is_strict_(is_strict) {
   std::ranges::sort(query_.channels);
@@ -35,7 +36,7 @@ bool MessageStream::Source::is_wanted(const Block& block) const {
 void MessageStream::Source::open(const Block& block) {
   OpenBlock opened;
   opened.block = &block;
-  opened.records = read_block(*file_, block, limits_);
+  opened.records = read_block(*file_, block, limits_, budget_);
   for_each_record(opened.records, place_in(*file_, block), [&](const RecordView& record, const Place& place) {
     if (record.opcode != Opcode::message) return;
     const Message message = read_message(record.content, place);

@@ -43,6 +43,7 @@ class MessageStream::Source {
   std::shared_ptr<const FileBytes> file_;
   std::shared_ptr<const Contents> contents_;
   ReadLimits limits_;
+  ReadBudget budget_;
   MessageQuery query_;
   bool is_strict_;
 

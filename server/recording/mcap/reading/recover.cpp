@@ -21,7 +21,7 @@ std::string count(std::uint64_t number, const std::string& what) {
 class Copy {
  public:
   Copy(const FileBytes& source, Scan& scan, const ReadLimits& limits, McapWriter& writer)
-      : source_(source), scan_(scan), limits_(limits), writer_(writer) {}
+      : source_(source), scan_(scan), limits_(limits), budget_(source, limits), writer_(writer) {}
 
   void all() {
     const Contents& contents = scan_.contents;
@@ -68,7 +68,7 @@ class Copy {
   }
 
   void copy_messages(const Block& block) {
-    const Bytes records = read_block(source_, block, limits_);
+    const Bytes records = read_block(source_, block, limits_, budget_);
     for_each_record(records, place_in(source_, block), [&](const RecordView& record, const Place& place) {
       if (record.opcode != Opcode::message) return;
       const Message message = read_message(record.content, place);
@@ -81,6 +81,7 @@ class Copy {
   const FileBytes& source_;
   Scan& scan_;
   const ReadLimits& limits_;
+  ReadBudget budget_;
   McapWriter& writer_;
 };
 

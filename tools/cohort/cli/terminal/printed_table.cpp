@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "tools/cohort/cli/shown.hpp"
 #include "tools/data/csv_tables.hpp"
@@ -124,7 +123,7 @@ void PrintedTable::add_line(const std::string& line) {
   text_ += line + "\n";
   if (!to_stdout_) return;
   show(line + "\n");
-  std::fflush(stdout);
+  flush_output();
 }
 
 }  // namespace cohort::tool

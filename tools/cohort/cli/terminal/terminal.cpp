@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/cli/wording.hpp"
 
 namespace cohort::tool {
@@ -37,6 +38,43 @@ std::string counted_objects(const description::World& world, std::uint32_t robot
   const auto moving = static_cast<std::size_t>(std::ranges::count_if(
       world.instances, [&](const description::Instance& object) { return !world.models[object.model].is_static; }));
   return moving > 0 ? counted(moving, "model") : counted(world.instances.size(), "static model");
+}
+
+std::string quantiles_text(const lockstep::LatencyHistogram& latencies) {
+  return fmt::format("p50 {} us, p99 {} us, max {} us", whole_microseconds(latencies.quantile(0.5)),
+                     whole_microseconds(latencies.quantile(0.99)), whole_microseconds(latencies.max()));
+}
+
+// Measurements of the exchange with controllers are for those who ask, or whose controllers were late.
+std::string exchange_text(const session::RunResult& result) {
+  std::string text;
+  if (result.robots > 0) text += fmt::format("barrier latency   {}\n", quantiles_text(result.barrier));
+  if (result.repeated > 0)
+    text += fmt::format("repeated answers  {}, ignored; {} frames were sent again\n", result.repeated, result.resent);
+  return text;
+}
+
+std::string summary_text(const description::Experiment& experiment, const session::RunResult& result,
+                         double cpu_seconds, bool is_verbose) {
+  const double wall = seconds(result.wall_time);
+  std::string text =
+      fmt::format("experiment        {}, seed {} (Cohort {})\n", experiment.name, experiment.seed, COHORT_VERSION);
+  text += fmt::format("ticks             {} ({:.2f} s simulated, {})\n", result.ticks, seconds(result.sim_time),
+                      counted_objects(experiment.world, result.robots));
+  if (!result.stop_reason.empty()) text += fmt::format("stopped           by {}\n", result.stop_reason);
+  if (!result.unrecorded.empty()) text += fmt::format("recording         INCOMPLETE: {}\n", result.unrecorded);
+  text += fmt::format("real-time factor  {:.1f} ({:.2f} s wall, {:.2f} s CPU)\n",
+                      wall > 0.0 ? seconds(result.sim_time) / wall : 0.0, wall, cpu_seconds);
+  if (result.lateness.count() > 0)
+    text += fmt::format("tick lateness     {}; longer than a step in {:.2f} % of ticks\n",
+                        quantiles_text(result.lateness), percent(result.late_ticks, result.lateness.count()));
+  if (result.robots > 0)
+    text += fmt::format("contacts          obstacles in {:.2f} % of robot-ticks, other robots in {:.2f} %\n",
+                        percent(result.touches.obstacles, result.touches.robot_ticks),
+                        percent(result.touches.robots, result.touches.robot_ticks));
+  if (result.late > 0) text += fmt::format("late answers      {}\n", result.late);
+  if (is_verbose || result.late > 0) text += exchange_text(result);
+  return text + fmt::format("state hash        {:016x}\n", result.state_hash);
 }
 
 }  // namespace
@@ -99,36 +137,13 @@ void Terminal::summary(const description::Experiment& experiment, const session:
             {{"ticks", result.ticks}, {"state_hash", fmt::format("{:016x}", result.state_hash)}});
   log_.clear_progress();
   if (options_.quiet || (stream == stderr && log_.format() == LogFormat::json)) return;
-  const double wall = seconds(result.wall_time);
-  std::fprintf(stream, "experiment        %s, seed %lu (Cohort %s)\n", experiment.name.c_str(),
-               static_cast<unsigned long>(experiment.seed), COHORT_VERSION);
-  std::fprintf(stream, "ticks             %lu (%.2f s simulated, %s)\n", static_cast<unsigned long>(result.ticks),
-               seconds(result.sim_time), counted_objects(experiment.world, result.robots).c_str());
-  if (!result.stop_reason.empty()) std::fprintf(stream, "stopped           by %s\n", result.stop_reason.c_str());
-  if (!result.unrecorded.empty()) std::fprintf(stream, "recording         INCOMPLETE: %s\n", result.unrecorded.c_str());
-  std::fprintf(stream, "real-time factor  %.1f (%.2f s wall, %.2f s CPU)\n",
-               wall > 0.0 ? seconds(result.sim_time) / wall : 0.0, wall, cpu_seconds);
-  if (result.robots > 0)
-    std::fprintf(stream, "barrier latency   p50 %s us, p99 %s us, max %s us\n",
-                 whole_microseconds(result.barrier.quantile(0.5)).c_str(),
-                 whole_microseconds(result.barrier.quantile(0.99)).c_str(),
-                 whole_microseconds(result.barrier.max()).c_str());
-  if (result.lateness.count() > 0)
-    std::fprintf(stream, "tick lateness     p50 %s us, p99 %s us, max %s us; longer than a step in %.2f %% of ticks\n",
-                 whole_microseconds(result.lateness.quantile(0.5)).c_str(),
-                 whole_microseconds(result.lateness.quantile(0.99)).c_str(),
-                 whole_microseconds(result.lateness.max()).c_str(),
-                 percent(result.late_ticks, result.lateness.count()));
-  if (result.robots > 0)
-    std::fprintf(stream, "contacts          obstacles in %.2f %% of robot-ticks, other robots in %.2f %%\n",
-                 percent(result.touches.obstacles, result.touches.robot_ticks),
-                 percent(result.touches.robots, result.touches.robot_ticks));
-  if (result.late > 0) std::fprintf(stream, "late answers      %lu\n", static_cast<unsigned long>(result.late));
-  if (result.repeated > 0)
-    std::fprintf(stream, "repeated answers  %lu, ignored; %lu frames were sent again\n",
-                 static_cast<unsigned long>(result.repeated), static_cast<unsigned long>(result.resent));
-  std::fprintf(stream, "state hash        %016lx\n", static_cast<unsigned long>(result.state_hash));
-  std::fflush(stream);
+  const std::string text = summary_text(experiment, result, cpu_seconds, log_.shows(LogLevel::info));
+  if (stream == stderr) {
+    std::fputs(printable(text, std::string::npos, Lines::kept).c_str(), stderr);
+  } else {
+    show(text);
+    flush_output();
+  }
 }
 
 }  // namespace cohort::tool

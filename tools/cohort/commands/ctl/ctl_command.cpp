@@ -2,10 +2,11 @@
 #include <unistd.h>
 
 #include <cohort/control.hpp>
-#include <cstdio>
 #include <span>
 #include <thread>
 
+#include "server/core/bounded_file.hpp"
+#include "server/run/snapshot_size.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
@@ -114,9 +115,9 @@ class Ctl {
         log_.notice(error.what());
         return exit_ok;
       }
-      std::printf("%s%s%s", is_terminal && !command_.json ? "\033[H\033[2J" : "", text.c_str(),
-                  is_terminal || command_.json ? "" : "\n");
-      std::fflush(stdout);
+      if (is_terminal && !command_.json) write_output("\033[H\033[2J");
+      show(text + (is_terminal || command_.json ? "" : "\n"));
+      if (flush_output() != 0) return exit_ok;  // `main` reports the reason
       while (!stop_ && std::chrono::steady_clock::now() < next) std::this_thread::sleep_for(milliseconds(20));
     }
     return exit_interrupted;
@@ -133,11 +134,11 @@ class Ctl {
     std::vector<std::byte> bytes;
     ask([&] { bytes = control_.save_snapshot(); });
     write_file("the snapshot", command_.file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    std::printf("%s: %zu bytes, %s\n", command_.file.c_str(), bytes.size(), control_.last_reply().message.c_str());
+    show(fmt::format("{}: {} bytes, {}\n", command_.file.string(), bytes.size(), control_.last_reply().message));
   }
 
   void load() {
-    const std::vector<char> bytes = read_file(command_.file);
+    const std::string bytes = read_bounded(command_.file, session::most_snapshot_bytes);
     ask([&] { show(control_.load_snapshot(std::as_bytes(std::span(bytes))).message + "\n"); });
   }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -151,7 +149,7 @@ void add_time_commands(Requests& requests) {
                            [](Control& control, double seconds) { return control.back(nanoseconds(seconds)); });
   back.add_option("T", go_back, "Simulated time since the start of the run, in seconds")
       .required()
-      .check(number_from_zero(most_seconds))
+      .check(number_from_zero(most_seconds, "seconds"))
       .type_name("");
   requests.add<Nothing>("shutdown", "End the run and the server",
                         [](Control& control, const Nothing&) { return control.quit(); });
@@ -264,7 +262,7 @@ void add_motion_commands(Requests& requests) {
       .add_option_function<double>(
           "--duration", [&push](const double& seconds) { push.duration = nanoseconds(seconds); },
           "Duration in simulated time, in seconds (default: one step)")
-      .check(number_above_zero(9e9))
+      .check(number_above_zero(most_seconds, "seconds"))
       .type_name("S");
   force.add_option("--link", push.link, "Link of the object (default: the root link)").type_name("LINK");
 }
@@ -308,13 +306,6 @@ void add_light_command(Requests& requests) {
 
 }  // namespace
 
-std::vector<char> read_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::vector<char> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in.is_open() || in.bad()) throw std::runtime_error("cannot read " + file.string());
-  return bytes;
-}
-
 void add_ctl_options(CommandLine line, CtlCommand& command) {
   add_domain_option(line, command.connection.domains, domain_of_server);
   add_secure_option(line, command.connection.secure,
@@ -325,7 +316,7 @@ void add_ctl_options(CommandLine line, CtlCommand& command) {
   line.add_option(
           "--timeout", command.timeout,
           "Time limit in seconds (default: 5 to find the server, 30 for a reply, none for step, reset, back and load)")
-      .check(number_above_zero(9e6))
+      .check(number_above_zero(9e6, "seconds"))
       .type_name("S");
   Requests requests(line, command);
   add_time_commands(requests);

@@ -29,9 +29,6 @@ struct CtlCommand {
   bool json = false;
 };
 
-/// Returns the contents of a file. Throws std::runtime_error if it cannot be read.
-std::vector<char> read_file(const std::filesystem::path& file);
-
 /// Adds the options and subcommands. `command` must outlive the command line.
 void add_ctl_options(CommandLine line, CtlCommand& command);
 

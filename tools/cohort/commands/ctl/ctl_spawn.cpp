@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <regex>
 #include <stdexcept>
@@ -14,16 +12,15 @@
 #include <utility>
 #include <vector>
 
+#include "server/core/bounded_file.hpp"
 #include "tools/cohort/cli/installed_files.hpp"
 
 namespace cohort::tool {
 namespace {
 
 std::string text_of_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || in.bad()) throw std::runtime_error("cannot read " + file.string());
-  return text;
+  constexpr std::size_t longest = std::size_t{64} << 20U;
+  return read_bounded(file, longest);
 }
 
 // Returns the first file to which the text of a model refers; empty if there is none.

@@ -15,7 +15,8 @@ namespace cohort::tool {
 struct DoctorCommand {
   std::string server{};  ///< empty: a server on this machine
   bool expects_server = false;
-  std::uint32_t domain = 0;
+  std::vector<std::uint32_t> domains{};  ///< the server's; empty: 0
+  std::uint32_t domain() const { return domains.empty() ? 0 : domains.front(); }
   std::string network = "127.0.0.1";
   std::filesystem::path secure{};  ///< folder of all identities, or of one; empty: without security
   bool json = false;

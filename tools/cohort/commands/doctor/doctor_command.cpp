@@ -2,25 +2,25 @@
 
 #include <algorithm>
 #include <array>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "idl/dds/transport.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/doctor/doctor.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 
 namespace cohort::tool {
 namespace {
 
-constexpr std::uint32_t last_domain = 230;
 constexpr std::array health_names = {"ok", "warning", "problem"};
 
 const char* name_of(Health health) { return health_names.at(static_cast<std::size_t>(health)); }
 
 void print(const std::vector<Finding>& findings) {
   for (const Finding& finding : findings) {
-    std::cout << fmt::format("{:<8} {:<10} {}\n", name_of(finding.health), finding.check, finding.found);
-    if (!finding.advice.empty()) std::cout << fmt::format("{:19} -> {}\n", "", finding.advice);
+    show(fmt::format("{:<8} {:<10} {}\n", name_of(finding.health), finding.check, finding.found));
+    if (!finding.advice.empty()) show(fmt::format("{:19} -> {}\n", "", finding.advice));
   }
 }
 
@@ -31,7 +31,7 @@ void print_json(const std::vector<Finding>& findings) {
                     {"health", name_of(finding.health)},
                     {"found", finding.found},
                     {"advice", finding.advice}});
-  std::cout << list.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+  show(json_text(list, 2) + "\n");
 }
 
 // Returns the identity that looks for the server: the client of the folder, or the observer if the folder has all
@@ -57,8 +57,8 @@ std::vector<Finding> examine(const DoctorCommand& command) {
                         "'cohort security init DIR' creates identities for --secure DIR."});
   }
   if (participants.empty()) participants.push_back(0);
-  findings.push_back(check_ports(command.domain, command.network, participants));
-  if (has_network) findings.push_back(check_firewall(command.domain, command.network));
+  findings.push_back(check_ports(command.domain(), command.network, participants));
+  if (has_network) findings.push_back(check_firewall(command.domain(), command.network));
   // If a machine cannot receive its own packets, DDS cannot end its threads.
   if (findings.back().health == Health::problem && findings.back().check == "firewall") {
     findings.push_back({"server", Health::ok, "not checked: the firewall blocks it"});
@@ -96,10 +96,7 @@ Subcommand add_doctor(CommandLine app) {
                   "Address of a server that should be running (default: look for a server on this machine)")
       .envname("COHORT_SERVER")
       .type_name("ADDRESS");
-  line.add_option("--domain", command->domain, "DDS domain of the server (default: 0)")
-      .envname("COHORT_DOMAIN")
-      .check(whole_number(0, last_domain))
-      .type_name("N");
+  add_domain_option(line, command->domains, domain_of_server);
   line.add_option("--network", command->network,
                   "Address of the network interface that a server on this machine would use")
       .envname("COHORT_NETWORK")

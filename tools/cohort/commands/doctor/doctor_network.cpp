@@ -225,13 +225,13 @@ Finding check_firewall(std::uint32_t domain, const std::string& address) {
 }
 
 Finding check_server(const DoctorCommand& command, const std::optional<wire::Identity>& identity, bool is_expected) {
-  const std::uint16_t port = wire::discovery_port(command.domain, identity ? identity->participant : 0);
-  const std::string where = fmt::format("{}, domain {}", command.server, command.domain);
+  const std::uint16_t port = wire::discovery_port(command.domain(), identity ? identity->participant : 0);
+  const std::string where = fmt::format("{}, domain {}", command.server, command.domain());
   const Health bad = is_expected ? Health::problem : Health::ok;
   if (says_that_it_is_closed(command.server, port))
     return {"server", bad, fmt::format("at {}, UDP port {} is closed", where, port),
             is_expected ? "Start the server, or correct --domain; a server for other machines needs --network." : ""};
-  const wire::Survey survey = wire::survey(command.domain, command.server, identity, patience_with_server);
+  const wire::Survey survey = wire::survey(command.domain(), command.server, identity, patience_with_server);
   if (!survey.majors.empty())
     return {"server", Health::problem,
             fmt::format("at {}, a server uses version {} of the protocol; this program uses version 1", where,

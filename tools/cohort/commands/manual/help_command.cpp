@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 
 #include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/output_file.hpp"
@@ -24,8 +23,8 @@ int help_on_robot(const std::string& name) {
     show(robot_sheet(model_called(name), name, parsing::Xacro::refused));
     return exit_ok;
   }
-  std::cout << "'cohort help robot NAME' describes a robot. NAME is a model file, or one of:\n";
-  for (const std::string& robot : installed_robots()) std::cout << "  " << robot << "\n";
+  show("'cohort help robot NAME' describes a robot. NAME is a model file, or one of:\n");
+  for (const std::string& robot : installed_robots()) show("  " + robot + "\n");
   return exit_ok;
 }
 
@@ -40,11 +39,11 @@ int help(const HelpCommand& command, Log& log) {
   if (topic == "robot" || topic == "robots") return help_on_robot(name);
   if (!name.empty()) throw UsageError("expected one topic, not '" + topic + "' and '" + name + "'");
   if (topic.empty()) {
-    std::cout << manual_contents();
+    show(manual_contents());
     return exit_ok;
   }
   if (const std::optional<std::string> text = manual_of(topic)) {
-    std::cout << *text;
+    show(*text);
     return exit_ok;
   }
   const std::vector<std::string> robots = installed_robots();

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 
 #include "client_sdk/math/portable_math.hpp"
 #include "server/core/text.hpp"
+#include "server/core/thread_room.hpp"
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
@@ -27,31 +27,23 @@
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/run/run_flags.hpp"
+#include "tools/cohort/commands/run/run_refusals.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 #include "tools/cohort/running/controller_ends.hpp"
+#include "tools/cohort/running/cpu_time.hpp"
 #include "tools/cohort/running/one_run.hpp"
 #include "tools/cohort/running/run_recording.hpp"
 #include "tools/cohort/running/seed_table.hpp"
 #include "tools/cohort/running/seeds.hpp"
 #include "tools/cohort/running/serving.hpp"
 #include "tools/cohort/running/side_by_side.hpp"
+#include "tools/cohort/running/summary_file.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
 
 namespace cohort::tool {
 namespace {
 
 using session::RunResult;
-
-double cpu_seconds() {
-  double total = 0.0;
-  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-    rusage usage{};
-    getrusage(who, &usage);
-    for (const timeval& part : {usage.ru_utime, usage.ru_stime})
-      total += static_cast<double>(part.tv_sec) + 1e-6 * static_cast<double>(part.tv_usec);
-  }
-  return total;
-}
 
 class Stopwatch {
  public:
@@ -82,13 +74,6 @@ std::chrono::nanoseconds keep_interval_of(const RunCommand& command, const descr
   return std::max(experiment.world.step, nanoseconds(command.keep_interval));
 }
 
-void refuse_keyboard(const description::Experiment& experiment) {
-  for (const description::Team& team : experiment.teams)
-    if (team.controller == keyboard_controller)
-      throw description::InputError({{experiment.file, team.controller_line, "team " + team.name,
-                                      "controller 'keyboard' cannot be used with '--controllers inprocess'"}});
-}
-
 // Runs the controllers in this process. If one of them ends the process, `finish` is called with the result.
 RunResult run_here(const description::Experiment& experiment, Simulation& simulation,
                    const std::vector<TeamController>& controllers, const session::RunOptions& options,
@@ -111,35 +96,6 @@ void warn_if_not_portable(Log& log) {
     log.warning(
         "the state hash may differ on another CPU: these functions of the C library are used instead of Cohort's:" +
         names);
-}
-
-// A rosbag2 bag is a folder with one recording.
-void check_rosbag2(const RunCommand& command, std::size_t runs) {
-  if (command.outputs.recording.empty()) throw std::invalid_argument("'--record-rosbag2' needs '--record FILE'");
-  if (runs > 1)
-    throw std::invalid_argument(
-        "'--record-rosbag2' cannot be used with several runs, because their recordings share a folder; move each "
-        "recording to its own folder and use 'cohort recordings rosbag2'");
-  check_rosbag2_metadata(command.outputs.recording);
-}
-
-void refuse_what_needs_a_server(const RunCommand& command) {
-  const auto refuse = [](const std::string& option) {
-    throw std::invalid_argument("'" + option + "' cannot be used with '--controllers inprocess'");
-  };
-  if (command.paused) refuse("--paused");
-  if (command.keep_interval > 0.0) refuse("--keep-snapshots");
-  if (command.view) refuse("--view");
-  if (command.ros2) refuse("--ros2");
-}
-
-void refuse_rewind_without_snapshots(const RunCommand& command, const description::Experiment& experiment) {
-  if (command.keep_interval > 0.0) return;
-  for (const description::Team& team : experiment.teams)
-    if (team.policy.on_lost == description::OnLost::rewind)
-      throw description::InputError(
-          {{experiment.file, 0, "team " + team.name,
-            "'on_lost: rewind' requires snapshots; '--keep-snapshots 10' keeps one every 10 s"}});
 }
 
 std::size_t count_of_runs(const RunCommand& command) {
@@ -217,7 +173,7 @@ int end_table(const Runs& runs, int code, Log& log) {
   const RunCommand& command = runs.command;
   if (command.seeds.empty()) return code;
   if (!command.quiet && !runs.rows.empty()) show(seed_table(runs.rows));
-  std::fflush(stdout);
+  flush_output();
   if (command.outputs.csv.empty()) return code;
   try {
     write_file("the table", command.outputs.csv, seed_csv(runs.rows));
@@ -278,13 +234,29 @@ ExperimentPtr experiment_of_run(const Runs& runs, std::size_t number) {
   return session::with_seed(experiment, seeds[(number - 1) / runs.experiments.size() % seeds.size()]);
 }
 
+// Reports a limit of threads and processes. Writes the summary of the run that could not begin for it. Returns the exit
+// code.
+int end_for_thread_limit(const Runs& runs, std::size_t number, const std::exception& error, Log& log) {
+  const RunCommand& command = runs.command;
+  const ExperimentPtr experiment = experiment_of_run(runs, number);
+  const std::filesystem::path summary = outputs_of(command, number, count_of_runs(command)).summary;
+  RunResult result;
+  result.end = RunResult::End::failed;
+  result.error = text_of(error);
+  result.robots = static_cast<std::uint32_t>(experiment->world.robots.size());
+  log.error(result.error);
+  if (!summary.empty()) write_summary(summary, *experiment, result, cpu_seconds() - runs.cpu_before);
+  return exit_failed;
+}
+
 // Runs all experiments in order, until one does not finish. Returns the exit code.
 int run_each(Runs& runs, Log& log, const std::atomic<bool>& stop) {
   const std::size_t count = count_of_runs(runs.command);
   int code = exit_ok;
+  std::size_t number = 1;
   try {
     bool goes_on = true;
-    for (std::size_t number = 1; number <= count && code == exit_ok && goes_on; ++number) {
+    for (; number <= count && code == exit_ok && goes_on; ++number) {
       const ExperimentPtr experiment = experiment_of_run(runs, number);
       if (count > 1 && runs.command.seeds.empty())
         log.notice(fmt::format("run {} of {}: {}, seed {}", number, count, experiment->name, experiment->seed));
@@ -294,6 +266,7 @@ int run_each(Runs& runs, Log& log, const std::atomic<bool>& stop) {
       code = run_one(runs, number, count, std::move(world), log, stop, goes_on);
     }
   } catch (const std::exception& error) {
+    if (is_thread_limit(error)) return end_for_thread_limit(runs, number, error, log);
     log.error(text_of(error));
     return exit_failed;
   }
@@ -311,7 +284,37 @@ Snapshot snapshot_of(RunCommand& command) {
   return snapshot;
 }
 
-// `again` receives the command line that repeats the run if the page of its view asks for that.
+// Runs experiments that have been read. `again` receives the command line that repeats the run if the page of its view
+// asks for that.
+int run_read(Runs& runs, Log& log, const std::atomic<bool>& stop, std::vector<std::string>& again) {
+  const RunCommand& command = runs.command;
+  const std::size_t count = count_of_runs(command);
+  const bool in_process = command.controllers == Controllers::in_process;
+  const description::Experiment& first = *runs.experiments.front();
+  std::optional<ControllerEnds> ends_on_trial(std::in_place, log, ControllerEnds::Options{exit_usage, true});
+  if (command.controllers != Controllers::external) runs.controllers = load_controllers(first);
+  runs.first = build_world(command, runs.experiments.front(), runs.from, log);
+  if (command.controllers != Controllers::external) try_controllers(first, *runs.first.simulation, runs.controllers);
+  ends_on_trial.reset();
+  if (!command.is_part) warn_if_not_portable(log);
+  if (!command.seeds.empty())
+    if (const unsigned jobs = jobs_for(command, first, count); jobs > 1) {
+      runs.controllers.clear();
+      runs.first = {};
+      const int code = run_side_by_side(command, first, jobs, log, stop,
+                                        [&](SeedRow row) { add_row(runs, std::move(row), count, log); });
+      return end_table(runs, code, log);
+    }
+
+  if (!in_process) runs.serving.emplace(command, first, log);
+  if (runs.serving && command.view) runs.serving->start_view(first, outputs_of(command, count, count).recording, stop);
+  if (runs.serving) runs.serving->start_controllers(first, runs.controllers);
+  const int code = end_table(runs, run_each(runs, log, stop), log);
+  if (runs.serving && !stop) runs.serving->let_look(stop);
+  if (runs.serving && !stop) again = runs.serving->command_line_to_run_again();
+  return code;
+}
+
 int run(RunCommand command, Log& log, const std::atomic<bool>& stop, std::vector<std::string>& again) {
   Runs runs{command};
   if (command.jobs > 0 && command.seeds.empty()) throw std::invalid_argument("'--jobs' needs '--seeds'");
@@ -334,30 +337,13 @@ int run(RunCommand command, Log& log, const std::atomic<bool>& stop, std::vector
     if (!in_process) refuse_rewind_without_snapshots(command, *runs.experiments.back());
     if (runs.from) session::expect_same_experiment(*runs.from, *runs.experiments.back());
   }
-  const description::Experiment& first = *runs.experiments.front();
-  if (in_process) refuse_keyboard(first);
-  std::optional<ControllerEnds> ends_on_trial(std::in_place, log, ControllerEnds::Options{exit_usage, true});
-  if (command.controllers != Controllers::external) runs.controllers = load_controllers(first);
-  runs.first = build_world(command, runs.experiments.front(), runs.from, log);
-  if (command.controllers != Controllers::external) try_controllers(first, *runs.first.simulation, runs.controllers);
-  ends_on_trial.reset();
-  if (!command.is_part) warn_if_not_portable(log);
-  if (!command.seeds.empty())
-    if (const unsigned jobs = jobs_for(command, first, count); jobs > 1) {
-      runs.controllers.clear();
-      runs.first = {};
-      const int code = run_side_by_side(command, first, jobs, log, stop,
-                                        [&](SeedRow row) { add_row(runs, std::move(row), count, log); });
-      return end_table(runs, code, log);
-    }
-
-  if (!in_process) runs.serving.emplace(command, first, log);
-  if (runs.serving && command.view) runs.serving->start_view(first, outputs_of(command, count, count).recording);
-  if (runs.serving) runs.serving->start_controllers(first, runs.controllers);
-  const int code = end_table(runs, run_each(runs, log, stop), log);
-  if (runs.serving && !stop) runs.serving->let_look(stop);
-  if (runs.serving && !stop) again = runs.serving->command_line_to_run_again();
-  return code;
+  if (in_process) refuse_keyboard(*runs.experiments.front());
+  try {
+    return run_read(runs, log, stop, again);
+  } catch (const std::exception& error) {
+    if (!is_thread_limit(error)) throw;
+    return end_for_thread_limit(runs, 1, error, log);
+  }
 }
 
 // Replaces this process by the program with a command line.

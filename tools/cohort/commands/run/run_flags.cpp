@@ -34,7 +34,7 @@ void add_run_options(CommandLine line, RunCommand& command, LogFlags& flags) {
       .type_name("N");
   line.add_option("--duration", command.duration,
                   "Duration of the run, in simulated seconds (default: the experiment's duration)")
-      .check(number_above_zero(most_seconds))
+      .check(number_above_zero(most_seconds, "seconds"))
       .type_name("S");
   const Option seed = line.add_option("--seed", command.seed, "Seed (default: the experiment's seed)")
                           .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
@@ -85,7 +85,7 @@ void add_run_options(CommandLine line, RunCommand& command, LogFlags& flags) {
   line.add_option(
           "--keep-snapshots", command.keep_interval,
           "Simulated time between snapshots that are kept in memory for 'cohort ctl back', in seconds (default: none)")
-      .check(number_above_zero(most_seconds))
+      .check(number_above_zero(most_seconds, "seconds"))
       .type_name("S");
   line.add_option("--from", command.from, "Continue from this snapshot, a file that 'cohort ctl save' wrote")
       .excludes(seeds)

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <ctime>
-#include <iostream>
 
 #include "client_sdk/src/attachment.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/security/certificates.hpp"
 
@@ -93,13 +93,13 @@ void initialise(const SecurityCommand& command) {
     if (is_new) fs::remove(folder);
     throw;
   }
-  std::cout << fmt::format(
+  show(fmt::format(
       "created {0}. {0}/server belongs to the server: cohort serve … --secure {0}\n"
       "Each folder in {0}/clients belongs to one client: copy the whole folder to that client's machine only:\n",
-      folder.string());
+      folder.string()));
   for (const NewIdentity& identity : identities)
-    std::cout << fmt::format("  --secure {}  {}\n", client_folder(folder, identity.name).string(),
-                             "may " + rights_of(identity.robots, identity.may_control));
+    show(fmt::format("  --secure {}  {}\n", client_folder(folder, identity.name).string(),
+                     "may " + rights_of(identity.robots, identity.may_control)));
 }
 
 void add(const SecurityCommand& command) {
@@ -124,24 +124,23 @@ void add(const SecurityCommand& command) {
   const fs::path client = client_folder(command.folder, identity.name);
   if (fs::exists(client)) throw std::invalid_argument(fmt::format("{} already exists", client.string()));
   make_identity(identity, server_folder(command.folder, identity.name), client, command.days);
-  std::cout << fmt::format("created {}: it may {}. Restart the server with this folder to accept it.\n",
-                           client.string(), rights_of(identity.robots, identity.may_control));
+  show(fmt::format("created {}: it may {}. Restart the server with this folder to accept it.\n", client.string(),
+                   rights_of(identity.robots, identity.may_control)));
 }
 
 void list(const SecurityCommand& command) {
   const std::vector<wire::Identity> existing = wire::read_server_identities(command.folder);
-  std::cout << fmt::format("{:<20} {:<12} {:<11} {:<16} {}\n", "client", "participant", "messages", "valid until",
-                           "may drive");
+  show(
+      fmt::format("{:<20} {:<12} {:<11} {:<16} {}\n", "client", "participant", "messages", "valid until", "may drive"));
   for (const wire::Identity& each : existing) {
     const std::int64_t end = validity_of(each.folder / wire::certificate_file).end;
     const std::string until = fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(end)));
     const bool is_over = end < std::time(nullptr);
-    std::cout << fmt::format("{:<20} {:<12} {:<11} {:<16} {}{}\n", each.name, each.participant,
-                             each.protection == "encrypt" ? "encrypted" : "signed", until,
-                             each.robots.empty()
-                                 ? each.may_control ? "nothing; controls the run" : "nothing; observes only"
-                                 : joined(each.robots) + (each.may_control ? "; controls the run" : ""),
-                             is_over ? "   EXPIRED" : "");
+    show(fmt::format("{:<20} {:<12} {:<11} {:<16} {}{}\n", each.name, each.participant,
+                     each.protection == "encrypt" ? "encrypted" : "signed", until,
+                     each.robots.empty() ? each.may_control ? "nothing; controls the run" : "nothing; observes only"
+                                         : joined(each.robots) + (each.may_control ? "; controls the run" : ""),
+                     is_over ? "   EXPIRED" : ""));
   }
 }
 

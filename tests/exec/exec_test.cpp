@@ -73,6 +73,31 @@ TEST(Exec, LeavesTheRunItsBitsAndEndsWithItsProgram) {
   EXPECT_EQ(run.finish()["state_hash"], reference(field));
 }
 
+TEST(Exec, SaysThatTheRunHadBegunBeforeItsProgram) {
+  const FieldOfRobots field(2, 1e4);
+  ControlledRun run(field);
+  ASSERT_TRUE(run.comes_to([](const nlohmann::json& status) { return status["tick"] > 100; }));
+  Process program(exec(run.domain(), {"true"}));
+  EXPECT_EQ(program.wait_for_exit(), 0);
+  EXPECT_NE(program.output().find("warning: the run was already at "), std::string::npos) << program.output();
+  EXPECT_NE(program.output().find(" s when 'true' began."), std::string::npos) << program.output();
+  run.ctl({"quit"});
+}
+
+TEST(Exec, WritesAFileOnceItHoldsTheRunsFirstTick) {
+  const FieldOfRobots field(2, 2.0);
+  const ScratchFolder folder;
+  const std::string ready = (folder / "ready").string();
+  ControlledRun run(field, {}, false);
+  Process program(
+      exec(run.domain(), {"python3", "-c", "import time; print('begins at', time.monotonic())"}, {"--ready", ready}));
+  ASSERT_TRUE(eventually([&] { return read_file(ready) == "holds the run at tick 0\n"; })) << program.output();
+  run.attach();
+  EXPECT_EQ(program.wait_for_exit(), 0) << program.output();
+  EXPECT_EQ(program.output(), "begins at 0.0\n");
+  EXPECT_EQ(run.finish()["state_hash"], reference(field));
+}
+
 TEST(Exec, EndsAProgramWhoseRunIsOver) {
   const FieldOfRobots field(2, 1.0);
   ControlledRun run(field, {}, false);

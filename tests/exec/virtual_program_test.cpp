@@ -4,37 +4,10 @@
 
 #include <fstream>
 
-#include "tests/support/files.hpp"
-#include "tests/support/process.hpp"
+#include "tests/exec/virtual_run.hpp"
 
 namespace cohort::test {
 namespace {
-
-using exec::VirtualProgram;
-
-// Runs a program through so much of its time, and returns what it wrote to its standard output.
-struct Ran {
-  std::string output;
-  std::optional<int> exit_code;
-  std::chrono::nanoseconds time;
-  std::vector<std::string> told;
-};
-Ran run(const std::vector<std::string>& command, std::chrono::nanoseconds at_most = 100s) {
-  const ScratchFolder folder;
-  Ran ran;
-  VirtualProgram::Options options;
-  options.command = {"sh", "-c", "exec \"$@\" > output", "sh"};
-  options.command.insert(options.command.end(), command.begin(), command.end());
-  options.folder = folder.path();
-  options.tell = [&](const std::string& text) { ran.told.push_back(text); };
-  VirtualProgram program(options);
-  while (program.time() < at_most && program.run_now() && program.run_before(program.time() + 10ms)) {
-  }
-  ran.exit_code = program.exit_code();
-  ran.time = program.time();
-  ran.output = read_file(folder / "output");
-  return ran;
-}
 
 std::string why_not(const std::vector<std::string>& command) {
   try {
@@ -196,9 +169,48 @@ TEST(VirtualProgram, NamesWhatRunsInRealTimeOrNeverWaits) {
   VirtualProgram other(options);
   while (told.empty() && std::chrono::steady_clock::now() - begin < patience) other.settle();
   ASSERT_FALSE(told.empty());
-  EXPECT_NE(told.front().find("runs in real time: it does not load the library that replaces its clocks"),
+  EXPECT_NE(told.front().find("runs in real time: it is linked statically"), std::string::npos) << told.front();
+}
+
+std::vector<std::string> told_of_a_child(const std::vector<std::string>& command) {
+  std::vector<std::string> told;
+  VirtualProgram::Options options;
+  options.command = command;
+  options.tell = [&](const std::string& text) { told.push_back(text); };
+  const auto begin = std::chrono::steady_clock::now();
+  options.given_up = [&] { return std::chrono::steady_clock::now() - begin > patience; };
+  VirtualProgram program(options);
+  while (told.empty() && std::chrono::steady_clock::now() - begin < patience && program.run_now() &&
+         program.run_before(program.time() + 10ms)) {
+  }
+  return told;
+}
+
+// A shell starts a program by fork or by vfork, or becomes it. None of them may say that the library is still in it.
+TEST(VirtualProgram, NamesAProgramWithoutTheLibraryHoweverAScriptStartsIt) {
+  const std::string program = COHORT_BUILD_DIR "/bin/wait_statically";
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"bash", "-c", program + "; true"},
+           {"bash", "-c", program},
+           {"sh", "-c", "(" + program + "); true"},
+           {"sh", "-c", "(sleep 0.01; exec " + program + ") & wait"},
+           {"python3", "-c", "import os\nif os.fork() == 0: os.execv('" + program + "', ['x'])\nos.wait()"}}) {
+    const std::vector<std::string> told = told_of_a_child(command);
+    ASSERT_EQ(told.size(), 1u) << command[2];
+    EXPECT_NE(told[0].find("('" + program + "')"), std::string::npos) << told[0];
+    EXPECT_NE(told[0].find("runs in real time: it is linked statically"), std::string::npos) << told[0];
+  }
+}
+
+// With cgo, which packages for names and networks use, a Go program is linked dynamically and loads the library.
+TEST(VirtualProgram, NamesAGoProgramThatLoadsTheLibraryButDoesNotCallIt) {
+  const std::string program = COHORT_BUILD_DIR "/bin/wait_like_go";
+  const std::vector<std::string> told = told_of_a_child({"sh", "-c", program + "; true"});
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_NE(told[0].find("('" + program + "')"), std::string::npos) << told[0];
+  EXPECT_NE(told[0].find("runs in real time: it is a Go program, which makes system calls without the C library"),
             std::string::npos)
-      << told.front();
+      << told[0];
 }
 
 }  // namespace

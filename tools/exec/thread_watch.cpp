@@ -186,6 +186,17 @@ bool ThreadWatch::all_wait() {
   return !has_changed_;
 }
 
+// The first number of schedstat.
+std::chrono::nanoseconds ThreadWatch::processor_time() const {
+  std::int64_t all = 0;
+  for (const auto& [id, thread] : threads_) {
+    std::int64_t one = 0;
+    if (thread.schedstat >= 0) std::from_chars(thread.ran.data(), thread.ran.data() + thread.ran.size(), one);
+    all += one;
+  }
+  return std::chrono::nanoseconds(all);
+}
+
 std::vector<pid_t> ThreadWatch::children() {
   std::vector<pid_t> all;
   for (const auto& [id, thread] : threads_) {

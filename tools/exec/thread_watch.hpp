@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -24,6 +25,8 @@ class ThreadWatch {
   bool all_wait();
   /// Returns whether a thread has ended since look_at, so that it has to be called again.
   bool has_changed() const { return has_changed_; }
+  /// Returns the processor time that the threads which all_wait has seen have used, as far as the kernel tells.
+  std::chrono::nanoseconds processor_time() const;
   /// Returns how many processes it looks at.
   std::size_t process_count() const { return processes_; }
 

@@ -1,9 +1,6 @@
 #include "tools/exec/virtual_program.hpp"
 
-#include <fcntl.h>
 #include <linux/futex.h>
-#include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,16 +9,17 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
-#include <new>
+#include <mutex>
 #include <set>
+#include <span>
 #include <stdexcept>
-#include <system_error>
 #include <thread>
 #include <utility>
 
 #include "tools/exec/clock_page.hpp"
-#include "tools/exec/preload_library.hpp"
 #include "tools/exec/program_file.hpp"
+#include "tools/exec/program_start.hpp"
+#include "tools/exec/real_time_reports.hpp"
 #include "tools/exec/thread_watch.hpp"
 
 namespace cohort::exec {
@@ -46,109 +44,21 @@ void wake(std::atomic<std::uint32_t>& word) {
   ::syscall(SYS_futex, &word, FUTEX_WAKE, 0x7fffffff, nullptr, nullptr, 0);
 }
 
-std::string system_text(const std::string& what) { return what + ": " + std::generic_category().message(errno); }
-
-// A file in memory that this process and the program map.
-class PageFile {
- public:
-  PageFile() {
-    std::string name = "/dev/shm/cohort-exec-XXXXXX";
-    const int file = ::mkostemp(name.data(), O_CLOEXEC);
-    if (file < 0) throw std::runtime_error(system_text("cannot create a file in /dev/shm"));
-    path_ = name;
-    if (::ftruncate(file, sizeof(ClockPage)) == 0)
-      memory_ = ::mmap(nullptr, sizeof(ClockPage), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-    ::close(file);
-    if (memory_ == nullptr || memory_ == MAP_FAILED) {
-      ::unlink(path_.c_str());
-      throw std::runtime_error(system_text("cannot map a file in /dev/shm"));
-    }
-    ::new (memory_) ClockPage;
-  }
-  PageFile(const PageFile&) = delete;
-  PageFile& operator=(const PageFile&) = delete;
-  ~PageFile() {
-    ::munmap(memory_, sizeof(ClockPage));
-    ::unlink(path_.c_str());
-  }
-  const std::string& path() const { return path_; }
-  ClockPage& page() { return *static_cast<ClockPage*>(memory_); }
-
- private:
-  std::string path_;
-  void* memory_ = nullptr;
-};
+VirtualProgram::Options named(VirtualProgram::Options options) {
+  if (options.name.empty()) options.name = options.command.front();
+  return options;
+}
 
 }  // namespace
 
 struct VirtualProgram::State {
-  explicit State(Options given) : options(std::move(given)), page(file.page()) {
-    if (options.name.empty()) options.name = options.command.front();
+  explicit State(Options given) : options(named(std::move(given))), page(file.page()), reports(page, options.name) {
     const std::filesystem::path program = file_of_command(options.command.front());
     if (const std::string why = why_not_virtual(program); !why.empty())
       throw std::runtime_error("'" + options.name + "' cannot run in virtual time: " + why);
     page.now = options.start.count();
     page.date = options.date.count();
-    start(program);
-  }
-
-  void start(const std::filesystem::path& program) {
-    const std::filesystem::path library = preload_library();
-    std::vector<std::string> environment;
-    std::string preload = library.string();
-    for (char** each = environ; *each != nullptr; ++each) {
-      const std::string variable = *each;
-      if (variable.starts_with("LD_PRELOAD="))
-        preload += ":" + variable.substr(variable.find('=') + 1);
-      else
-        environment.push_back(variable);
-    }
-    environment.insert(environment.end(), options.environment.begin(), options.environment.end());
-    environment.push_back("LD_PRELOAD=" + preload);
-    environment.push_back(std::string(page_variable) + "=" + file.path());
-    const auto pointers = [](std::vector<std::string>& texts) {
-      std::vector<char*> all;
-      for (std::string& text : texts) all.push_back(text.data());
-      all.push_back(nullptr);
-      return all;
-    };
-    const std::vector<char*> arguments = pointers(options.command);
-    const std::vector<char*> variables = pointers(environment);
-    int problem[2];
-    if (::pipe2(problem, O_CLOEXEC) != 0) throw std::runtime_error(system_text("cannot create a pipe"));
-    const pid_t parent = ::getpid();
-    process = ::fork();
-    if (process == 0) {
-      const char* what = "cannot start it";
-      const auto fail = [&] {
-        const int error = errno;
-        (void)(::write(problem[1], &error, sizeof error) + ::write(problem[1], what, std::strlen(what)));
-        ::_exit(127);
-      };
-      if (options.prepare && !options.prepare()) {
-        what = "cannot prepare its process";
-        fail();
-      }
-      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-      if (::getppid() != parent) ::_exit(127);
-      if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) {
-        what = "cannot change to its folder";
-        fail();
-      }
-      ::execve(program.c_str(), arguments.data(), variables.data());
-      fail();
-    }
-    ::close(problem[1]);
-    int error = 0;
-    if (process > 0 && ::read(problem[0], &error, sizeof error) == static_cast<ssize_t>(sizeof error)) {
-      std::string what(100, '\0');
-      what.resize(static_cast<std::size_t>(std::max<ssize_t>(::read(problem[0], what.data(), what.size()), 0)));
-      ::close(problem[0]);
-      ::waitpid(process, nullptr, 0);
-      throw std::runtime_error("'" + options.name + "': " + what + ": " + std::generic_category().message(error));
-    }
-    ::close(problem[0]);
-    if (process < 0) throw std::runtime_error(system_text("cannot start a process"));
+    process = start_program(options, program, file.path());
     enter(process);
   }
 
@@ -166,12 +76,14 @@ struct VirtualProgram::State {
     if (status) return true;
     int how = 0;
     if (::waitpid(process, &how, WNOHANG) != process) return false;
+    tell_all(reports.new_calls(process));
     status = WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
     return true;
   }
 
   // Processes that have ended are forgotten, with their waits.
   std::vector<pid_t> living_processes() {
+    reports.note_calls();
     std::vector<pid_t> living;
     for (Process& each : page.processes) {
       const std::int32_t id = each.id;
@@ -184,6 +96,8 @@ struct VirtualProgram::State {
         if (wait.process == id) wait.process = 0;
       each.id = 0;
       each.has_started = 0;
+      each.real_calls = 0;
+      reports.forget(id);
     }
     return living;
   }
@@ -200,6 +114,7 @@ struct VirtualProgram::State {
     if (threads != listed_threads || watch.has_changed() || ++looks >= looks_between_lists) {
       looks = 0;
       listed_threads = threads;
+      may_have_new_images = true;
       watch.look_at(living_processes());
     }
     if (!watch.all_wait()) return false;
@@ -215,43 +130,111 @@ struct VirtualProgram::State {
   }
 
   bool settle() {
-    const Clock::time_point begin = Clock::now();
+    page.host_looks = 1;
+    bool runs = find_rest();
+    page.host_looks = 0;
+    // A thread may have become ready before that was set.
+    while (runs && has_ready()) {
+      page.host_looks = 1;
+      runs = find_rest();
+      page.host_looks = 0;
+    }
+    return runs;
+  }
+
+  bool find_rest() {
+    Clock::time_point begin = Clock::now();
     Clock::time_point ask_at = begin + given_up_is_asked_every;
+    std::chrono::nanoseconds ran = watch.processor_time();
     for (;;) {
       const std::uint32_t seen = page.changes;
-      if (is_at_rest()) {
+      const bool rests = is_at_rest();
+      if (rests) page.no_turns = 0;
+      if (rests && !give_turn()) {
         has_settled = true;
         check_now_and_then();
         return !has_ended();
       }
       if (has_ended()) return false;
-      page.host_waits = 1;
       const Clock::time_point now = Clock::now();
-      wait_on(page.changes, seen,
-              std::min<Clock::duration>(longest_nap, std::max<Clock::duration>((now - begin) / 4, 20us)));
-      page.host_waits = 0;
+      if (rests) {
+        begin = now;
+        ran = watch.processor_time();
+      }
+      nap(seen, now - begin);
       if (now < ask_at) continue;
       ask_at = now + given_up_is_asked_every;
       find_children(process);
+      tell_all(reports.new_calls(process));
       if (options.given_up && options.given_up()) return false;
+      if (page.no_turns == 0 && watch.processor_time() - ran > busy_is_told_after) release_turns();
       if (now - begin > busy_is_told_after && !std::exchange(has_told_busy, true)) tell_busy();
     }
   }
 
-  // Reports threads and processes whose clock is not the library's, once each.
+  void nap(std::uint32_t seen, Clock::duration since_begin) {
+    page.host_waits = 1;
+    wait_on(page.changes, seen,
+            std::min<Clock::duration>(longest_nap, std::max<Clock::duration>(since_begin / 4, 20us)));
+    page.host_waits = 0;
+  }
+
+  // Lets one of the threads go on that wait for their turn, by the order in which they were created. Each goes on once
+  // before another one does so twice.
+  bool give_turn() {
+    Wait* next = nullptr;
+    bool has_any = false;
+    for (Wait& wait : used_waits()) {
+      if (wait.process == 0 || wait.kind != WaitKind::turn || wait.is_ready == 0 || wait.wake != 0) continue;
+      has_any = true;
+      if (!had_turns.contains(&wait) && (next == nullptr || wait.order < next->order)) next = &wait;
+    }
+    if (next == nullptr) had_turns.clear();
+    if (!has_any) return false;
+    if (next == nullptr) return give_turn();
+    had_turns.insert(next);
+    end_wait(*next);
+    return true;
+  }
+
+  bool has_ready() {
+    return std::ranges::any_of(used_waits(), [](const Wait& wait) {
+      return wait.process != 0 && wait.kind == WaitKind::turn && wait.is_ready != 0 && wait.wake == 0;
+    });
+  }
+
+  // While no function of this class is being called, something else may wake its threads, such as a message.
+  void attend(const std::stop_token& stop) {
+    const std::stop_callback end(stop, [this] {
+      page.ready.fetch_add(1);
+      exec::wake(page.ready);
+    });
+    while (!stop.stop_requested() && page.is_real == 0) {
+      const std::uint32_t seen = page.ready;
+      const bool is_ready = has_ready();
+      if (is_ready) {
+        const std::lock_guard lock(mutex);
+        if (is_at_rest()) give_turn();
+      }
+      wait_on(page.ready, seen, is_ready ? Clock::duration(longest_nap) : Clock::duration(given_up_is_asked_every));
+    }
+  }
+
   void check_now_and_then() {
+    tell_all(reports.new_calls(process));
     const Clock::time_point now = Clock::now();
-    if (now < check_at) return;
+    const bool is_time = now >= check_at;
+    if (!is_time && !may_have_new_images) return;
+    may_have_new_images = false;
+    tell_all(reports.new_programs(living_processes()));
+    if (!is_time) return;
     check_at = now + check_interval;
     find_children(process);
-    for (const Process& each : page.processes)
-      if (each.id != 0 && each.has_started == 0 && told.insert(each.id).second && ::kill(each.id, 0) == 0)
-        tell("process " + std::to_string(each.id) + ", which '" + options.name +
-             "' has started, runs in real time: it does not load the library that replaces its clocks");
-    for (const ThreadWatch::SystemCall& call : watch.system_calls())
-      if ((call.number == SYS_nanosleep || call.number == SYS_clock_nanosleep) && told.insert(call.thread).second)
-        tell("thread " + std::to_string(call.thread) + " of '" + options.name +
-             "' sleeps in real time: it makes system calls without the C library, or is a thread of DDS");
+    tell_all(reports.new_sleepers(watch));
+  }
+
+  void tell_all(const std::vector<std::string>& texts) const {
+    for (const std::string& text : texts) tell(text);
   }
 
   void tell(const std::string& text) const {
@@ -265,12 +248,31 @@ struct VirtualProgram::State {
          (busy.empty() ? "its threads wake each other" : busy));
   }
 
+  // A thread of the Python interpreter may wait for another one without a call that waits. Until all are at rest again,
+  // the interpreter switches between them by the real time.
+  void release_turns() {
+    page.no_turns = 1;
+    bool has_any = false;
+    for (Wait& wait : used_waits()) {
+      if (wait.process == 0 || wait.kind != WaitKind::turn) continue;
+      has_any = true;
+      wait.wake = 1;
+      exec::wake(wait.wake);
+    }
+    if (has_any && !std::exchange(has_told_turns, true))
+      tell("a Python thread of '" + options.name +
+           "' has computed for 5 s while others wait for it: until all of them wait, they take turns by real time, so "
+           "that results may differ from run to run");
+  }
+
+  std::span<Wait> used_waits() {
+    return std::span(page.waits).first(std::min<std::size_t>(page.waits_used, most_waits));
+  }
+
   // The wait that ends first, at `limit` at the latest; nullptr if none does.
   Wait* first_wait(std::int64_t limit) {
     Wait* first = nullptr;
-    const std::uint32_t used = std::min<std::uint32_t>(page.waits_used, most_waits);
-    for (std::uint32_t i = 0; i < used; ++i) {
-      Wait& wait = page.waits[i];
+    for (Wait& wait : used_waits()) {
       if (wait.process == 0 || wait.kind == WaitKind::none || wait.wake != 0) continue;
       const std::int64_t deadline = wait.deadline;
       if (deadline == never || deadline > limit) continue;
@@ -282,9 +284,12 @@ struct VirtualProgram::State {
   }
 
   void end_wait(Wait& wait) {
-    wait.wake = 1;
-    if (wait.kind == WaitKind::sleep) return exec::wake(wait.wake);
     const std::int32_t id = wait.process;
+    if (wait.thread != 0)
+      for (Process& each : page.processes)
+        if (each.id == id) each.turn = wait.thread.load();
+    wait.wake = 1;
+    if (wait.kind != WaitKind::helper) return exec::wake(wait.wake);
     for (Process& each : page.processes) {
       if (each.id != id) continue;
       each.attention.fetch_add(1);
@@ -311,36 +316,50 @@ struct VirtualProgram::State {
   Options options;
   PageFile file;
   ClockPage& page;
+  RealTimeReports reports;
   pid_t process = -1;
   std::optional<int> status{};
   ThreadWatch watch;
   std::uint32_t listed_threads = ~std::uint32_t{0};
   int looks = 0;
   bool has_told_busy = false;
-  bool has_settled = false;  // once
+  bool has_told_turns = false;
+  std::set<const Wait*> had_turns{};  // since the last one had its turn
+  bool has_settled = false;           // once
   Clock::time_point check_at = Clock::now() + check_interval;
-  std::set<pid_t> told{};  // processes and threads
+  bool may_have_new_images = false;
+  std::mutex mutex;        // but for the page
+  std::jthread attendant;  // the last, so that it ends first
 };
 
-VirtualProgram::VirtualProgram(Options options) : state_(std::make_unique<State>(std::move(options))) {}
+VirtualProgram::VirtualProgram(Options options) : state_(std::make_unique<State>(std::move(options))) {
+  state_->attendant = std::jthread([this](const std::stop_token& stop) { state_->attend(stop); });
+}
 VirtualProgram::~VirtualProgram() {
-  if (!state_->has_ended()) end();
+  if (!exit_code()) end();
 }
 
 VirtualProgram::Time VirtualProgram::time() const { return Time(state_->page.now); }
 
 std::uint32_t VirtualProgram::ros_nodes() const { return state_->page.ros_nodes; }
 
-bool VirtualProgram::settle() { return state_->settle(); }
+bool VirtualProgram::settle() {
+  const std::lock_guard lock(state_->mutex);
+  return state_->settle();
+}
 
 bool VirtualProgram::run_before(Time time) {
+  const std::lock_guard lock(state_->mutex);
   if (!state_->has_settled && !state_->settle()) return false;
   if (!state_->end_waits(time.count() - 1)) return false;
   state_->page.now = std::max<std::int64_t>(state_->page.now, time.count());
   return true;
 }
 
-bool VirtualProgram::run_now() { return state_->settle() && state_->end_waits(state_->page.now); }
+bool VirtualProgram::run_now() {
+  const std::lock_guard lock(state_->mutex);
+  return state_->settle() && state_->end_waits(state_->page.now);
+}
 
 std::optional<VirtualProgram::Time> VirtualProgram::next_end() const {
   const Wait* const wait = state_->first_wait(never);
@@ -348,11 +367,15 @@ std::optional<VirtualProgram::Time> VirtualProgram::next_end() const {
 }
 
 bool VirtualProgram::end_next_wait() {
+  const std::lock_guard lock(state_->mutex);
   if (Wait* const wait = state_->first_wait(never)) state_->end_wait(*wait);
   return state_->settle();
 }
 
-std::optional<int> VirtualProgram::exit_code() { return state_->has_ended() ? state_->status : std::nullopt; }
+std::optional<int> VirtualProgram::exit_code() {
+  const std::lock_guard lock(state_->mutex);
+  return state_->has_ended() ? state_->status : std::nullopt;
+}
 
 void VirtualProgram::go_on_in_real_time() {
   ClockPage& page = state_->page;
@@ -365,6 +388,7 @@ void VirtualProgram::go_on_in_real_time() {
 
 int VirtualProgram::end(std::chrono::milliseconds at_most) {
   go_on_in_real_time();
+  const std::lock_guard lock(state_->mutex);
   if (state_->has_ended()) return *state_->status;
   state_->find_children(state_->process);
   // Threads that now begin to sleep in real time are to be in it when the signal comes.

@@ -2,6 +2,8 @@
 
 #include <cohort/control.hpp>
 #include <condition_variable>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -30,6 +32,7 @@ struct ExecCommand {
   Connection connection{};
   double date = 0.0;
   std::uint64_t period = 1;  // [ticks]
+  std::filesystem::path ready{};
 };
 
 /// Requests for the time of a later tick, made on a separate thread.
@@ -121,6 +124,12 @@ class TimedRun {
     step_ = status.step * command_.period;
     run_ = status.run;
     start(status.time);
+    if (status.tick > 0)
+      log_.warning(
+          fmt::format("the run was already at {:.6g} s when '{}' began. Start 'cohort exec' before the programs "
+                      "that drive robots; '--ready FILE' says when it holds the run",
+                      seconds(status.time), command_.program.front()));
+    tell_ready(status);
     TimeRequests requests(control_, command_.period, ends_);
     try {
       return drive(requests);
@@ -142,6 +151,14 @@ class TimedRun {
     options.given_up = [this] { return stop_.load(); };
     options.tell = [this](const std::string& text) { log_.warning(text); };
     program_.emplace(std::move(options));
+  }
+
+  // A script that waits for the file may then start what begins the run.
+  void tell_ready(const SimulationStatus& status) const {
+    if (command_.ready.empty()) return;
+    std::ofstream file(command_.ready);
+    file << "holds the run at tick " << status.tick << std::endl;
+    if (!file) log_.warning(fmt::format("cannot write {}, which '--ready' names", command_.ready.string()));
   }
 
   // Drives the program's clock until the program ends.
@@ -275,6 +292,9 @@ Subcommand add_exec(CommandLine app) {
       .check(whole_number(1, 1'000'000))
       .type_name("TICKS")
       .capture_default_str();
+  line.add_option("--ready", command->ready,
+                  "File or named pipe to write once the run is held at its current tick, for scripts that wait for it")
+      .type_name("FILE");
   add_server_option(line, command->connection.server);
   add_domain_option(line, command->connection.domains, domain_of_server);
   add_secure_option(line, command->connection.secure,

@@ -93,6 +93,8 @@ COHORT_REPLACES int nanosleep(const timespec* time, timespec* left) {
   return fail(EINTR);
 }
 
+COHORT_REPLACES int __nanosleep(const timespec*, timespec*) __attribute__((alias("nanosleep")));
+
 COHORT_REPLACES int clock_nanosleep(clockid_t clock, int flags, const timespec* time, timespec* left) {
   COHORT_NEXT(clock_nanosleep);
   if (is_real(COHORT_CALLER) || !is_virtual(clock)) return real(clock, flags, time, left);

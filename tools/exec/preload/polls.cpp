@@ -6,7 +6,6 @@
 #include <string.h>
 #include <sys/epoll.h>
 #include <sys/select.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include "tools/exec/preload/virtual_clock.hpp"
@@ -19,15 +18,14 @@ namespace {
 
 constexpr std::int64_t millisecond = 1'000'000;
 
-bool is_virtual_for(const void* caller) { return !is_real(caller) && page()->is_real == 0; }
-
 int poll_really(pollfd* polled, nfds_t count, const timespec* time, const sigset_t* mask) {
   COHORT_NEXT(ppoll);
   return real(polled, count, time, mask);
 }
 
-// Polls until a virtual time, 0 for not at all.
-int poll_until(pollfd* polled, nfds_t count, std::int64_t deadline, const sigset_t* mask) {
+}  // namespace
+
+int cohort::exec::poll_until(pollfd* polled, nfds_t count, std::int64_t deadline, const sigset_t* mask) {
   constexpr timespec at_once{};
   const int ready = poll_really(polled, count, &at_once, mask);
   if (ready != 0) return ready;
@@ -49,17 +47,41 @@ int poll_until(pollfd* polled, nfds_t count, std::int64_t deadline, const sigset
   return result - (all[count].revents != 0 ? 1 : 0);
 }
 
-}  // namespace
+namespace {
 
-COHORT_REPLACES int poll(pollfd* polled, nfds_t count, int time) {
+int poll_for(const void* caller, pollfd* polled, nfds_t count, int time) {
   COHORT_NEXT(poll);
-  if (time < 0 || !is_virtual_for(COHORT_CALLER)) return real(polled, count, time);
+  if (time < 0 || !is_virtual_for(caller)) return real(polled, count, time);
   return poll_until(polled, count, time == 0 ? 0 : later(now(), time * millisecond), nullptr);
 }
 
-COHORT_REPLACES int ppoll(pollfd* polled, nfds_t count, const timespec* time, const sigset_t* mask) {
-  if (time == nullptr || !is_virtual_for(COHORT_CALLER)) return poll_really(polled, count, time, mask);
+int ppoll_for(const void* caller, pollfd* polled, nfds_t count, const timespec* time, const sigset_t* mask) {
+  if (time == nullptr || !is_virtual_for(caller)) return poll_really(polled, count, time, mask);
   return poll_until(polled, count, nanoseconds(*time) == 0 ? 0 : later(now(), nanoseconds(*time)), mask);
+}
+
+}  // namespace
+
+COHORT_REPLACES int poll(pollfd* polled, nfds_t count, int time) {
+  return poll_for(COHORT_CALLER, polled, count, time);
+}
+COHORT_REPLACES int __poll(pollfd*, nfds_t, int) __attribute__((alias("poll")));
+
+COHORT_REPLACES int ppoll(pollfd* polled, nfds_t count, const timespec* time, const sigset_t* mask) {
+  return ppoll_for(COHORT_CALLER, polled, count, time, mask);
+}
+
+// Calls of programs that were compiled with _FORTIFY_SOURCE. If the array is too small, the C library ends the program.
+COHORT_REPLACES int __poll_chk(pollfd* polled, nfds_t count, int time, std::size_t size) {
+  const auto real = next_of<"__poll_chk", int (*)(pollfd*, nfds_t, int, std::size_t)>();
+  if (size / sizeof *polled < count) return real(polled, count, time, size);
+  return poll_for(COHORT_CALLER, polled, count, time);
+}
+COHORT_REPLACES int __ppoll_chk(pollfd* polled, nfds_t count, const timespec* time, const sigset_t* mask,
+                                std::size_t size) {
+  const auto real = next_of<"__ppoll_chk", int (*)(pollfd*, nfds_t, const timespec*, const sigset_t*, std::size_t)>();
+  if (size / sizeof *polled < count) return real(polled, count, time, mask, size);
+  return ppoll_for(COHORT_CALLER, polled, count, time, mask);
 }
 
 namespace {
@@ -110,6 +132,8 @@ COHORT_REPLACES int select(int count, fd_set* reads, fd_set* writes, fd_set* oth
   return result;
 }
 
+COHORT_REPLACES int __select(int, fd_set*, fd_set*, fd_set*, timeval*) __attribute__((alias("select")));
+
 COHORT_REPLACES int pselect(int count, fd_set* reads, fd_set* writes, fd_set* others, const timespec* time,
                             const sigset_t* mask) {
   COHORT_NEXT(pselect);
@@ -153,81 +177,4 @@ COHORT_REPLACES int epoll_pwait2(int queue, epoll_event* events, int most, const
   COHORT_NEXT(epoll_pwait2);
   if (time == nullptr || !is_virtual_for(COHORT_CALLER)) return real(queue, events, most, time, mask);
   return wait_for_events(queue, events, most, nanoseconds(*time) == 0 ? 0 : later(now(), nanoseconds(*time)), mask);
-}
-
-namespace {
-
-// How long a socket waits for what it receives (SO_RCVTIMEO), by descriptor; 0: for ever.
-constexpr int most_descriptors = 4096;
-std::atomic<std::int64_t> receive_times[most_descriptors];
-
-bool has_receive_time(int descriptor) {
-  return page() != nullptr && descriptor >= 0 && descriptor < most_descriptors && receive_times[descriptor] != 0;
-}
-
-// Returns false if nothing came within the socket's time.
-bool await_data(const void* caller, int descriptor) {
-  if (!has_receive_time(descriptor) || !is_virtual_for(caller)) return true;
-  pollfd polled{descriptor, POLLIN, 0};
-  if (poll_until(&polled, 1, later(now(), receive_times[descriptor]), nullptr) > 0) return true;
-  errno = EAGAIN;
-  return false;
-}
-
-// One that finds nothing polls.
-template <class Result>
-Result counted(const void* caller, Result result) {
-  if (result >= 0 || (errno != EAGAIN && errno != EWOULDBLOCK) || !is_virtual_for(caller)) return result;
-  const int error = errno;
-  count_spin();
-  errno = error;
-  return result;
-}
-
-}  // namespace
-
-COHORT_REPLACES int setsockopt(int descriptor, int level, int name, const void* value, socklen_t size) noexcept {
-  COHORT_NEXT(setsockopt);
-  const bool is_time = level == SOL_SOCKET && name == SO_RCVTIMEO && value != nullptr && size >= sizeof(timeval);
-  if (!is_time || descriptor < 0 || descriptor >= most_descriptors || !is_virtual_for(COHORT_CALLER))
-    return real(descriptor, level, name, value, size);
-  receive_times[descriptor] = nanoseconds(*static_cast<const timeval*>(value));
-  return 0;
-}
-
-COHORT_REPLACES int close(int descriptor) {
-  COHORT_NEXT(close);
-  if (descriptor >= 0 && descriptor < most_descriptors) receive_times[descriptor] = 0;
-  return real(descriptor);
-}
-
-COHORT_REPLACES ssize_t read(int descriptor, void* bytes, std::size_t size) {
-  COHORT_NEXT(read);
-  if (!await_data(COHORT_CALLER, descriptor)) return -1;
-  return counted(COHORT_CALLER, real(descriptor, bytes, size));
-}
-
-COHORT_REPLACES ssize_t recv(int descriptor, void* bytes, std::size_t size, int flags) {
-  COHORT_NEXT(recv);
-  if ((flags & MSG_DONTWAIT) == 0 && !await_data(COHORT_CALLER, descriptor)) return -1;
-  return counted(COHORT_CALLER, real(descriptor, bytes, size, flags));
-}
-
-COHORT_REPLACES ssize_t recvfrom(int descriptor, void* bytes, std::size_t size, int flags, sockaddr* from,
-                                 socklen_t* length) {
-  COHORT_NEXT(recvfrom);
-  if ((flags & MSG_DONTWAIT) == 0 && !await_data(COHORT_CALLER, descriptor)) return -1;
-  return counted(COHORT_CALLER, real(descriptor, bytes, size, flags, from, length));
-}
-
-COHORT_REPLACES ssize_t recvmsg(int descriptor, msghdr* message, int flags) {
-  COHORT_NEXT(recvmsg);
-  if ((flags & MSG_DONTWAIT) == 0 && !await_data(COHORT_CALLER, descriptor)) return -1;
-  return counted(COHORT_CALLER, real(descriptor, message, flags));
-}
-
-COHORT_REPLACES int accept(int descriptor, sockaddr* from, socklen_t* length) {
-  COHORT_NEXT(accept);
-  if (!await_data(COHORT_CALLER, descriptor)) return -1;
-  return counted(COHORT_CALLER, real(descriptor, from, length));
 }

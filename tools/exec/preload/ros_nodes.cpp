@@ -1,5 +1,6 @@
 // Nodes of ROS 2: what their executors wait by, and how many there are (rmw/rmw.h).
 
+#include "tools/exec/preload/turns.hpp"
 #include "tools/exec/preload/virtual_clock.hpp"
 
 using namespace cohort::exec;
@@ -15,6 +16,8 @@ COHORT_REPLACES std::int32_t rmw_wait(void* subscriptions, void* guards, void* s
                                       void* set, const RmwTime* limit) {
   using Call = std::int32_t (*)(void*, void*, void*, void*, void*, void*, const RmwTime*);
   static const auto real = next_for<Call>(COHORT_CALLER, "rmw_wait");
+  // Messages that were sent before are received by then, which threads of DDS do in real time.
+  if (page() != nullptr && overridden() == never) wait_for_turn();
   const bool waits = limit != nullptr && (limit->seconds != 0 || limit->nanoseconds != 0);
   if (page() == nullptr || !waits || overridden() != never ||
       limit->seconds > static_cast<std::uint64_t>(never / second) - 1)

@@ -7,13 +7,17 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-#include "tools/exec/preload/virtual_clock.hpp"
+#include "tools/exec/preload/retries.hpp"
+#include "tools/exec/preload/turns.hpp"
 
 using namespace cohort::exec;
+
+#define COHORT_CALLER __builtin_return_address(0)
 
 COHORT_REPLACES int pthread_cond_signal(pthread_cond_t* condition) noexcept {
   COHORT_NEXT_VERSION(pthread_cond_signal, "GLIBC_2.3.2");
   stir();
+  if (is_interpreter(COHORT_CALLER)) before_signal(condition);
   return real(condition);
 }
 
@@ -23,17 +27,28 @@ COHORT_REPLACES int pthread_cond_broadcast(pthread_cond_t* condition) noexcept {
   return real(condition);
 }
 
+COHORT_REPLACES int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
+  COHORT_NEXT(pthread_mutex_lock);
+  if (is_interpreter(COHORT_CALLER)) before_lock(mutex);
+  return real(mutex);
+}
+
 // A mutex with waiting threads has the value 2.
 COHORT_REPLACES int pthread_mutex_unlock(pthread_mutex_t* mutex) noexcept {
   COHORT_NEXT(pthread_mutex_unlock);
   if (mutex->__data.__lock > 1) stir();
-  return real(mutex);
+  if (is_interpreter(COHORT_CALLER)) before_unlock(mutex);
+  const int result = real(mutex);
+  note_release();
+  return result;
 }
 
 COHORT_REPLACES int pthread_rwlock_unlock(pthread_rwlock_t* lock) noexcept {
   COHORT_NEXT(pthread_rwlock_unlock);
   stir();
-  return real(lock);
+  const int result = real(lock);
+  note_release();
+  return result;
 }
 
 COHORT_REPLACES int pthread_barrier_wait(pthread_barrier_t* barrier) noexcept {

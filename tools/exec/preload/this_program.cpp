@@ -32,7 +32,8 @@ std::uint8_t judge(const void* caller) {
   Dl_info here{};
   static int somewhere;
   if (::dladdr(&somewhere, &here) != 0 && here.dli_fbase == there.dli_fbase) what |= 4;
-  if (python != nullptr && ::dladdr(python, &here) != 0 && here.dli_fbase == there.dli_fbase) what |= 8;
+  const bool has_python = python != nullptr && ::dladdr(python, &here) != 0 && here.dli_fbase == there.dli_fbase;
+  if (has_python || begins_with(name, "libpython")) what |= 8;
   return what;
 }
 
@@ -88,6 +89,8 @@ void enter_process() {
     return;
   }
   this_process->has_started = 1;
+  this_process->real_calls = 0;
+  this_process->turn = 0;
   the_page->threads.fetch_add(1);
 }
 
@@ -96,6 +99,7 @@ ClockPage* page() { return the_page; }
 bool is_real(const void* caller) {
   return the_page == nullptr || self.uses_real_time > 0 || (verdict_on(caller) & 6U) != 0;
 }
+bool is_virtual_for(const void* caller) { return !is_real(caller) && the_page->is_real == 0; }
 bool is_dds(const void* caller) { return the_page != nullptr && (verdict_on(caller) & 2U) != 0; }
 bool is_interpreter(const void* caller) { return the_page != nullptr && (verdict_on(caller) & 8U) != 0; }
 
@@ -125,6 +129,15 @@ std::int64_t now() {
 
 std::int64_t virtual_time(clockid_t clock) { return now() + offset_of(clock); }
 std::int64_t on_page(clockid_t clock, std::int64_t time) { return time - offset_of(clock); }
+
+timespec in_real_time(clockid_t clock, std::int64_t deadline) {
+  return to_timespec(real_time(clock) + deadline - now());
+}
+
+void note_real_time(std::size_t number) {
+  const std::uint64_t bit = std::uint64_t{1} << number;
+  if ((this_process->real_calls.fetch_or(bit) & bit) == 0) the_page->real_calls.fetch_add(1);
+}
 
 Override::Override(std::int64_t deadline) : before_(self.overridden) { self.overridden = deadline + 1; }
 Override::~Override() { self.overridden = before_; }

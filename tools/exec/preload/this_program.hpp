@@ -22,6 +22,12 @@ struct Thread {
   std::uint32_t reads;
   int event;  // descriptor + 1; 0: none
   std::int64_t overridden;
+  std::int32_t id;  // 0: not yet known
+  // Facts about the Python interpreter: how many of its mutexes this thread has locked, and the first of them.
+  int interpreter_mutexes;
+  const void* first_mutex;
+  bool has_signalled;    // that it releases the interpreter's lock
+  bool has_interpreter;  // has that lock
   struct Verdict {
     const void* caller;
     std::uint8_t what;  // bits: 1 known, 2 DDS, 4 this library, 8 the interpreter
@@ -40,10 +46,19 @@ long futex(std::atomic<Word>& word, int operation, Word value) {
   return call_system(SYS_futex, reinterpret_cast<long>(&word), operation, static_cast<long>(value));
 }
 
+inline std::int32_t id_of_thread() {
+  if (self.id == 0) self.id = static_cast<std::int32_t>(call_system(SYS_gettid));
+  return self.id;
+}
+
 /// Enters this process into the page, which also those may have done who started it.
 void enter_process();
 /// Gives the calling thread its place among those whose waits end at the same time, if it has none.
 std::uint64_t order_of_thread();
+/// Returns the calling thread's place in the page; nullptr if there are too many.
+Wait* wait_of_thread();
+/// Notes that a thread begins to wait.
+void note_change();
 /// In the child of a fork: forgets the waits, which are the parent's.
 void forget_waits();
 /// The calling thread ends.

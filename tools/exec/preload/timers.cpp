@@ -245,3 +245,13 @@ COHORT_REPLACES unsigned alarm(unsigned time) noexcept {
   set(*timer, time * second, false, 0);
   return static_cast<unsigned>((setting.left + second - 1) / second);
 }
+
+COHORT_REPLACES useconds_t ualarm(useconds_t time, useconds_t interval) noexcept {
+  COHORT_NEXT(ualarm);
+  if (is_real(COHORT_CALLER) || page()->is_real != 0) return real(time, interval);
+  Timer* const timer = alarm_timer();
+  if (timer == nullptr) return 0;
+  const Setting setting = setting_of(*timer);
+  set(*timer, time * 1000LL, false, interval * 1000LL);
+  return static_cast<useconds_t>((setting.left + 999) / 1000);
+}

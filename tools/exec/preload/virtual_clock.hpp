@@ -1,7 +1,9 @@
 #pragma once
 
 #include <dlfcn.h>
+#include <poll.h>
 #include <pthread.h>
+#include <signal.h>
 #include <sys/time.h>
 #include <time.h>
 
@@ -9,6 +11,7 @@
 #include <cstdint>
 
 #include "tools/exec/clock_page.hpp"
+#include "tools/exec/waiting_calls.hpp"
 
 /// Shared by the calls that this library replaces: a caller's time, and waits that end in virtual time. The library
 /// runs inside other people's programs: no exceptions, no memory of the heap, no C++ library.
@@ -17,6 +20,7 @@ namespace cohort::exec {
 #define COHORT_REPLACES extern "C" __attribute__((visibility("default")))
 
 inline constexpr std::int64_t second = 1'000'000'000;
+inline constexpr timespec past{};  ///< a time limit that is over: a call takes what is there, and does not wait
 
 /// Returns the function that a call would reach without this library.
 template <class Function>
@@ -72,6 +76,8 @@ ClockPage* page();
 
 /// Returns whether a caller has the machine's time: a library of DDS, this library, or any caller without a page.
 bool is_real(const void* caller);
+/// Returns whether a caller has virtual time that has not ended.
+bool is_virtual_for(const void* caller);
 /// Returns whether a caller is the Python interpreter itself, which hands its lock over by real time.
 bool is_interpreter(const void* caller);
 /// Returns whether a caller is a library of DDS.
@@ -86,6 +92,17 @@ std::int64_t virtual_time(clockid_t clock);
 /// Returns a time of a virtual clock as one of CLOCK_MONOTONIC.
 std::int64_t on_page(clockid_t clock, std::int64_t time);
 std::int64_t now();
+/// Returns a time of the page as one of the machine's clock, after the end of virtual time.
+timespec in_real_time(clockid_t clock, std::int64_t deadline);
+
+void note_real_time(std::size_t number);
+/// Notes that this process makes a call that waits by real time, for a warning.
+template <Name name>
+void note_real_time() {
+  constexpr std::size_t number = number_of_real_call(name.text);
+  static_assert(number != no_such_call, "a row of waiting_calls.hpp");
+  note_real_time(number);
+}
 
 /// Notes that the calling thread is about to do what may wake another one.
 void stir();
@@ -118,6 +135,9 @@ class TimedWait {
   std::int64_t deadline_;
   Wait* wait_;
 };
+
+/// Polls until a virtual time, 0 for not at all.
+int poll_until(pollfd* polled, nfds_t count, std::int64_t deadline, const sigset_t* mask);
 
 /// A timer: a wait that belongs to no thread. nullptr if there are too many.
 Wait* make_timer(const Ending& ending);

@@ -6,17 +6,13 @@
 #include <unistd.h>
 
 #include "tools/exec/preload/this_program.hpp"
+#include "tools/exec/preload/turns.hpp"
 
 namespace cohort::exec {
 namespace {
 
 Ending endings[most_waits];  // endings of this process's waits, by their index in the page
 std::atomic<bool> has_helper{false};
-
-void note_change() {
-  the_page->changes.fetch_add(1);
-  if (the_page->host_waits.load() != 0) futex<std::uint32_t>(the_page->changes, FUTEX_WAKE, 1);
-}
 
 // The page's wait that is free is taken for this process.
 Wait* take_wait() {
@@ -44,16 +40,6 @@ void release(Wait* wait) {
   wait->kind = WaitKind::none;
   wait->thread = 0;
   wait->process = 0;
-}
-
-Wait* wait_of_thread() {
-  if (self.wait == nullptr) {
-    self.wait = take_wait();
-    if (self.wait == nullptr) return nullptr;
-    self.wait->order = order_of_thread();
-    self.wait->thread = static_cast<std::int32_t>(call_system(SYS_gettid));
-  }
-  return self.wait;
 }
 
 Ending& ending_of(const Wait* wait) { return endings[wait - the_page->waits.data()]; }
@@ -107,6 +93,21 @@ void need_helper() {
 }
 }  // namespace
 
+void note_change() {
+  the_page->changes.fetch_add(1);
+  if (the_page->host_waits.load() != 0) futex<std::uint32_t>(the_page->changes, FUTEX_WAKE, 1);
+}
+
+Wait* wait_of_thread() {
+  if (self.wait == nullptr) {
+    self.wait = take_wait();
+    if (self.wait == nullptr) return nullptr;
+    self.wait->order = order_of_thread();
+    self.wait->thread = id_of_thread();
+  }
+  return self.wait;
+}
+
 std::uint64_t order_of_thread() {
   if (!self.has_order) {
     self.order = the_page->next_order.fetch_add(1);
@@ -126,7 +127,9 @@ void forget_waits() {
   self.wait = nullptr;
   self.has_order = false;
   self.event = 0;
+  self.id = 0;
   has_helper = false;
+  forget_turns();
   for (Ending& ending : endings) ending = {};
 }
 

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <errno.h>
+
+#include "tools/exec/preload/virtual_clock.hpp"
+
+/// Taking what other threads release, with a time limit: semaphores and locks. A thread tries again whenever one is
+/// released.
+namespace cohort::exec {
+
+extern std::atomic<std::uint32_t> releases;  // futex
+extern std::atomic<std::uint32_t> takers;    // threads that wait for one
+
+/// Wakes the threads that wait for a release.
+void note_release();
+/// Waits for a release after the one with the number `seen`. Returns false if a signal was handled.
+bool await_release(std::uint32_t seen);
+
+/// A result of take_until: the virtual time has ended before.
+inline constexpr int is_over = -1;
+
+/// Attempts to take something until a virtual time. `attempt` returns 0, ETIMEDOUT if it is taken, or another error;
+/// returns likewise, EINTR, or `is_over`.
+template <class Attempt>
+int take_until(std::int64_t deadline, const Attempt& attempt) {
+  for (;;) {
+    takers.fetch_add(1);
+    const std::uint32_t seen = releases;
+    const int error = attempt();
+    const bool waits = error == ETIMEDOUT && deadline > now();
+    bool is_interrupted = false;
+    if (waits) {
+      const TimedWait wait(deadline, {.kind = Ending::Kind::wake_futex, .object = &releases});
+      while (!is_interrupted && !wait.is_over() && releases == seen && page()->is_real == 0)
+        is_interrupted = !await_release(seen);
+    }
+    takers.fetch_sub(1);
+    if (error == ETIMEDOUT && !waits) count_spin();
+    if (!waits) return error;
+    if (is_interrupted) return EINTR;
+    if (page()->is_real != 0) return is_over;
+  }
+}
+
+}  // namespace cohort::exec

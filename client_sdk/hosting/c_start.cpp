@@ -18,7 +18,8 @@ namespace {
 
 CohortStartReason reason_of(StartReason reason) {
   switch (reason) {
-    case StartReason::first: return cohort_start_first;
+    case StartReason::first:
+    case StartReason::going_on: return cohort_start_first;
     case StartReason::takeover: return cohort_start_takeover;
     case StartReason::reset: return cohort_start_reset;
     case StartReason::restored: return cohort_start_restored;

@@ -47,7 +47,8 @@ std::size_t size_of(const std::vector<ChannelInfo>& channels) {
 
 StartReason reason_of(wire::StartReason reason) {
   switch (reason) {
-    case wire::StartReason::first: return StartReason::first;
+    case wire::StartReason::first:
+    case wire::StartReason::more_robots: return StartReason::first;
     case wire::StartReason::takeover: return StartReason::takeover;
     case wire::StartReason::reset: return StartReason::reset;
     case wire::StartReason::restored:

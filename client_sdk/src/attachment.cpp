@@ -62,7 +62,12 @@ class Unlocked {
 class Attachment {
  public:
   Attachment(FrameHandler& handler, const std::string& name, const ClientOptions& options,
-             const std::atomic<bool>& stop, RunWatch* watch);
+             const std::atomic<bool>& stop, RunWatch* watch, Claims* claims);
+  Attachment(const Attachment&) = delete;
+  Attachment& operator=(const Attachment&) = delete;
+  ~Attachment() {
+    if (claims_ != nullptr) claims_->on_set({});
+  }
   ClientEnd run();
 
  private:
@@ -101,6 +106,7 @@ class Attachment {
   const std::uint64_t id_ = random_id();
   const std::atomic<bool>& stop_;
   RunWatch* const watch_;
+  Claims* const claims_;
 
   std::mutex driving_;  // held by the thread that uses the controllers
   FrameHandler& handler_;
@@ -138,11 +144,12 @@ class Attachment {
 };
 
 Attachment::Attachment(FrameHandler& handler, const std::string& name, const ClientOptions& options,
-                       const std::atomic<bool>& stop, RunWatch* watch)
+                       const std::atomic<bool>& stop, RunWatch* watch, Claims* claims)
     : options_(options),
       name_(options.name.empty() ? name : options.name),
       stop_(stop),
       watch_(watch),
+      claims_(claims),
       handler_(handler),
       participant_(wire::Participant::client(options.domain, options.server, identity_of(options))),
       joins_(participant_),
@@ -158,18 +165,21 @@ Attachment::Attachment(FrameHandler& handler, const std::string& name, const Cli
                      wire::partition_of(id_)),
       frame_reader_(participant_, {[this](const auto& message, const auto&) { receive(message); }, nullptr},
                     wire::partition_of(id_), frames_kept_by_dds),
-      states_(participant_, id_, [this] { wake(Lock(mutex_)); }) {}
+      states_(participant_, id_, [this] { wake(Lock(mutex_)); }) {
+  if (claims_ != nullptr) claims_->on_set([this] { wake(Lock(mutex_)); });
+}
 
 ClientEnd Attachment::run() {
-  const wire::Join join{.client = id_,
-                        .minor = states_.are_possible() ? wire::minor_version : wire::first_minor_with_state - 1,
-                        .controller = name_,
-                        .host = host_name(),
-                        .process = static_cast<std::uint32_t>(::getpid()),
-                        .robots = options_.robots};
+  wire::Join join{.client = id_,
+                  .minor = states_.are_possible() ? wire::minor_version : wire::first_minor_with_state - 1,
+                  .controller = name_,
+                  .host = host_name(),
+                  .process = static_cast<std::uint32_t>(::getpid()),
+                  .robots = options_.robots};
   Clock::time_point joins_at = Clock::now();
   for (;;) {
     // Write repeatedly: to DDS, a writer that has briefly lost its liveliness is alive only when it writes.
+    if (claims_ != nullptr && claims_->take(join.robots)) joins_at = Clock::now();
     if (Clock::now() >= joins_at) {
       tell_whether_server_responds(joins_.matched() > 0 && joins_.wait_until_received(0ms));
       joins_.write(join);
@@ -300,9 +310,16 @@ void Attachment::heed(Offer offer, Lock& lock) {
   if (begun_already) return;
   // The epochs of another server may be lower if its clock is behind.
   if (current_ && current_->sender.participant != offer.sender.participant) frames_ = {};
+  const bool has_more = admit.start_reason == wire::StartReason::more_robots;
+  const bool goes_on = has_more && current_ && current_->sender.participant == offer.sender.participant &&
+                       current_->admit.run == admit.run;
   current_ = std::move(offer);
+  if (has_more && !goes_on) current_->admit.start_reason = wire::StartReason::first;
   tick_ = current_->admit.tick;
-  frames_.begin(current_->admit);
+  if (goes_on)
+    frames_.extend(current_->admit);
+  else
+    frames_.begin(current_->admit);
   const std::vector<wire::RobotDescription> descriptions = descriptions_.keep(current_->sender.participant);
   const Unlocked unlocked(lock);
   starting_ = true;
@@ -414,8 +431,8 @@ void Attachment::tell(Severity severity, const std::string& said) const {
 }  // namespace
 
 ClientEnd run_client(FrameHandler& handler, const std::string& name, const ClientOptions& options,
-                     const std::atomic<bool>& stop, RunWatch* watch) {
-  return Attachment(handler, name, options, stop, watch).run();
+                     const std::atomic<bool>& stop, RunWatch* watch, Claims* claims) {
+  return Attachment(handler, name, options, stop, watch, claims).run();
 }
 
 ClientEnd run_client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop) {

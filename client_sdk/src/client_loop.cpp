@@ -5,6 +5,7 @@
 
 #include "client_sdk/include/cohort/client.hpp"
 #include "client_sdk/src/attachment.hpp"
+#include "client_sdk/src/claims.hpp"
 #include "client_sdk/src/hand_over.hpp"
 #include "client_sdk/src/loop_host.hpp"
 #include "client_sdk/src/standard_streams.hpp"
@@ -30,7 +31,7 @@ struct Client::State {
   void run() noexcept {
     ClientEnd end = ClientEnd::failed;
     try {
-      end = run_client(host, options.name, options, stop, &watch);
+      end = run_client(host, options.name, options, stop, &watch, &claims);
     } catch (const std::exception& error) {
       options.tell(Severity::error, error.what());
     }
@@ -41,6 +42,7 @@ struct Client::State {
   ClientOptions options;
   std::atomic<bool> stop{false};
   RunWatch watch;
+  Claims claims;
   HandOver hand_over;
   LoopHost host;
   std::mutex mutex;
@@ -66,6 +68,7 @@ std::optional<ClientEvent> Client::next(std::chrono::milliseconds at_most) {
   return state_->hand_over.take(std::chrono::steady_clock::now() + at_most);
 }
 
+void Client::claim(std::vector<std::string> robots) { state_->claims.set(std::move(robots)); }
 void Client::answer() { state_->hand_over.answer(); }
 void Client::leave_unanswered() { state_->hand_over.leave_unanswered(); }
 void Client::fail(const std::string& why) { state_->hand_over.fail(why); }

@@ -17,10 +17,29 @@ constexpr int patience = 8;
 }  // namespace
 
 void FrameQueue::begin(const wire::Admit& admit) {
-  epoch_ = admit.epoch;
   run_ = admit.run;
   client_ = admit.client;
   next_tick_ = admit.tick;
+  take_schedules(admit);
+  answers_kept_ = std::max<std::size_t>(fewest_answers_kept, longest_delay_ + 1);
+  answers_.clear();
+  oldest_answer_ = 0;
+  repeats_.clear();
+  drop_waiting_before();
+}
+
+void FrameQueue::extend(const wire::Admit& admit) {
+  take_schedules(admit);
+  // The ring can grow after its newest answer.
+  std::rotate(answers_.begin(), answers_.begin() + static_cast<std::ptrdiff_t>(oldest_answer_ % answers_kept_),
+              answers_.end());
+  answers_kept_ = std::max<std::size_t>(answers_kept_, longest_delay_ + 1);
+  oldest_answer_ = answers_.size() % answers_kept_;
+  drop_waiting_before();
+}
+
+void FrameQueue::take_schedules(const wire::Admit& admit) {
+  epoch_ = admit.epoch;
   longest_delay_ = 0;
   newest_only_ = std::ranges::all_of(admit.robots, [](auto& robot) { return robot.mode == wire::Mode::free; });
   schedules_.clear();
@@ -30,10 +49,10 @@ void FrameQueue::begin(const wire::Admit& admit) {
     const Schedule schedule{period, robot.phase % period};
     if (std::find(schedules_.begin(), schedules_.end(), schedule) == schedules_.end()) schedules_.push_back(schedule);
   }
-  answers_kept_ = std::max<std::size_t>(fewest_answers_kept, longest_delay_ + 1);
-  answers_.clear();
-  oldest_answer_ = 0;
-  repeats_.clear();
+}
+
+// Drops frames that are answered, or of earlier leases.
+void FrameQueue::drop_waiting_before() {
   std::erase_if(waiting_, [&](const Frame& frame) {
     const wire::Observation& head = frame.head;
     return head.epoch < epoch_ || (head.epoch == epoch_ && head.tick < next_tick_);

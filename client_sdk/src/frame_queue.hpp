@@ -20,6 +20,9 @@ class FrameQueue {
   /// Starts a lease: discards the answers, and the frames of earlier leases.
   void begin(const wire::Admit& admit);
 
+  /// Continues a lease that has more robots, under a new epoch: keeps the answers.
+  void extend(const wire::Admit& admit);
+
   /// Adds a frame. A frame that was answered is scheduled for a repeat. A frame that waits or is being answered is
   /// ignored, and one of an earlier lease is dropped. Frames may arrive before their lease starts.
   void arrive(const wire::Observation& frame);
@@ -55,6 +58,8 @@ class FrameQueue {
     bool operator==(const Schedule&) const = default;
   };
 
+  void take_schedules(const wire::Admit& admit);
+  void drop_waiting_before();
   void drop_older();
   bool in_order(const Frame& frame) const;
   std::uint64_t next_due(std::uint64_t tick) const;

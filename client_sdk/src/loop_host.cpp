@@ -9,12 +9,17 @@
 namespace cohort {
 
 void LoopHost::start(const wire::Admit& admit, std::span<const wire::RobotDescription> descriptions) {
+  std::set<std::uint32_t> kept;
+  if (admit.start_reason == wire::StartReason::more_robots)
+    for (const DrivenRobot& robot : robots_) kept.insert(robot.start.robot);
   robots_.clear();
   layouts_.clear();
   for (const wire::AdmittedRobot& admitted : admit.robots)
     robots_.push_back({start_of(admit, admitted, descriptions),
                        {admitted.mode == wire::Mode::lockstep, admitted.period, admitted.phase, admitted.delay}});
   std::ranges::sort(robots_, {}, [](const DrivenRobot& robot) { return robot.start.robot; });
+  for (DrivenRobot& robot : robots_)
+    if (kept.contains(robot.start.robot)) robot.start.reason = StartReason::going_on;
   for (const DrivenRobot& robot : robots_) {
     Layout& layout = layouts_.emplace_back();
     for (const ChannelInfo& channel : robot.start.observation_channels) layout.observation_size += channel.size;

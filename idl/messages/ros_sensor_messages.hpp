@@ -221,6 +221,7 @@ struct NavSatFix {
   double altitude = 0;
   std::array<double, 9> position_covariance{};
   std::uint8_t position_covariance_type = 0;
+  static constexpr std::uint8_t diagonal_known = 2;
   static constexpr const char* type = "sensor_msgs/msg/NavSatFix";
   static constexpr auto fields =
       std::tuple(field("header", &NavSatFix::header), field("status", &NavSatFix::status),

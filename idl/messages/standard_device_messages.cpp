@@ -18,6 +18,13 @@ ros::Vector3 vector_at(Values values, std::size_t at) { return {values[at], valu
 
 std::array<double, 9> not_measured() { return {-1.0}; }
 
+// Returns the covariance of a vector whose elements have independent errors.
+std::array<double, 9> covariance_of(const description::Readout& readout, const std::string& quantity) {
+  std::array<double, 9> covariance{};
+  for (std::uint32_t i = 0; i < 3; ++i) covariance[4 * i] = variance_of(readout, quantity, i);
+  return covariance;
+}
+
 template <class Sensor>
 PlaceOnLink place_of(const Sensor& sensor) {
   return {sensor.link, sensor.X_LS};
@@ -79,11 +86,13 @@ void add_range(DeviceMessageList& list, const Sensors& sensors, std::size_t inde
   const std::size_t at = list.offset(sensors.name + "/" + std::to_string(index) + "/reading");
   const std::string frame = sensors.name + "_" + std::to_string(index);
   const double reach = sensors.range;
+  const auto variance = static_cast<float>(reach * reach * variance_of(sensors.readout, "reading"));
   list.add_placed<ros::Range>(sensors, {"range", frame, DeviceTopic::Naming::never}, place,
                               [=](ros::Range& message, Values values) {
                                 message.radiation_type = ros::Range::infrared;
                                 message.field_of_view = static_cast<float>(cone);
                                 message.max_range = static_cast<float>(reach);
+                                message.variance = variance;
                                 message.range =
                                     values[at] > 0.0 ? static_cast<float>((1.0 - values[at]) * reach) : infinite;
                               })
@@ -127,11 +136,15 @@ void add_messages(DeviceMessageList& list, const description::Imu& imu) {
   const std::size_t orientation = imu.has_orientation ? list.offset(imu.name + "/0/orientation") : 0;
   const std::size_t velocity = list.offset(imu.name + "/0/angular_velocity");
   const std::size_t acceleration = list.offset(imu.name + "/0/linear_acceleration");
+  const auto of_velocity = covariance_of(imu.readout, "angular_velocity");
+  const auto of_acceleration = covariance_of(imu.readout, "linear_acceleration");
   list.add_placed<ros::Imu>(imu, {"imu"}, place_of(imu), [=, has = imu.has_orientation](ros::Imu& message, Values v) {
     if (has)
       message.orientation = {v[orientation], v[orientation + 1], v[orientation + 2], v[orientation + 3]};
     else
       message.orientation_covariance = not_measured();
+    message.angular_velocity_covariance = of_velocity;
+    message.linear_acceleration_covariance = of_acceleration;
     message.angular_velocity = vector_at(v, velocity);
     message.linear_acceleration = vector_at(v, acceleration);
   });
@@ -139,24 +152,32 @@ void add_messages(DeviceMessageList& list, const description::Imu& imu) {
 
 void add_messages(DeviceMessageList& list, const description::Accelerometer& sensor) {
   const std::size_t at = list.offset(sensor.name + "/0/acceleration");
-  list.add_placed<ros::Imu>(sensor, {"accelerometer"}, place_of(sensor), [at](ros::Imu& message, Values values) {
+  const auto covariance = covariance_of(sensor.readout, "acceleration");
+  list.add_placed<ros::Imu>(sensor, {"accelerometer"}, place_of(sensor), [=](ros::Imu& message, Values values) {
     message.orientation_covariance = message.angular_velocity_covariance = not_measured();
+    message.linear_acceleration_covariance = covariance;
     message.linear_acceleration = vector_at(values, at);
   });
 }
 
 void add_messages(DeviceMessageList& list, const description::Magnetometer& sensor) {
   const std::size_t at = list.offset(sensor.name + "/0/magnetic_field");
-  list.add_placed<ros::MagneticField>(
-      sensor, {"magnetic_field"}, place_of(sensor),
-      [at](ros::MagneticField& message, Values values) { message.magnetic_field = vector_at(values, at); });
+  const auto covariance = covariance_of(sensor.readout, "magnetic_field");
+  list.add_placed<ros::MagneticField>(sensor, {"magnetic_field"}, place_of(sensor),
+                                      [=](ros::MagneticField& message, Values values) {
+                                        message.magnetic_field = vector_at(values, at);
+                                        message.magnetic_field_covariance = covariance;
+                                      });
 }
 
 void add_messages(DeviceMessageList& list, const description::AirPressureSensor& sensor) {
   const std::size_t at = list.offset(sensor.name + "/0/pressure");
-  list.add_placed<ros::FluidPressure>(
-      sensor, {"fluid_pressure"}, place_of(sensor),
-      [at](ros::FluidPressure& message, Values values) { message.fluid_pressure = values[at]; });
+  const double variance = variance_of(sensor.readout, "pressure");
+  list.add_placed<ros::FluidPressure>(sensor, {"fluid_pressure"}, place_of(sensor),
+                                      [=](ros::FluidPressure& message, Values values) {
+                                        message.fluid_pressure = values[at];
+                                        message.variance = variance;
+                                      });
 }
 
 void add_messages(DeviceMessageList& list, const description::ForceTorqueSensor& sensor) {
@@ -182,12 +203,17 @@ void add_messages(DeviceMessageList& list, const description::ClimateSensor& sen
   const std::size_t temperature = list.offset(sensor.name + "/0/temperature");
   const std::size_t humidity = list.offset(sensor.name + "/0/humidity");
   const PlaceOnLink place{sensor.link, {sensor.p_LS, Eigen::Quaterniond::Identity()}};
+  const double of_temperature = variance_of(sensor.readout, "temperature");
+  const double of_humidity = variance_of(sensor.readout, "humidity");
   list.add_placed<ros::Temperature>(sensor, {"temperature"}, place, [=](ros::Temperature& message, Values values) {
     message.temperature = values[temperature] - zero_celsius;
+    message.variance = of_temperature;
   });
-  list.add_placed<ros::RelativeHumidity>(
-      sensor, {"relative_humidity"}, place,
-      [=](ros::RelativeHumidity& message, Values values) { message.relative_humidity = values[humidity]; });
+  list.add_placed<ros::RelativeHumidity>(sensor, {"relative_humidity"}, place,
+                                         [=](ros::RelativeHumidity& message, Values values) {
+                                           message.relative_humidity = values[humidity];
+                                           message.variance = of_humidity;
+                                         });
 }
 
 void add_messages(DeviceMessageList& list, const description::Battery& battery) {
@@ -210,6 +236,7 @@ void add_messages(DeviceMessageList& list, const description::NavSat& receiver) 
         message.velocity = vector_at(values, velocity);
       });
   if (!list.origin()) return;
+  const auto covariance = covariance_of(receiver.readout, "position");
   list.add_placed<ros::NavSatFix>(receiver, {"fix"}, place_of(receiver),
                                   [=, origin = *list.origin()](ros::NavSatFix& message, Values values) {
                                     const GeodeticPlace here = moved(origin, vector_at(values, position));
@@ -217,6 +244,8 @@ void add_messages(DeviceMessageList& list, const description::NavSat& receiver) 
                                     message.latitude = here.latitude;
                                     message.longitude = here.longitude;
                                     message.altitude = here.altitude;
+                                    message.position_covariance = covariance;
+                                    message.position_covariance_type = ros::NavSatFix::diagonal_known;
                                   });
 }
 

@@ -10,8 +10,10 @@
 /// callback, and sent ones must stay valid until `write` returns.
 namespace cohort::wire {
 
-inline constexpr std::uint32_t minor_version = 2;
+inline constexpr std::uint32_t minor_version = 3;
 inline constexpr std::uint32_t first_minor_with_state = 1;  ///< the first version with ControllerState
+inline constexpr std::uint32_t first_minor_with_growing_leases =
+    3;  ///< the first version with StartReason::more_robots
 
 struct Channel {
   std::string name{};
@@ -62,7 +64,14 @@ struct AdmittedRobot {
 };
 
 enum class AdmitStatus : std::uint32_t { admitted = 0, refused = 1 };
-enum class StartReason : std::uint32_t { first = 0, takeover = 1, reset = 2, restored = 3, restored_with_state = 4 };
+enum class StartReason : std::uint32_t {
+  first = 0,
+  takeover = 1,
+  reset = 2,
+  restored = 3,
+  restored_with_state = 4,
+  more_robots = 5,
+};
 
 struct Admit {
   std::uint64_t client = 0;

@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// Errors and delays between the measurement of a sensor and its report.
@@ -29,6 +31,14 @@ inline bool is_exact(const Noise& noise) {
          noise.bias_deviation == 0.0 && noise.drift_deviation == 0.0 && noise.precision == 0.0;
 }
 
+/// Returns the variance of the errors that the noise adds, over all runs. Uniform errors up to a magnitude m have a
+/// variance of m^2 / 3, and rounding to multiples of p one of p^2 / 12.
+inline double variance_of(const Noise& noise) {
+  return noise.deviation * noise.deviation + noise.uniform * noise.uniform / 3.0 +
+         noise.bias_deviation * noise.bias_deviation + noise.drift_deviation * noise.drift_deviation +
+         noise.precision * noise.precision / 12.0;
+}
+
 /// Returns the ratio of the standard deviation of a drifting bias to the density s [unit / sqrt(s)] of the white noise
 /// w by which SDF defines it. The bias follows db/dt = -b / time + s w, so in the long run d/dt E[b^2] = -2 E[b^2] /
 /// time + s^2 = 0, and the ratio is sqrt(time / 2).
@@ -42,5 +52,23 @@ struct Readout {
   std::chrono::nanoseconds period{0};  ///< 0 for every tick
   std::chrono::nanoseconds latency{0};
 };
+
+/// Returns the index of the noise on an element of a quantity's channel; -1 if there is none.
+inline int noise_on(const Readout& readout, std::string_view quantity, std::uint32_t element) {
+  int index = -1;
+  for (std::size_t i = 0; i < readout.noises.size(); ++i) {
+    const Noise& noise = readout.noises[i];
+    if ((noise.quantity.empty() || noise.quantity == quantity) &&
+        (noise.element < 0 || noise.element == static_cast<int>(element)))
+      index = static_cast<int>(i);
+  }
+  return index;
+}
+
+/// Returns the variance of the errors of an element of a quantity's channel.
+inline double variance_of(const Readout& readout, std::string_view quantity, std::uint32_t element = 0) {
+  const int index = noise_on(readout, quantity, element);
+  return index < 0 ? 0.0 : variance_of(readout.noises[static_cast<std::size_t>(index)]);
+}
 
 }  // namespace cohort::description

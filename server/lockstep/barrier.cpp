@@ -23,6 +23,7 @@ void Barrier::set_driven(std::uint32_t robot, bool driven) {
   if (driven) {
     // Frames for the previous driver are forgotten.
     for (Answer& answer : r.answers) answer = {Answer::State::none, false, std::move(answer.values)};
+    r.driven_since = is_fresh_ ? tick_ : tick_ + 1;
     r.answered.reset();
     r.silent = false;
     r.heard_at = opened_at_;
@@ -51,8 +52,14 @@ void Barrier::open(std::uint64_t tick, Time now) {
 bool Barrier::is_due(std::uint32_t robot, std::uint64_t tick) const {
   const Robot& r = robots_[robot];
   if (r.detached || !r.driven) return false;
-  const bool is_under_way = tick <= tick_ && tick + r.policy.delay >= tick_;
-  return is_under_way ? answer_of(r, tick).asked : is_asked(r, tick);
+  return is_under_way(r, tick) ? answer_of(r, tick).asked : is_asked(r, tick);
+}
+
+Barrier::Asked Barrier::was_asked(std::uint32_t robot, std::uint64_t frame_tick) const {
+  const Robot& r = robots_[robot];
+  if (!is_asked(r, frame_tick)) return Asked::no;
+  if (r.detached || !r.driven || frame_tick < r.driven_since || !is_under_way(r, frame_tick)) return Asked::unknown;
+  return answer_of(r, frame_tick).asked ? Asked::yes : Asked::no;
 }
 
 std::optional<std::uint64_t> Barrier::acting_frame(const Robot& robot) const {
@@ -65,6 +72,7 @@ std::optional<std::uint64_t> Barrier::acting_frame(const Robot& robot) const {
 Barrier::Verdict Barrier::judge(std::uint32_t robot, std::uint64_t frame_tick) const {
   const Robot& r = robots_[robot];
   if (frame_tick > tick_) return Verdict::early;
+  if (!r.driven || frame_tick < r.driven_since) return Verdict::stale;
   if (is_free(r)) {
     if (r.detached || (r.answered && frame_tick < *r.answered)) return Verdict::stale;
     if (r.answered == frame_tick) return Verdict::repeated;

@@ -44,6 +44,11 @@ class Barrier {
   /// Returns true if the robot receives a frame at this tick: not if it is detached, not driven or not in the world.
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
 
+  enum class Asked { no, yes, unknown };
+  /// Returns whether the frame of this tick had the robot. It is unknown if the barrier no longer keeps that frame, or
+  /// if the frame was for a previous driver.
+  Asked was_asked(std::uint32_t robot, std::uint64_t frame_tick) const;
+
   enum class Verdict {
     accepted,
     repeated,  ///< the frame is already answered
@@ -117,8 +122,9 @@ class Barrier {
   };
   struct Robot {
     description::Policy policy;
-    std::vector<Answer> answers;   // by frame tick, modulo delay + 1
-    std::uint64_t first_tick = 0;  // the robot's first tick
+    std::vector<Answer> answers;     // by frame tick, modulo delay + 1
+    std::uint64_t first_tick = 0;    // the robot's first tick
+    std::uint64_t driven_since = 0;  // first tick of its present driver
     bool present = true;
     bool driven = true;
     bool awaited = false;
@@ -144,6 +150,10 @@ class Barrier {
   bool is_too_late(const Robot& robot, Time now) const;
   static bool is_too_silent(const Robot& robot, Time now);
   static bool is_free(const Robot& robot) { return robot.policy.mode == description::Mode::free; }
+  /// Returns true if the barrier keeps the robot's frame of this tick.
+  bool is_under_way(const Robot& robot, std::uint64_t tick) const {
+    return tick <= tick_ && tick + robot.policy.delay >= tick_;
+  }
   /// Considers only the robot's policy and its first tick.
   static bool is_asked(const Robot& robot, std::uint64_t tick) {
     if (tick < robot.policy.phase || tick < robot.first_tick) return false;

@@ -1,6 +1,7 @@
 #include "server/lockstep/leases.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace cohort::lockstep {
 namespace {
@@ -21,6 +22,14 @@ void Leases::claim(std::uint64_t client, std::vector<std::uint32_t> robots) {
   Claim claim{client, std::move(robots), {}};
   for (const std::uint32_t robot : claim.robots) claim.answers_before.push_back(answers_of_holder(robot));
   claims_.push_back(std::move(claim));
+}
+
+void Leases::change(std::uint64_t client, std::vector<std::uint32_t> robots) {
+  Lease& lease = leases_.at(client);
+  lease.epoch = next_epoch_++;
+  for (const std::uint32_t robot : lease.robots) holder_[robot].reset();
+  lease.robots = std::move(robots);
+  for (const std::uint32_t robot : lease.robots) holder_[robot] = client;
 }
 
 bool Leases::decide_one(const Claim& claim, Time now, bool may_grant, Decisions& decisions) {

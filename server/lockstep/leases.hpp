@@ -44,6 +44,9 @@ class Leases {
   /// Adds a claim on `robots`: ascending, at least one. It replaces an earlier claim of the client that still waits.
   void claim(std::uint64_t client, std::vector<std::uint32_t> robots);
 
+  /// Gives a lease other robots, ascending and at least one, which no other client holds, and a new epoch.
+  void change(std::uint64_t client, std::vector<std::uint32_t> robots);
+
   struct Granted {
     std::uint64_t client;
     std::vector<std::uint64_t> superseded;  ///< clients that lose their lease by it

@@ -11,16 +11,12 @@
 namespace cohort::recording {
 namespace {
 
-// Returns the period of a rate in whole ticks.
-std::uint64_t ticks_at_rate(double rate, std::chrono::nanoseconds step) {
-  if (rate <= 0.0) return 0;
-  const double ticks = 1e9 / (rate * static_cast<double>(step.count()));
-  return ticks > 1e15 ? 0 : static_cast<std::uint64_t>(std::max(1.0, std::round(ticks)));
+std::optional<PeriodicTicks> ticks_at_rate(double rate, std::chrono::nanoseconds step) {
+  return rate > 0.0 ? std::optional(PeriodicTicks::at_rate(rate, step)) : std::nullopt;
 }
 
-std::uint64_t ticks_every(std::chrono::nanoseconds interval, std::chrono::nanoseconds step) {
-  if (interval.count() == 0) return 0;
-  return static_cast<std::uint64_t>(std::max<std::int64_t>(1, interval / step));
+std::optional<PeriodicTicks> ticks_every(std::chrono::nanoseconds interval, std::chrono::nanoseconds step) {
+  return interval.count() > 0 ? std::optional(PeriodicTicks(interval, step)) : std::nullopt;
 }
 
 std::vector<RecordedChannel> recorded(const std::vector<cohort::Channel>& channels) {
@@ -118,12 +114,12 @@ void Recorder::begin(const description::Experiment& experiment, const Simulation
   experiment_ = &experiment;
   simulation_ = &simulation;
   const std::chrono::nanoseconds step = experiment.world.step;
-  pose_interval_ = ticks_at_rate(recorded_.pose_rate, step);
-  joint_interval_ = ticks_at_rate(recorded_.joint_rate, step);
-  observation_interval_ = ticks_at_rate(recorded_.observation_rate, step);
-  snapshot_interval_ = ticks_every(recorded_.snapshot_interval, step);
+  pose_ticks_ = ticks_at_rate(recorded_.pose_rate, step);
+  joint_ticks_ = ticks_at_rate(recorded_.joint_rate, step);
+  observation_ticks_ = ticks_at_rate(recorded_.observation_rate, step);
+  snapshot_ticks_ = ticks_every(recorded_.snapshot_interval, step);
   unless_memory_lacks([&] {
-    const bool is_first = observed_.empty() && observation_interval_ != 0;
+    const bool is_first = observed_.empty() && observation_ticks_;
     if (is_first) add_observed();
     write(world_, WorldBegins{run_, static_cast<std::uint8_t>(reason), experiment.seed, simulation.tick(),
                               experiment.duration.count(), log_offset_.count()});
@@ -142,8 +138,7 @@ void Recorder::add_observed() {
       sensors_[kind] =
           messages::device_messages(simulation_->description().robot_model(robot), kinds[kind].observation);
       // If all joints are recorded, their topic has the true values and not those of the encoders.
-      if (joint_interval_ != 0)
-        std::erase_if(sensors_[kind], [](const auto& sensor) { return sensor.name == "joint_states"; });
+      if (joint_ticks_) std::erase_if(sensors_[kind], [](const auto& sensor) { return sensor.name == "joint_states"; });
     }
   static_transforms_ = add_topic<ros::TFMessage>("/tf_static", true);
   std::vector<SchemaId> schemas;
@@ -211,10 +206,10 @@ void Recorder::boundary() {
     if (simulation_->robot_count() != robots_told_) write_roster();
     write(boundary_, Boundary{simulation_->tick(), simulation_->state_hash()});
     keep_commands();
-    if (is_now(snapshot_interval_) && simulation_->tick() > 0) write_snapshot(Importance::display);
-    if (is_now(pose_interval_)) write_poses();
-    if (is_now(joint_interval_)) write_joints();
-    if (is_now(observation_interval_)) write_observations();
+    if (is_now(snapshot_ticks_) && simulation_->tick() > 0) write_snapshot(Importance::display);
+    if (is_now(pose_ticks_)) write_poses();
+    if (is_now(joint_ticks_)) write_joints();
+    if (observation_ticks_) write_observations();
   });
 }
 
@@ -297,11 +292,19 @@ bool Recorder::is_static(std::uint32_t object) const {
   return simulation_->description().models[simulation_->world().model_of(BodyId{object})].is_static;
 }
 
+// An observation that falls on a tick at which the robot is not due is recorded when it is due next.
+bool Recorder::is_observed_now(std::uint32_t robot) const {
+  const std::uint64_t tick = simulation_->tick();
+  if (!simulation_->is_present(robot) || !simulation_->is_due(robot, tick)) return false;
+  const std::uint32_t period = simulation_->policy(robot).period;
+  return tick < period || observation_ticks_->count(tick) != observation_ticks_->count(tick - period);
+}
+
 void Recorder::write_observations() {
   const ros::Time now = ros::time(simulation_->time());
   ros::TFMessage places;
   for (auto& [robot, topic, sensors] : observed_) {
-    if (!simulation_->is_present(robot) || !simulation_->is_due(robot, simulation_->tick())) continue;
+    if (!is_observed_now(robot)) continue;
     cdr_.clear();
     cdr_.add(now);
     for (const double value : simulation_->observation(robot)) cdr_.add(value);
@@ -355,7 +358,7 @@ void Recorder::add_places(std::uint32_t robot, ros::TFMessage& places) const {
     return simulation_->world().link_pose(simulation_->body_of(robot), LinkId{link});
   };
   const std::string& name = simulation_->robot_name(robot);
-  if (pose_interval_ == 0) places.transforms.push_back(transform(name, X_WL(0), now));
+  if (!pose_ticks_) places.transforms.push_back(transform(name, X_WL(0), now));
   const Pose X_RW = X_WL(0).inverse();
   std::set<std::size_t> links;
   for (const messages::DeviceMessage& sensor : sensors_[simulation_->kind_of(robot)]) {
@@ -364,7 +367,7 @@ void Recorder::add_places(std::uint32_t robot, ros::TFMessage& places) const {
     else if (sensor.place && !sensor.place_on_link)
       places.transforms.push_back(transform(frame_of(robot, sensor.frame), X_RW * sensor.place(X_WL), now, name));
   }
-  if (joint_interval_ != 0) return;
+  if (joint_ticks_) return;
   for (const std::size_t link : links)
     places.transforms.push_back(transform(frame_of_link(robot, link), X_RW * X_WL(link), now, name));
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "idl/messages/device_messages.hpp"
+#include "server/core/periodic_ticks.hpp"
 #include "server/description/experiment.hpp"
 #include "server/recording/mcap/writing/recording_file.hpp"
 #include "server/recording/ros_channels.hpp"
@@ -79,6 +80,7 @@ class Recorder {
   void write_snapshot(Importance importance);
   void write_poses();
   void write_joints();
+  bool is_observed_now(std::uint32_t robot) const;
   void write_observations();
   void write_sensors(std::uint32_t robot, std::span<Topic> topics);
   std::string frame_of(std::uint32_t robot, const std::string& part) const;
@@ -87,7 +89,7 @@ class Recorder {
   void add_places(std::uint32_t robot, ros::TFMessage& places) const;
   Topic& topic_of_joints(std::uint32_t object);
   void keep_commands();
-  bool is_now(std::uint64_t interval) const { return interval != 0 && simulation_->tick() % interval == 0; }
+  bool is_now(const std::optional<PeriodicTicks>& ticks) const { return ticks && ticks->contains(simulation_->tick()); }
 
   RecordingFile file_;
   description::Recorded recorded_;
@@ -98,11 +100,11 @@ class Recorder {
   std::uint32_t run_ = 0;
   std::chrono::nanoseconds log_offset_{0};
   std::chrono::nanoseconds last_log_time_{0};
-  // In ticks; 0: never.
-  std::uint64_t pose_interval_ = 0;
-  std::uint64_t joint_interval_ = 0;
-  std::uint64_t observation_interval_ = 0;
-  std::uint64_t snapshot_interval_ = 0;
+  // Nothing: never.
+  std::optional<PeriodicTicks> pose_ticks_;
+  std::optional<PeriodicTicks> joint_ticks_;
+  std::optional<PeriodicTicks> observation_ticks_;
+  std::optional<PeriodicTicks> snapshot_ticks_;
   struct Observed {
     std::uint32_t robot = 0;
     Topic topic;

@@ -70,6 +70,20 @@ void Exchange::fill_frame(Frame& frame, std::span<const std::uint32_t> robots, s
   frame.values = frame.gathered;
 }
 
+// Returns true if an answer can have these robots: those of its frame, as far as that is known. Robots come and go, so
+// the frames that robots had long ago are unknown; answers to them are stale, or come from free robots.
+bool Exchange::are_of_frame(std::span<const std::uint32_t> robots, std::span<const std::uint32_t> held,
+                            std::uint64_t frame_tick) const {
+  using Asked = lockstep::Barrier::Asked;
+  auto next = robots.begin();
+  for (const std::uint32_t robot : held) {
+    const bool is_answered = next != robots.end() && *next == robot;
+    if (is_answered) ++next;
+    if (barrier_.was_asked(robot, frame_tick) == (is_answered ? Asked::no : Asked::yes)) return false;
+  }
+  return next == robots.end() && !robots.empty();
+}
+
 Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_t frame_tick,
                                std::span<const std::uint32_t> robots, std::span<const double> values,
                                lockstep::Time now) {
@@ -82,19 +96,15 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
     reject("early", frame_text() + " arrived at tick " + std::to_string(barrier_.tick()));
     return taken;
   }
-  due_.clear();
-  std::size_t expected_size = 0;
-  for (const std::uint32_t robot : held) {
-    if (!barrier_.is_due(robot, frame_tick)) continue;
-    due_.push_back(robot);
-    expected_size += simulation_.kinds()[simulation_.kind_of(robot)].command_size;
-  }
-  if (!std::ranges::equal(due_, robots)) {
+  if (!are_of_frame(robots, held, frame_tick)) {
     reject("malformed", frame_text() + " does not have the robots of its frame");
     return taken;
   }
+  std::size_t expected_size = 0;
+  for (const std::uint32_t robot : robots)
+    expected_size += simulation_.kinds()[simulation_.kind_of(robot)].command_size;
   const bool sizes_fit = values.size() == expected_size;
-  for (const std::uint32_t robot : due_) {
+  for (const std::uint32_t robot : robots) {
     const std::size_t size = simulation_.kinds()[simulation_.kind_of(robot)].command_size;
     switch (barrier_.judge(robot, frame_tick)) {
       case lockstep::Barrier::Verdict::accepted: {

@@ -62,13 +62,14 @@ class Exchange {
  private:
   void add_robots(std::uint64_t first_tick);
   std::span<const double> kept(std::uint32_t robot, std::uint64_t tick) const;
+  bool are_of_frame(std::span<const std::uint32_t> robots, std::span<const std::uint32_t> held,
+                    std::uint64_t frame_tick) const;
 
   Simulation& simulation_;
   lockstep::Barrier barrier_;
   // By robot: delay + 1 observations, by tick modulo delay + 1. Empty without a delay: then the simulation has the only
   // one.
   std::vector<std::vector<double>> history_;
-  std::vector<std::uint32_t> due_;      // reused
   std::vector<std::uint32_t> changed_;  // robots of the last tick
 };
 

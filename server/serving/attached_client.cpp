@@ -23,6 +23,7 @@ AttachedClient::AttachedClient(const Inbox::Arrival& arrival, std::uint64_t its_
 void AttachedClient::begin_run() {
   claims = false;
   robots.clear();
+  more.clear();
   drives_first.clear();
   reported_rejections.clear();
   answer_times = {};

@@ -36,6 +36,7 @@ struct AttachedClient {
   // State in this run.
   std::vector<std::uint32_t> robots{};        // requested robots
   bool claims = false;                        // its claim is neither granted nor refused yet
+  std::vector<std::string> more{};            // selectors of robots that are to be added to its lease
   std::vector<std::uint32_t> drives_first{};  // robots of its lease that no client drove before
   lockstep::ResendTimer resend{};
   std::uint32_t times_resent = 0;
@@ -67,6 +68,8 @@ struct AttachedClient {
   void write_frame(ServedRun& run, std::uint64_t tick, bool resent);
   /// Returns true if the client supports ControllerState.
   bool has_state() const { return join.minor >= wire::first_minor_with_state; }
+  /// Returns true if the client supports a lease that gets more robots.
+  bool has_growing_lease() const { return join.minor >= wire::first_minor_with_growing_leases; }
   /// Sends a message to the client, with the epoch of its lease.
   void send_state(wire::ControllerState message, ServedRun& run);
   /// Returns the status of a client that drives robots, for clients that control the run. Requires the lock.

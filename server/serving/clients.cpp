@@ -12,6 +12,11 @@ namespace {
 
 // Limits of a client's requests, so that no client can use up the time of a tick.
 constexpr std::size_t most_selectors = 4096;
+constexpr std::size_t most_without_robots = 64;
+
+std::string too_many_selectors() {
+  return "the client requests more than " + std::to_string(most_selectors) + " selectors; use ranges";
+}
 
 }  // namespace
 
@@ -28,7 +33,7 @@ void Clients::begin(ServedRun& run) {
   }
   for (const std::uint64_t id : gone) forget(id);
   std::ranges::sort(staying, {}, &AttachedClient::place);
-  for (AttachedClient* client : staying) claim(*client);
+  for (AttachedClient* client : staying) claim(*client, Arriving::in_a_former_run);
 }
 
 void Clients::end() {
@@ -54,10 +59,32 @@ void Clients::join(const Inbox::Arrival& arrival) {
   if (client == nullptr) return;
   const bool is_news = !client->is_known || client->join.robots != arrival.join.robots;
   client->is_known = true;
-  client->join = arrival.join;
+  const std::vector<std::string> before = std::exchange(client->join, arrival.join).robots;
   set_alive(*client, true);
   // Clients repeat their Join once a second as a sign of life.
-  if (is_news) claim(*client);
+  bool has_lease = false;
+  if (is_news) {
+    const std::lock_guard lock(mutex_);
+    has_lease = run_->leases.lease(client->id()) != nullptr;
+  }
+  if (has_lease && client->has_growing_lease())
+    note_more_selectors(*client, before);
+  else if (is_news)
+    claim(*client, Arriving::now);
+  some_want_more_ |= !client->more.empty();
+}
+
+void Clients::note_more_selectors(AttachedClient& client, const std::vector<std::string>& before) {
+  const std::set<std::string> now(client.join.robots.begin(), client.join.robots.end());
+  std::set<std::string> more(client.more.begin(), client.more.end());
+  std::erase_if(more, [&](const std::string& selector) { return !now.contains(selector); });
+  more.insert(now.begin(), now.end());
+  for (const std::string& selector : before)
+    if (std::ranges::find(client.more, selector) == client.more.end()) more.erase(selector);
+  client.more.assign(more.begin(), more.end());
+  if (client.join.robots.size() <= most_selectors) return;
+  client.more.clear();
+  run_->monitor.add_event("refused", client.label + " gets no more robots: " + too_many_selectors());
 }
 
 // Returns the client of this Join, with its writers. Null if it may not or cannot be attached.
@@ -176,20 +203,40 @@ bool Clients::refuse_unfit(const wire::Report& report) {
   return true;
 }
 
-// Claims the robots of this run that match the client's selectors.
-void Clients::claim(AttachedClient& client) {
+// Returns the robots that match any of the selectors, and leaves those that match none, at most `most_mismatches`.
+// `mismatch`: why the first of them does not.
+std::set<std::uint32_t> Clients::take_matching(std::vector<std::string>& selectors, std::size_t most_mismatches,
+                                               std::string& mismatch) const {
   std::set<std::uint32_t> robots;
-  std::string refusal;
-  if (client.join.robots.size() > most_selectors)
-    refusal = "the client requests more than " + std::to_string(most_selectors) + " selectors; use ranges";
-  for (const std::string& selector : client.join.robots) {
-    if (!refusal.empty()) break;
+  std::size_t mismatches = 0;
+  std::erase_if(selectors, [&](const std::string& selector) {
+    if (mismatches > most_mismatches) return true;
     try {
       const auto selected = description::select_robots(run_->simulation.description(), selector);
       robots.insert(selected.begin(), selected.end());
+      return true;
     } catch (const std::invalid_argument& error) {
-      refusal = error.what();
+      if (mismatch.empty()) mismatch = error.what();
+      return ++mismatches > most_mismatches;
     }
+  });
+  return robots;
+}
+
+// Claims the robots of this run that match the client's selectors. Robots that were added to a former run are not in
+// this one.
+void Clients::claim(AttachedClient& client, Arriving arriving) {
+  const bool may_lack_robots = arriving == Arriving::in_a_former_run && client.has_growing_lease();
+  std::set<std::uint32_t> robots;
+  std::string refusal;
+  std::vector<std::string> selectors = client.join.robots;
+  if (selectors.size() > most_selectors)
+    refusal = too_many_selectors();
+  else
+    robots = take_matching(selectors, may_lack_robots ? most_without_robots : 0, refusal);
+  if (may_lack_robots && !robots.empty()) {
+    client.more = std::move(selectors);
+    refusal.clear();
   }
   if (robots.empty() && refusal.empty()) refusal = "the client requests no robot";
   if (refusal.empty()) refusal = why_forbidden(client, robots);
@@ -217,6 +264,7 @@ std::string Clients::why_forbidden(const AttachedClient& client, const std::set<
 }
 
 void Clients::decide_claims() {
+  extend_leases();
   lockstep::Leases::Decisions decisions;
   {
     const std::lock_guard lock(mutex_);
@@ -234,6 +282,72 @@ void Clients::decide_claims() {
   for (const auto& granted : decisions.granted) admit(granted);
 }
 
+// Between the frames of two ticks, adds robots to the leases of clients that have requested more.
+void Clients::extend_leases() {
+  if (!some_want_more_) return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!run_->exchange.barrier().complete()) return;
+  }
+  some_want_more_ = false;
+  for (auto& [id, client] : clients_)
+    if (!client.more.empty()) extend(client);
+}
+
+// Adds only robots that no client has driven: others may have controllers with state, and unanswered frames.
+void Clients::extend(AttachedClient& client) {
+  std::string mismatch;
+  std::set<std::uint32_t> robots = take_matching(client.more, most_without_robots, mismatch);
+  std::vector<std::uint64_t> frames;
+  wire::Admit answer;
+  {
+    const std::lock_guard lock(mutex_);
+    if (run_->leases.lease(client.id()) == nullptr) return;
+    std::erase_if(robots, [&](auto robot) {
+      return run_->was_driven[robot] || run_->leases.holder(robot) || run_->is_gone(robot);
+    });
+    if (const std::string refusal = why_forbidden(client, robots); !refusal.empty()) {
+      run_->monitor.add_event("refused", client.label + " gets no more robots: " + refusal);
+      return;
+    }
+    if (robots.empty()) return;
+    const std::vector<std::uint32_t> added(robots.begin(), robots.end());
+    for (const std::uint32_t robot : run_->leases.lease(client.id())->robots)
+      if (!run_->is_gone(robot)) robots.insert(robot);
+    run_->leases.change(client.id(), {robots.begin(), robots.end()});
+    const lockstep::Leases::Lease& lease = *run_->leases.lease(client.id());
+    client.robots = lease.robots;
+    client.drives_first.insert(client.drives_first.end(), added.begin(), added.end());
+    for (const std::uint32_t robot : added) run_->was_driven[robot] = true;
+    frames = frames_under_way(lease);
+    answer = admission(client, lease);
+    answer.start_reason = wire::StartReason::more_robots;
+    answer.tick = frames.empty() ? run_->simulation.tick() : frames.front();
+    run_->monitor.add_event("joined", client.label + " also drives " + run_->robots_text(added));
+  }
+  client.send(client.admit, answer, run_);
+  for (const std::uint64_t tick : frames) send_frame(client, tick, false);
+  client.times_resent = 0;
+}
+
+// Returns an Admit without the reason and the tick. Requires the lock.
+wire::Admit Clients::admission(AttachedClient& client, const lockstep::Leases::Lease& lease) {
+  wire::Admit answer;
+  answer.client = client.id();
+  answer.run = run_->number;
+  answer.epoch = lease.epoch;
+  answer.step_ns = run_->experiment.world.step.count();
+  admit_robots(answer, run_->simulation.experiment(), run_->simulation, lease.robots);
+  for (wire::AdmittedRobot& robot : answer.robots) robot.description = run_->descriptions[robot.description];
+  return answer;
+}
+
+// Requires the lock. A restored run may have unanswered frames before its first tick.
+std::vector<std::uint64_t> Clients::frames_under_way(const lockstep::Leases::Lease& lease) const {
+  const bool has_frames = run_->started || run_->monitor.options().from;
+  return has_frames ? run_->frames_under_way(lease.robots) : std::vector<std::uint64_t>();
+}
+
 void Clients::admit(const lockstep::Leases::Granted& granted) {
   AttachedClient& client = clients_.at(granted.client);
   for (const std::uint64_t loser : granted.superseded) {
@@ -247,11 +361,8 @@ void Clients::admit(const lockstep::Leases::Granted& granted) {
   {
     const std::lock_guard lock(mutex_);
     const lockstep::Leases::Lease& lease = *run_->leases.lease(granted.client);
-    // A restored run may have unanswered frames before its first tick.
-    if (run_->started || run_->monitor.options().from) frames = run_->frames_under_way(lease.robots);
-    answer.client = granted.client;
-    answer.run = run_->number;
-    answer.epoch = lease.epoch;
+    frames = frames_under_way(lease);
+    answer = admission(client, lease);
     answer.start_reason = why_it_starts(lease.robots, client);
     if (answer.start_reason == wire::StartReason::takeover && note_lost_state(client, lease.robots)) return;
     if (answer.start_reason == wire::StartReason::restored && give_state(client, lease.robots))
@@ -262,9 +373,6 @@ void Clients::admit(const lockstep::Leases::Granted& granted) {
       run_->was_driven[robot] = true;
     }
     answer.tick = frames.empty() ? run_->simulation.tick() : frames.front();
-    answer.step_ns = run_->experiment.world.step.count();
-    admit_robots(answer, run_->simulation.experiment(), run_->simulation, lease.robots);
-    for (wire::AdmittedRobot& robot : answer.robots) robot.description = run_->descriptions[robot.description];
     if (!granted.again) run_->monitor.add_event("joined", client.label + " drives " + run_->robots_text(lease.robots));
   }
   client.claims = false;

@@ -86,7 +86,15 @@ class Clients {
   /// `tick`: the run's tick, or that of the frame that the message refers to.
   void tell(AttachedClient& client, wire::ReportKind kind, const std::string& reason, const std::string& text,
             std::optional<std::uint64_t> tick = {});
-  void claim(AttachedClient& client);
+  enum class Arriving { now, in_a_former_run };
+  void claim(AttachedClient& client, Arriving arriving);
+  void note_more_selectors(AttachedClient& client, const std::vector<std::string>& before);
+  std::set<std::uint32_t> take_matching(std::vector<std::string>& selectors, std::size_t most_mismatches,
+                                        std::string& mismatch) const;
+  void extend_leases();
+  void extend(AttachedClient& client);
+  wire::Admit admission(AttachedClient& client, const lockstep::Leases::Lease& lease);
+  std::vector<std::uint64_t> frames_under_way(const lockstep::Leases::Lease& lease) const;
   std::string why_forbidden(const AttachedClient& client, const std::set<std::uint32_t>& robots) const;
   void admit(const lockstep::Leases::Granted& granted);
   bool note_lost_state(const AttachedClient& client, const std::vector<std::uint32_t>& robots);
@@ -99,6 +107,7 @@ class Clients {
 
   std::mutex& mutex_;
   ServedRun* run_ = nullptr;  // null between runs
+  bool some_want_more_ = false;
   std::uint64_t arrivals_ = 0;
   std::map<std::uint64_t, AttachedClient> clients_;  // by id
   ClientNames names_;                                // guarded by the lock

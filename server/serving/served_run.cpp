@@ -39,6 +39,10 @@ std::vector<std::uint32_t> ServedRun::undriven_newcomers() const {
   return robots;
 }
 
+bool ServedRun::is_gone(std::uint32_t robot) const {
+  return robot >= robots_at_first && !simulation.is_present(robot) && exchange.barrier().unanswered(robot).empty();
+}
+
 bool ServedRun::is_ready() const {
   for (std::uint32_t robot = 0; robot < robots_at_first; ++robot)
     if (!leases.holder(robot) && simulation.policy(robot).required && !exchange.barrier().is_detached(robot))

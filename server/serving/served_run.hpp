@@ -40,6 +40,8 @@ struct ServedRun {
   }
   /// Adds robots that joined the simulation at a boundary. Returns true if there were any.
   bool add_newcomers();
+  /// Returns true if a robot that joined during the run has left it for good, and its last frames are answered.
+  bool is_gone(std::uint32_t robot) const;
   /// Returns true if every robot that requires a controller has one.
   bool is_ready() const;
   /// Returns the robots that joined during the run, require a controller and have never had one: the run is paused

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <random>
 
 namespace cohort::ros2 {
 namespace {
@@ -132,6 +133,44 @@ TEST(Ros2Drive, EncodersMeasureAStraightPathATurnInPlaceAndAnArc) {
   EXPECT_EQ(motion.x, 0.0);
   EXPECT_EQ(motion.y, 0.0);
   EXPECT_EQ(motion.velocity.linear, 0.0);
+}
+
+// Along an S of two arcs, compared with many runs whose encoders have other errors.
+TEST(Ros2Drive, OdometryHasTheCovarianceThatTheNoiseOfItsEncodersCauses) {
+  constexpr int runs = 4000, steps = 40;
+  constexpr double deviation = 0.02, seconds = 0.05;  // [rad], [s]
+  TwoWheels robot;
+  for (description::Device& device : robot.model.devices)
+    if (auto* const encoder = std::get_if<description::JointEncoder>(&device)) {
+      encoder->readout.noises.push_back({.quantity = "position", .deviation = deviation, .bias_deviation = 1.0});
+      encoder->readout.noises.push_back({.quantity = "velocity", .deviation = 100.0});
+    }
+  std::mt19937 random(1);
+  std::normal_distribution<double> error(0.0, deviation);
+  Eigen::Matrix<double, 5, 1> sum = Eigen::Matrix<double, 5, 1>::Zero();
+  Eigen::Matrix<double, 5, 5> squares = Eigen::Matrix<double, 5, 5>::Zero();
+  PlanarMotion motion;
+  for (int run = 0; run < runs; ++run) {
+    Drive drive = robot.drive();
+    double left = 3.0, right = 3.0;
+    for (int step = 0; step <= steps; ++step) {
+      motion = drive.measure(std::vector<double>{left + error(random), right + error(random)}, seconds);
+      left += step < steps / 2 ? 0.5 : 0.8;
+      right += step < steps / 2 ? 0.8 : 0.5;
+    }
+    Eigen::Matrix<double, 5, 1> result;
+    result << motion.x, motion.y, motion.heading, motion.velocity.linear, motion.velocity.angular;
+    sum += result;
+    squares += result * result.transpose();
+  }
+  const Eigen::Matrix<double, 5, 1> mean = sum / runs;
+  const Eigen::Matrix<double, 5, 5> covariance = squares / runs - mean * mean.transpose();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      EXPECT_NEAR(motion.covariance(i, j), covariance(i, j), 0.15 * std::sqrt(covariance(i, i) * covariance(j, j)))
+          << i << " " << j;
+  EXPECT_NEAR(motion.variance.linear, covariance(3, 3), 0.1 * covariance(3, 3));
+  EXPECT_NEAR(motion.variance.angular, covariance(4, 4), 0.1 * covariance(4, 4));
 }
 
 TEST(Ros2Drive, FourWheelsAreMeasuredByTheirMean) {

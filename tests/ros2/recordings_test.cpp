@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <sstream>
 #include <tuple>
+#include <utility>
 
 #include "server/recording/mcap/reading/mcap_reader.hpp"
-#include "tests/ros2/nodes.hpp"
+#include "tests/ros2/bridged_nodes.hpp"
 
 /// Recordings as ROS 2 has them: bags, for a reader that is not ours, and messages for nodes that are not ours.
 namespace cohort::test {
@@ -22,14 +24,20 @@ class Ros2Recordings : public ::testing::Test {
   std::string folder() const { return scratch_ / "bag"; }
   std::string file() const { return folder() + "/run.mcap"; }
 
-  // `TOPIC TIME` of the messages on topics of this kind, in the order of time, the clock last at each time.
+  // `TOPIC TIME` of the messages on topics of this kind, in the order of time, the clock last at each time. With each
+  // observation, the transforms of the bridge are played too.
   std::vector<std::string> recorded(const std::vector<std::string>& topics, std::uint64_t from = 0) const {
     std::vector<std::tuple<std::uint64_t, bool, std::string>> messages;
     const recording::McapReader reader(file());
-    for (recording::MessageStream stream = reader.messages(); const auto message = stream.next();)
-      if (const std::string& topic = reader.channels().at(message->channel).topic;
-          std::ranges::find(topics, topic) != topics.end())
+    bool is_first = true;
+    for (recording::MessageStream stream = reader.messages(); const auto message = stream.next();) {
+      const std::string& topic = reader.channels().at(message->channel).topic;
+      if (std::ranges::find(topics, topic) != topics.end())
         messages.emplace_back(message->log_time.count(), topic == "/clock", topic);
+      if (topic != "/turtlebot3/observation") continue;
+      if (std::exchange(is_first, false)) messages.emplace_back(message->log_time.count(), false, "/tf_static");
+      messages.emplace_back(message->log_time.count(), false, "/tf");
+    }
     std::ranges::stable_sort(messages, {},
                              [](const auto& each) { return std::pair(std::get<0>(each), std::get<1>(each)); });
     std::vector<std::string> lines;
@@ -121,11 +129,50 @@ TEST_F(Ros2Recordings, ArePlayedToNodesInTheirOrder) {
       const auto player =
           network.start({cohort_program(), "replay", file(), "--ros2", "--speed", "10", "--wait", "6", "--from", from});
       ASSERT_EQ(player->wait_for_exit(), 0) << player->output() << listener->output();
-      EXPECT_NE(player->output().find("playing 6 topics to ROS 2 nodes in domain 0\n"), std::string::npos)
+      EXPECT_NE(player->output().find("playing 10 topics to ROS 2 nodes in domain 0\n"), std::string::npos)
           << player->output();
       ASSERT_EQ(listener->wait_for_exit(), 0) << listener->output();
       EXPECT_EQ(listener->output(), joined(expected)) << distribution.name;
     }
+}
+
+std::vector<std::string> lines_of(const std::string& output, const std::string& topic) {
+  std::vector<std::string> found;
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(topic + " ")) found.push_back(line);
+  return found;
+}
+
+TEST(Ros2Replay, PublishesTheOdometryAndTheScansOfTheRun) {
+  if (const std::string missing = missing_for_ros2(); !missing.empty()) GTEST_SKIP() << missing;
+  const std::vector<std::string> watched = {"/", "odom", "scan", "joint_states"};
+  const ScratchFolder folder;
+  const std::string file = folder / "run.mcap";
+  BridgedNodes run({.experiment = "turtlebot3",
+                    .ros2 = "{sync: command, namespace: /, base_frame: base_footprint, topics: {scan: {rate: 5}}}",
+                    .seconds = "3",
+                    .server = {"--record", file, "--record-observations", "100"}});
+  run.start();
+  const auto live = run.start_node(jazzy(), "watcher.py", watched);
+  ASSERT_TRUE(live->wait_for_output("ready"));
+  const auto commander = run.start_node(jazzy(), "commander.py", {"/", "scan", "Twist"});
+  run.summary();
+  for (const std::string from : {"0", "1"}) {
+    const OwnNetwork network;
+    const auto node = network.start_node(jazzy(), "watcher.py", watched);
+    const auto player =
+        network.start({cohort_program(), "replay", file, "--ros2", "--speed", "2", "--wait", "3", "--from", from});
+    ASSERT_EQ(player->wait_for_exit(), 0) << player->output();
+    for (const auto& [topic, count] : {std::pair("odom", 150U), {"scan", 8U}, {"joint_states", 150U}}) {
+      const std::vector<std::string> expected = lines_of(live->output(), topic);
+      ASSERT_TRUE(eventually([&] { return lines_of(node->output(), topic).size() > count; })) << topic;
+      for (const std::string& line : lines_of(node->output(), topic)) {
+        if (line.starts_with(std::string(topic) + " 3.0")) continue;  // the end of the run, which has no frame
+        ASSERT_NE(std::ranges::find(expected, line), expected.end()) << line;
+      }
+    }
+  }
 }
 
 TEST_F(Ros2Recordings, CannotBePlayedAndRunAgainAtOnce) {

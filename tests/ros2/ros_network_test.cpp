@@ -150,7 +150,7 @@ TEST(Ros2Domain, BecomesAConfigurationOfCyclone) {
   domain.number = 7;
   EXPECT_EQ(cyclone_configuration(domain),
             "<CycloneDDS><Domain Id=\"any\"><General></General><Discovery><ExternalDomainId>7</ExternalDomainId>"
-            "</Discovery></Domain></CycloneDDS>");
+            "</Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash></Internal></Domain></CycloneDDS>");
   domain.range = DiscoveryRange::localhost;
   domain.static_peers = {"10.0.0.1"};
   domain.configuration = "file:///own.xml";
@@ -158,7 +158,8 @@ TEST(Ros2Domain, BecomesAConfigurationOfCyclone) {
             "<CycloneDDS><Domain Id=\"any\"><General><AllowMulticast>false</AllowMulticast></General><Discovery>"
             "<ExternalDomainId>7</ExternalDomainId><ParticipantIndex>auto</ParticipantIndex>"
             "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex><Peers><Peer address=\"10.0.0.1\"/>"
-            "<Peer address=\"localhost\"/></Peers></Discovery></Domain></CycloneDDS>,file:///own.xml");
+            "<Peer address=\"localhost\"/></Peers></Discovery>"
+            "<Internal><GenerateKeyhash>true</GenerateKeyhash></Internal></Domain></CycloneDDS>,file:///own.xml");
 }
 
 }  // namespace

@@ -74,5 +74,22 @@ TEST(Ros2Settings, ARateSkipsFrames) {
   EXPECT_GT(heard, 2U);
 }
 
+TEST(Ros2Settings, ARateIsExactOnAverage) {
+  if (const std::string missing = missing_for_ros2(); !missing.empty()) GTEST_SKIP() << missing;
+  BridgedNodes run(with("{namespace: /, topics: {odom: {rate: 30}}}"));
+  run.start();
+  const auto node = run.start_node(jazzy(), "watcher.py", {"/", "odom"});
+  const auto stamps = [&] {
+    std::vector<double> times;
+    std::istringstream lines(node->output());
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with("odom ")) times.push_back(std::stod(line.substr(5)));
+    return times;
+  };
+  ASSERT_TRUE(eventually([&] { return stamps().size() > 60; })) << node->output();
+  const std::vector<double> times = stamps();
+  EXPECT_NEAR(times[60] - times[0], 2.0, 0.0101) << node->output();
+}
+
 }  // namespace
 }  // namespace cohort::test

@@ -21,11 +21,14 @@ std::string missing_for_clients() {
   return missing_for_ros2();
 }
 
-// A paused run in a network of its own, with a bridge.
+// A run in a network of its own, with a bridge. It is paused unless the server has options.
 class ControlledRun {
  public:
-  explicit ControlledRun(const std::vector<std::string>& options = {}, const std::string& program = bridge_program)
-      : server_(network_.start({cohort_program(), "serve", experiment, "--paused"})) {
+  explicit ControlledRun(const std::vector<std::string>& options = {}, const std::string& program = bridge_program,
+                         const std::vector<std::string>& server_options = {"--paused"}) {
+    std::vector<std::string> server = {cohort_program(), "serve", experiment};
+    server.insert(server.end(), server_options.begin(), server_options.end());
+    server_ = network_.start(server);
     std::vector<std::string> command = {program};
     command.insert(command.end(), options.begin(), options.end());
     bridge_ = network_.start(command);
@@ -78,6 +81,29 @@ TEST_P(Ros2Simulation, AnUnmodifiedNodeControlsARunByEachService) {
   ASSERT_EQ(client->wait_for_exit(), 0) << client->output();
   EXPECT_EQ(run.server().wait_for_exit(), 0) << run.server().output();
   EXPECT_EQ(run.bridge().wait_for_exit(), 0) << run.bridge().output();
+}
+
+TEST_P(Ros2Simulation, ANodeDrivesARobotThatItAdds) {
+  if (const std::string missing = missing_for_clients(); !missing.empty()) GTEST_SKIP() << missing;
+  const auto with_interfaces = environment();
+  ControlledRun run({}, bridge_program, {"--duration", "3600"});
+  const auto node = run.network().start_node(distribution(), "spawner.py", {"drive"}, with_interfaces);
+  EXPECT_EQ(node->wait_for_exit(), 0) << node->output() << run.bridge().output();
+  EXPECT_EQ(run.server().wait_for_exit(), 0) << run.server().output();
+}
+
+TEST_P(Ros2Simulation, AnswersFitTheirFramesWhileRobotsComeAndGo) {
+  if (const std::string missing = missing_for_clients(); !missing.empty()) GTEST_SKIP() << missing;
+  const auto with_interfaces = environment();
+  const ScratchFolder folder;
+  ControlledRun run({}, bridge_program, {"--duration", "3600", "--summary", folder / "summary.json"});
+  const std::string seed = std::to_string(GetParam());
+  const auto node = run.network().start_node(distribution(), "spawner.py", {"random", seed, "50"}, with_interfaces);
+  EXPECT_EQ(node->wait_for_exit(), 0) << node->output() << run.bridge().output();
+  EXPECT_EQ(run.server().wait_for_exit(), 0) << run.server().output();
+  EXPECT_EQ(run.bridge().output().find("rejected"), std::string::npos) << run.bridge().output();
+  for (const auto& event : read_json(folder / "summary.json")["events"])
+    EXPECT_NE(event["kind"], "rejected") << event.dump();
 }
 
 TEST_P(Ros2Simulation, ClientsOnBothImplementationsOfDdsGetOneReplyEach) {

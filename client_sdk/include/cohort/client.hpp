@@ -84,8 +84,8 @@ struct DrivenRobot {
 };
 
 /// The start of a lease, the right to drive robots: from now on, the client drives these robots and no others. It is
-/// the first event, and it occurs again after each takeover, reset and restore; `robots[i].start.reason` gives the
-/// reason. Channels must be looked up again.
+/// the first event, and it occurs again after each takeover, reset and restore, and when `Client::claim` has added
+/// robots; `robots[i].start.reason` gives the reason. Channels must be looked up again.
 struct LeaseStart {
   std::uint64_t tick = 0;                 ///< tick of the next frame
   std::chrono::nanoseconds step{0};       ///< simulated time between ticks
@@ -148,6 +148,11 @@ class Client {
   ClientEvent next();
   /// Acts like `next()`, but returns nothing if no event arrives within `at_most`, which may be 0.
   std::optional<ClientEvent> next(std::chrono::milliseconds at_most);
+
+  /// Replaces the selectors in `ClientOptions::robots`, for robots that are added during the run. New selectors add the
+  /// robots that no client has driven yet, also later, as soon as they match; a LeaseStart follows. The client keeps
+  /// the robots that it has. May be called from any thread.
+  void claim(std::vector<std::string> robots);
 
   /// Answers the current event, so that the simulation continues while the caller does something else. Does nothing if
   /// there is no current event.

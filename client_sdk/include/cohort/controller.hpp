@@ -58,6 +58,7 @@ enum class StartReason {
   takeover,  ///< another process drove this robot before; the run continues from `Start::tick`
   reset,     ///< the world was rebuilt
   restored,  ///< the world was restored from a snapshot
+  going_on,  ///< the client has claimed more robots; for this one, nothing has changed (only in <cohort/client.hpp>)
   check,     ///< `cohort check --load-controllers` and `cohort run` test the start; no step follows
 };
 

@@ -77,6 +77,7 @@ const char* word_of(StartReason reason) {
     case StartReason::takeover: return "takeover";
     case StartReason::reset: return "reset";
     case StartReason::restored: return "restored";
+    case StartReason::going_on: return "going_on";
     case StartReason::check: return "check";
   }
   return "first";

@@ -74,8 +74,9 @@ std::string cyclone_configuration(const RosDomain& domain) {
     discovery +=
         "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex><Peers>" +
         peers + "</Peers>";
+  // Without hashes of keys, Fast DDS does not notice that an endpoint has gone.
   std::string xml = "<CycloneDDS><Domain Id=\"any\"><General>" + general + "</General><Discovery>" + discovery +
-                    "</Discovery></Domain></CycloneDDS>";
+                    "</Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash></Internal></Domain></CycloneDDS>";
   if (!domain.configuration.empty()) xml += "," + domain.configuration;
   return xml;
 }

@@ -200,6 +200,12 @@ bool RosGraph::knows_nodes_of(const Gid& participant) const {
   return found != state_->nodes.end() && !found->second.names.empty();
 }
 
+bool RosGraph::has(const Gid& participant) const {
+  const std::scoped_lock lock(state_->mutex);
+  return std::ranges::any_of(state_->endpoints,
+                             [&](const auto& each) { return each.second.participant == participant; });
+}
+
 bool RosGraph::is_complete() const {
   const std::scoped_lock lock(state_->mutex);
   std::set<Gid> known;

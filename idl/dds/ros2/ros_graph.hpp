@@ -42,6 +42,8 @@ class RosGraph {
   std::string nodes_of(const Gid& participant) const;
   /// Returns true if a participant has announced its nodes.
   bool knows_nodes_of(const Gid& participant) const;
+  /// Returns true if a participant has endpoints. One that has none is gone.
+  bool has(const Gid& participant) const;
   /// Returns the number of nodes of other programs.
   std::size_t node_count() const;
   /// Returns true if every endpoint that nodes of other programs have announced is known here.

@@ -321,10 +321,8 @@ inline constexpr auto readout_keys = std::tuple{
         "resolution, to multiples of which readings are rounded; 0 for no rounding", unless_default),
     key("drop_out", &Readout::drop_out, fraction, "1", "0",
         "probability that a report is lost; the previous report is then repeated", unless_default),
-    key("rate", &Readout::period, positive, "Hz", no_value,
-        "measurement rate, rounded to whole ticks; every tick if absent"),
-    key("latency", &Readout::latency, non_negative, "s", "0", "time from measurement to report, rounded to whole ticks",
-        unless_default),
+    key("rate", &Readout::period, positive, "Hz", no_value, "mean measurement rate; every tick if absent"),
+    key("latency", &Readout::latency, non_negative, "s", "0", "mean time from measurement to report", unless_default),
 };
 
 /// All keys of the element of a kind.

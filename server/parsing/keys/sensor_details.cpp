@@ -11,7 +11,9 @@ are also supported.
 
 A reading is the measured value plus noise and bias, rounded to the precision and clamped to the range of its
 channel. Counts and flags have neither noise nor bias. A sensor with a `rate` measures at multiples of its
-period, and its reading stays the same in between. With a `latency`, each reading is reported that much later. A
+period, and its reading stays the same in between. With a `latency`, each reading is reported that much later. If
+the period is not a whole number of ticks, each measurement happens at the nearest tick, so that the average rate
+is exact: at 30 Hz and 100 ticks per second, at the ticks 0, 3, 7, 10 … A latency is exact on average too. A
 drop-out loses the whole report of the sensor. Before the first report, readings are 0. A lidar then reads its
 maximum range, and the objects of a logical camera are -1.
 

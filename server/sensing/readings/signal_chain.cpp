@@ -20,18 +20,14 @@ std::uint32_t draw_of(Draw what, std::size_t value) {
 
 std::string quantity_of(const Channel& channel) { return channel.name.substr(channel.name.rfind('/') + 1); }
 
-std::uint64_t whole_ticks(std::chrono::nanoseconds time, std::chrono::nanoseconds step) {
-  return static_cast<std::uint64_t>((time + step / 2) / step);
-}
-
 }  // namespace
 
 SignalPlan::SignalPlan(const description::Readout& readout, const std::vector<Channel>& channels,
                        std::chrono::nanoseconds step)
-    : readout_(readout) {
+    : readout_(readout), step_(step), measurements_(readout.period, step) {
   for (const Channel& channel : channels) {
     for (std::uint32_t i = 0; i < channel.size; ++i) {
-      const int place = channel.is_measured ? noise_on(channel, i) : -1;
+      const int place = channel.is_measured ? description::noise_on(readout_, quantity_of(channel), i) : -1;
       Value value{place, 0.0, channel.lower, channel.upper, channel.neutral};
       if (place >= 0) {
         const description::Noise& noise = readout_.noises[static_cast<std::size_t>(place)];
@@ -42,10 +38,22 @@ SignalPlan::SignalPlan(const description::Readout& readout, const std::vector<Ch
       values_.push_back(value);
     }
   }
-  period_ = std::max<std::uint64_t>(1, whole_ticks(readout_.period, step));
-  latency_ = whole_ticks(readout_.latency, step);
-  sample_time_ = static_cast<double>(period_) * static_cast<double>(step.count()) * 1e-9;
-  is_immediate_ = period_ == 1 && latency_ == 0 && readout_.drop_out == 0.0;
+  const std::optional<std::uint64_t> whole_latency = whole_steps(readout_.latency, step);
+  latency_ = whole_latency.value_or(static_cast<std::uint64_t>(readout_.latency / step));
+  if (!whole_latency) latency_beyond_ = readout_.latency % step;
+  sample_time_ = static_cast<double>(measurements_.period().count()) * 1e-9;
+  const bool has_latency = latency_ > 0 || latency_beyond_.count() > 0;
+  is_immediate_ = measurements_.is_every_tick() && !has_latency && readout_.drop_out == 0.0;
+}
+
+// Returns the ticks from a measurement, by its number, to its report. A part of a tick becomes a whole one for some of
+// the measurements, so that the average is exact.
+std::uint64_t SignalPlan::latency_of(std::uint64_t measurement) const {
+  if (latency_beyond_.count() == 0) return latency_;
+  const auto ticks_before = [&](std::uint64_t number) {
+    return static_cast<std::uint64_t>((static_cast<std::int64_t>(number) * latency_beyond_ + step_ / 2) / step_);
+  };
+  return latency_ + ticks_before(measurement + 1) - ticks_before(measurement);
 }
 
 SignalChain::SignalChain(std::shared_ptr<const SignalPlan> plan, std::uint64_t seed, const std::string& robot,
@@ -65,17 +73,6 @@ SignalChain::SignalChain(std::shared_ptr<const SignalPlan> plan, std::uint64_t s
   }
   if (plan_->wanders_) memory_->drift.assign(values.size(), 0.0);
   memory_->drift_before = memory_->drift;
-}
-
-int SignalPlan::noise_on(const Channel& channel, std::uint32_t element) const {
-  int place = -1;
-  for (std::size_t i = 0; i < readout_.noises.size(); ++i) {
-    const description::Noise& noise = readout_.noises[i];
-    if ((noise.quantity.empty() || noise.quantity == quantity_of(channel)) &&
-        (noise.element < 0 || noise.element == static_cast<int>(element)))
-      place = static_cast<int>(i);
-  }
-  return place;
 }
 
 // The bias drift is a first-order Gauss-Markov process, stepped exactly. Its standard deviation is the given one,
@@ -117,7 +114,7 @@ void SignalChain::take(std::uint64_t tick, std::span<const double> values) {
   const double drop_out_rate = plan_->readout_.drop_out;
   if (drop_out_rate > 0.0 && random_.uniform(tick, draw_of(drop_out, 0)) < drop_out_rate) return;
   std::vector<Report>& under_way = memory_->under_way;
-  const std::uint64_t due = tick + plan_->latency_;
+  const std::uint64_t due = tick + plan_->latency_of(plan_->measurements_.count(tick));
   if (!under_way.empty() && under_way.back().due == due) under_way.pop_back();
   under_way.push_back({due, {values.begin(), values.end()}});
 }

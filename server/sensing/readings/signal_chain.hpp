@@ -8,6 +8,7 @@
 
 #include "server/core/channel.hpp"
 #include "server/core/hash.hpp"
+#include "server/core/periodic_ticks.hpp"
 #include "server/core/random.hpp"
 #include "server/core/snapshot.hpp"
 #include "server/description/readout.hpp"
@@ -29,16 +30,18 @@ class SignalPlan {
     double upper = 0.0;
     double neutral = 0.0;
   };
-  int noise_on(const Channel& channel, std::uint32_t element) const;
+  std::uint64_t latency_of(std::uint64_t measurement) const;
 
   description::Readout readout_;
   std::vector<Value> values_;
   bool draws_bias_ = false;  // for each robot
   bool wanders_ = false;
   bool is_immediate_ = true;
-  std::uint64_t period_ = 1;   // in ticks
-  std::uint64_t latency_ = 0;  // in ticks
-  double sample_time_ = 0.0;   // from one measurement to the next [s]
+  std::chrono::nanoseconds step_;
+  PeriodicTicks measurements_;
+  std::uint64_t latency_ = 0;                   // in whole ticks
+  std::chrono::nanoseconds latency_beyond_{0};  // the rest, less than a step
+  double sample_time_ = 0.0;                    // from one measurement to the next [s]
 };
 
 /// The signal chain of one sensor of one robot, which implements description::Readout. Draws depend only on seed,
@@ -56,7 +59,7 @@ class SignalChain {
   bool is_immediate() const { return plan_->is_immediate_; }
   /// Returns true if the sensor measures at this tick, for a robot that is due if `is_due`.
   bool measures_at(std::uint64_t tick, bool is_due) const {
-    return plan_->is_immediate_ ? is_due || plan_->wanders_ : tick % plan_->period_ == 0;
+    return plan_->is_immediate_ ? is_due || plan_->wanders_ : plan_->measurements_.contains(tick);
   }
   /// Adds all errors to the values measured at this tick. Infinite values, which mean that there was nothing to
   /// measure, become the bound of their channel if the device has noise. Like `take` and `report`, it may be called

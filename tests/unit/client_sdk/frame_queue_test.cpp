@@ -210,5 +210,22 @@ TEST_F(FrameQueueTest, AFloodOfFramesIsBounded) {
   EXPECT_EQ(answer_all().size(), 64u);
 }
 
+TEST_F(FrameQueueTest, ALeaseWithMoreRobotsKeepsItsAnswers) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 2}}));
+  for (std::uint64_t tick = 0; tick < 10; ++tick) arrive(tick);
+  EXPECT_EQ(answer_all().size(), 10u);
+  arrive(10);
+  queue.extend(lease(0, 2, 8, {{.robot = 3, .delay = 2}, {.robot = 4, .delay = 20}}));
+  arrive(9, 2);
+  EXPECT_EQ(repeat(), 9u) << "not computed again";
+  EXPECT_EQ(answer_all(), Ticks{}) << "the frame of the former epoch is sent again under the new one";
+  for (std::uint64_t tick = 10; tick < 20; ++tick) arrive(tick, 2);
+  EXPECT_EQ(answer_all().size(), 10u);
+  for (const std::uint64_t tick : {4, 9, 10, 19}) {
+    arrive(tick, 2);
+    EXPECT_EQ(repeat(), tick);
+  }
+}
+
 }  // namespace
 }  // namespace cohort

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -166,6 +167,33 @@ TEST_F(DeviceMessages, HaveAnImageOfThePanoramicCameraInBytes) {
   ASSERT_EQ(image.data.size(), 96U);
   const std::vector<std::uint8_t> sky(image.data.begin() + 6, image.data.begin() + 9);
   EXPECT_EQ(sky, (std::vector<std::uint8_t>{51, 102, 255})) << "to the left there is nothing";
+}
+
+TEST_F(DeviceMessages, HaveTheVariancesOfTheNoiseInTheModel) {
+  description::Model model = tracked_robot();
+  description::Imu imu{"imu", 0, {}};
+  imu.readout.noises = {{.quantity = "angular_velocity", .deviation = 0.1},
+                        {.quantity = "angular_velocity", .element = 2, .deviation = 0.2, .bias_deviation = 0.1},
+                        {.quantity = "linear_acceleration", .uniform = 0.3, .drift_deviation = 0.2, .precision = 0.6}};
+  model.devices.emplace_back(imu);
+  description::AirPressureSensor barometer;
+  barometer.name = "barometer";
+  barometer.readout.noises = {{.quantity = "", .deviation = 3.0}};
+  model.devices.emplace_back(barometer);
+  SensingWorld world;
+  world.add(model, "robot", at(0, 0, 0));
+  const RobotKind& kind = world.simulation().kinds()[0];
+  std::map<std::string, CdrWriter> written;
+  for (const DeviceMessage& message :
+       device_messages(world.simulation().description().robot_model(0), kind.observation))
+    message.add(written[message.name], {}, world.simulation().observation(0));
+  const auto of_imu = decode<ros::Imu>(written.at("imu").bytes());
+  EXPECT_DOUBLE_EQ(of_imu.angular_velocity_covariance[0], 0.01);
+  EXPECT_DOUBLE_EQ(of_imu.angular_velocity_covariance[4], 0.01);
+  EXPECT_DOUBLE_EQ(of_imu.angular_velocity_covariance[8], 0.05);
+  EXPECT_EQ(of_imu.angular_velocity_covariance[1], 0.0);
+  EXPECT_DOUBLE_EQ(of_imu.linear_acceleration_covariance[4], 0.03 + 0.04 + 0.03);
+  EXPECT_DOUBLE_EQ(decode<ros::FluidPressure>(written.at("fluid_pressure").bytes()).variance, 9.0);
 }
 
 TEST_F(DeviceMessages, HaveLatitudesInAWorldWithAPlaceOnEarth) {

@@ -339,6 +339,20 @@ TEST(Leases, TakesAnAnswerAsASignOfLifeThoughLivelinessSaidOtherwise) {
   EXPECT_EQ(decisions.refused[0].client, 200u);
 }
 
+TEST(Leases, ChangeToOtherRobotsUnderANewEpoch) {
+  Leases leases(4);
+  leases.claim(1, {0, 1});
+  leases.decide(Time{0}, [](const auto&) { return true; });
+  const std::uint64_t before = leases.lease(1)->epoch;
+  leases.note_answer(1);
+  leases.change(1, {0, 3});
+  EXPECT_GT(leases.lease(1)->epoch, before);
+  EXPECT_EQ(leases.lease(1)->robots, (std::vector<std::uint32_t>{0, 3}));
+  EXPECT_EQ(leases.lease(1)->answer_count, 1u);
+  EXPECT_EQ(leases.holder(3), 1u);
+  EXPECT_FALSE(leases.holder(1));
+}
+
 TEST(Leases, KeepsTheEpochOfAClientThatAsksForItsOwnRobotsAgain) {
   Leases leases(2);
   leases.claim(100, {0, 1});

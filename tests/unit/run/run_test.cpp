@@ -96,6 +96,51 @@ TEST(Exchange, RejectsAnAnswerForOtherRobotsThanItsFrame) {
   EXPECT_EQ(exchange.barrier().awaited().size(), 2u) << "they can still answer rightly";
 }
 
+// Answers that were sent again arrive late, when the robots of their frames are no longer known.
+TEST(Exchange, LateAnswersOfRobotsThatHaveGoneAreStale) {
+  const auto experiment = experiment_of({{}, {}});
+  Simulation simulation(experiment, 1);
+  Exchange exchange(simulation);
+  const std::vector<double> both = {0.2, 0.2, 0.0, 0.2, 0.2, 0.0};
+  const auto pass = [&](const Robots& robots, std::span<const double> values) {
+    exchange.open({});
+    const std::uint64_t tick = simulation.tick();
+    EXPECT_EQ(exchange.take(Robots{0, 1}, tick, robots, values).accepted, robots.size());
+    exchange.apply();
+    simulation.step();
+  };
+  pass({0, 1}, both);
+  simulation.act(std::vector<Action>{RemoveObject{"robot_1"}});
+  pass({0}, forward);
+  exchange.open({});
+  for (const std::uint64_t tick : {0, 1}) {
+    const Robots robots = tick == 0 ? Robots{0, 1} : Robots{0};
+    const auto late = exchange.take(Robots{0, 1}, tick, robots, tick == 0 ? std::span(both) : std::span(forward));
+    ASSERT_TRUE(late.rejection);
+    EXPECT_EQ(late.rejection->reason, "stale") << tick;
+  }
+  EXPECT_EQ(exchange.take(Robots{0, 1}, 2, Robots{0, 1}, both).rejection->reason, "malformed");
+  EXPECT_EQ(exchange.take(Robots{0, 1}, 2, Robots{0}, forward).accepted, 1U);
+}
+
+TEST(Exchange, AFreeRobotAnswersOlderFramesAfterAnotherHasGone) {
+  const description::Policy free{.mode = description::Mode::free};
+  const auto experiment = experiment_of({free, free});
+  Simulation simulation(experiment, 1);
+  Exchange exchange(simulation);
+  exchange.open({});
+  simulation.step();
+  simulation.act(std::vector<Action>{RemoveObject{"robot_1"}});
+  for (int i = 0; i < 3; ++i) {
+    exchange.open({});
+    exchange.apply();
+    simulation.step();
+  }
+  const auto taken = exchange.take(Robots{0, 1}, 2, Robots{0}, forward);
+  EXPECT_EQ(taken.accepted, 1U);
+  EXPECT_FALSE(taken.rejection);
+}
+
 TEST(Exchange, ReadsNothingBeyondAnAnswerThatIsTooShort) {
   const auto experiment = experiment_of({{}, {}});
   Simulation simulation(experiment, 1);

@@ -158,6 +158,43 @@ TEST(Readout, ALatencyDelaysEveryReading) {
   EXPECT_EQ(reports({{}, 0.0, 20ms, 30ms}, 10), (std::vector<double>{0, 0, 0, 0, 0, 2, 2, 4, 4, 6}));
 }
 
+// One reading for each tick, with a step of 10 ms.
+TEST(Readout, ARateIsExactOnAverageIfItsPeriodIsNoWholeNumberOfSteps) {
+  for (const int rate : {30, 60, 70, 99}) {
+    const std::chrono::nanoseconds period(std::llround(1e9 / rate));
+    const std::vector<double> out = reports({{}, 0.0, period, 0ms}, 100'000);
+    std::size_t measurements = 1;
+    for (std::size_t tick = 1; tick < out.size(); ++tick)
+      if (out[tick] != out[tick - 1]) ++measurements;
+    EXPECT_NEAR(static_cast<double>(measurements), rate * 1000.0, 2.0) << rate;
+  }
+  EXPECT_EQ(reports({{}, 0.0, 33'333'333ns, 0ms}, 11), (std::vector<double>{0, 0, 0, 3, 3, 3, 3, 7, 7, 7, 10}));
+}
+
+TEST(Readout, ALatencyIsExactOnAverageIfItIsNoWholeNumberOfSteps) {
+  for (const auto latency : {4ms, 15ms, 33ms}) {
+    const std::vector<double> out = reports({{}, 0.0, 50ms, latency}, 100'000);
+    double sum = 0.0;  // of the ages of readings when they are reported
+    std::size_t count = 0;
+    for (std::size_t tick = 1; tick < out.size(); ++tick)
+      if (out[tick] != out[tick - 1]) {
+        sum += static_cast<double>(tick) - out[tick];
+        ++count;
+      }
+    EXPECT_NEAR(sum / static_cast<double>(count), 1e-7 * static_cast<double>(std::chrono::nanoseconds(latency).count()),
+                1e-3);
+  }
+}
+
+TEST(Readout, ARateThatDividesTheStepRateUpToNanosecondsIsRegular) {
+  // Steps of 1/30 s and 1/60 s, rounded.
+  EXPECT_TRUE(PeriodicTicks(100'000'000ns, 33'333'333ns).contains(3'000'000'000));
+  EXPECT_EQ(PeriodicTicks(100'000'000ns, 33'333'333ns).count(3'000'000'000), 1'000'000'000U);
+  EXPECT_TRUE(PeriodicTicks(16'666'667ns, 16'666'666ns).is_every_tick());
+  EXPECT_EQ(PeriodicTicks(33'333'333ns, 16'666'667ns).count(2'000'000'000), 1'000'000'000U);
+  EXPECT_EQ(PeriodicTicks(33'333'333ns, 10ms).count(3'000'000'000), 900'000'009U) << "at 30 Hz";
+}
+
 TEST(Readout, ADropoutKeepsThePreviousReading) {
   const std::vector<double> out = reports({{}, 0.3, 0ms, 0ms}, samples);
   std::uint64_t dropped = 0;

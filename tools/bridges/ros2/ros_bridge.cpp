@@ -37,7 +37,16 @@ RosBridge::RosBridge(Options options, const std::atomic<bool>& stop)
       graph_(participant_, [this] { note_change(); }),
       clock_(participant_, topic_endpoint("/clock", ros::Clock::type, messages::type_hash<ros::Clock>())) {
   format_ = gid_format();
-  if (options_.services) services_.emplace(participant_, graph_, *options_.services, stop_);
+  if (options_.services) {
+    const auto note = [this](std::variant<SpawnedRobot, std::string> change) {
+      const std::lock_guard lock(entity_changes_mutex_);
+      entity_changes_.push_back(std::move(change));
+      inbox_.wake();
+    };
+    options_.services->listener = {[note](SpawnedRobot robot) { note(std::move(robot)); },
+                                   [note](const std::string& entity) { note(entity); }};
+    services_.emplace(participant_, graph_, *options_.services, stop_);
+  }
   if (services_ && format_) services_->announce(*format_);
 }
 
@@ -47,6 +56,7 @@ ClientEnd RosBridge::run() {
     std::array<pollfd, 2> ready{pollfd{client.descriptor(), POLLIN, 0}, pollfd{inbox_.descriptor(), POLLIN, 0}};
     ::poll(ready.data(), ready.size(), static_cast<int>(asked_every / 1ms));
     inbox_.clear();
+    take_entity_changes(client);
     look_at_graph();
     take_messages();
     const std::optional<ClientEvent> event = client.next(0ms);
@@ -56,7 +66,7 @@ ClientEnd RosBridge::run() {
       return ended->end;
     }
     try {
-      if (const auto* lease = std::get_if<LeaseStart>(&*event)) begin(*lease);
+      if (const auto* lease = std::get_if<LeaseStart>(&*event)) begin(client, *lease);
       if (const auto* frame = std::get_if<Frame>(&*event)) answer(client, *frame);
       // The state of nodes is in the nodes, and is not saved here.
       if (const auto* save = std::get_if<SaveState>(&*event)) save->state->leave_out();
@@ -68,46 +78,6 @@ ClientEnd RosBridge::run() {
   }
   end_program();
   return ClientEnd::interrupted;
-}
-
-void RosBridge::begin(const LeaseStart& lease) {
-  const auto is_known = [&](const DrivenRobot& robot) { return robot_of_id_.contains(robot.start.robot); };
-  if (!std::ranges::all_of(lease.robots, is_known)) {
-    experiment_ = options_.experiment();
-    for (const DrivenRobot& robot : lease.robots)
-      if (!is_known(robot)) add_robot(robot);
-    announce();
-    graph_has_changed_ = true;  // for these robots: nodes may have been there before them
-  }
-  step_ = lease.step;
-  for (const DrivenRobot& robot : lease.robots) robot_of_id_.at(robot.start.robot)->begin(lease.tick * lease.step);
-  is_first_frame_ = true;
-  if (true_poses_) true_poses_->forget();
-}
-
-void RosBridge::add_robot(const DrivenRobot& robot) {
-  const auto& models = experiment_->world.models;
-  const auto model = std::ranges::find(models, robot.start.model, &description::Model::name);
-  if (model == models.end())
-    throw std::runtime_error("the experiment has no model '" + robot.start.model + "', the model of robot " +
-                             robot.start.name);
-  RosRobot::Options options;
-  options.settings = experiment_->ros2.of_team(robot.start.team);
-  options.settings.sync = options_.sync.value_or(options.settings.sync);
-  if (!options_.command.empty()) options.settings.sync = RosSync::idle;
-  if (options.settings.sync == RosSync::idle && options_.command.empty())
-    throw std::runtime_error("robot " + robot.start.name +
-                             " has 'sync: idle', which requires --run COMMAND: the bridge must start its nodes");
-  if (options.settings.name_space.empty()) options.settings.name_space = absolute_name(robot.start.name);
-  options.first_input = robot_of_input_.size();
-  options.tell = [this, name = robot.start.name](const std::string& text) {
-    options_.tell("robot " + name + ": " + text);
-  };
-  // DDS tells of an endpoint before it is matched, and the graph has said so by then.
-  options.changed = [this] { note_change(); };
-  robots_.push_back(std::make_unique<RosRobot>(participant_, graph_, inbox_, *model, robot, std::move(options)));
-  robot_of_id_[robot.start.robot] = robots_.back().get();
-  robot_of_input_.resize(robot_of_input_.size() + robots_.back()->inputs(), robots_.back().get());
 }
 
 std::optional<GidFormat> RosBridge::gid_format() const {
@@ -127,11 +97,9 @@ void RosBridge::announce() {
     participant_.withdraw();
 }
 
-RosRobot& RosBridge::robot_of(const FrameRobot& frame) const { return *robot_of_id_.at(frame.robot->start.robot); }
-
 void RosBridge::take_messages() {
   for (const RosInbox::Message& message : inbox_.take())
-    if (message.input < robot_of_input_.size()) {
+    if (message.input < robot_of_input_.size() && robot_of_input_[message.input] != nullptr) {
       RosRobot& robot = *robot_of_input_[message.input];
       robot.take(message.input - robot.first_input(), message.bytes, message.writer);
     }
@@ -161,28 +129,32 @@ void RosBridge::look_at_graph() {
 
 void RosBridge::answer(Client& client, const Frame& frame) {
   const bool is_first = std::exchange(is_first_frame_, false);
+  shown_.clear();
+  for (FrameRobot& robot : frame.robots)
+    if (const auto found = robot_of_id_.find(robot.robot->start.robot); found != robot_of_id_.end())
+      shown_.push_back({&robot, found->second});
   if (is_first && !options_.command.empty() && !program_) start_program(client, frame);
   if (is_first) wait_for_peers(client, frame);
-  if (program_) program_->begin_frame(frame.time, end_of(frame), is_first);
+  if (program_) program_->begin_frame(frame.time, end_of(frame), std::exchange(is_other_run_, false));
   tell(frame);
   cdr_.clear();
   cdr_.add(ros::Clock{ros::time(frame.time)});
   clock_.write(cdr_.bytes());
   if (program_) let_program_work(client);
   wait_for_commands(client, frame);
-  for (FrameRobot& robot : frame.robots) robot_of(robot).answer(robot.command);
+  for (const Shown& each : shown_) each.robot->answer(each.frame->command);
   client.answer();
 }
 
 void RosBridge::tell(const Frame& frame) {
-  for (const FrameRobot& each : frame.robots) {
-    RosRobot& robot = robot_of(each);
+  for (const Shown& each : shown_) {
+    RosRobot& robot = *each.robot;
     std::optional<WorldPose> truth;
     if (robot.publications().wants_true_pose()) {
       if (!true_poses_) true_poses_ = std::make_unique<TruePoses>(options_.client);
-      truth = true_poses_->pose(each.robot->start.robot, robot.name(), frame.tick);
+      truth = true_poses_->pose(each.frame->robot->start.robot, robot.name(), frame.tick);
     }
-    robot.tell_frame(each, frame.tick, frame.time, truth);
+    robot.tell_frame(*each.frame, frame.tick, frame.time, truth);
   }
 }
 
@@ -254,8 +226,8 @@ void RosBridge::wait_for_peers(const Client& client, const Frame& frame) {
   auto next_told = since + told_first;
   for (;;) {
     const RosRobot* awaited = nullptr;
-    for (const FrameRobot& each : frame.robots) {
-      const RosRobot& robot = robot_of(each);
+    for (const Shown& each : shown_) {
+      const RosRobot& robot = *each.robot;
       if (robot.settings().sync != RosSync::command || robot.is_given_up_after(WallClock::now() - since)) continue;
       const bool is_ready =
           robot.has_commander() && participant_.is_announced_to(graph_.listeners(robot.commanding_participants()));
@@ -281,9 +253,9 @@ void RosBridge::tell_awaited(const RosRobot& robot, const Frame& frame) const {
 }
 
 // The first robot whose command is not there and is still waited for.
-RosRobot* RosBridge::awaited(const Frame& frame, std::chrono::nanoseconds waited) const {
-  for (const FrameRobot& each : frame.robots)
-    if (RosRobot& robot = robot_of(each); !robot.is_answered() && !robot.is_given_up_after(waited)) return &robot;
+RosRobot* RosBridge::awaited(std::chrono::nanoseconds waited) const {
+  for (const Shown& each : shown_)
+    if (!each.robot->is_answered() && !each.robot->is_given_up_after(waited)) return each.robot;
   return nullptr;
 }
 
@@ -292,12 +264,12 @@ void RosBridge::wait_for_commands(const Client& client, const Frame& frame) {
   const auto waited = [&] { return WallClock::now() - since; };
   auto next_told = since + told_first;
   auto next_again = since + told_again_after;
-  for (take_messages(); RosRobot* robot = awaited(frame, waited()); take_messages()) {
+  for (take_messages(); RosRobot* robot = awaited(waited()); take_messages()) {
     if (is_over(client)) throw bridges::GaveUp{};
     inbox_.wait(asked_every);
     look_at_graph();
-    for (const FrameRobot& each : frame.robots)
-      if (RosRobot& other = robot_of(each); !other.is_answered()) other.tell_again(false);
+    for (const Shown& each : shown_)
+      if (!each.robot->is_answered()) each.robot->tell_again(false);
     if (WallClock::now() > next_again && robot->may_be_unheard()) {
       next_again += 2 * (next_again - since);
       robot->tell_again(true);
@@ -306,8 +278,8 @@ void RosBridge::wait_for_commands(const Client& client, const Frame& frame) {
     next_told = WallClock::now() + told_every;
     tell_awaited(*robot, frame);
   }
-  for (const FrameRobot& each : frame.robots)
-    if (RosRobot& robot = robot_of(each); !robot.is_answered()) robot.go_on_unanswered(frame.tick);
+  for (const Shown& each : shown_)
+    if (!each.robot->is_answered()) each.robot->go_on_unanswered(frame.tick);
 }
 
 }  // namespace cohort::ros2

@@ -4,9 +4,13 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "client_sdk/include/cohort/client.hpp"
@@ -40,13 +44,20 @@ class RosBridge {
   ClientEnd run();
 
  private:
-  void begin(const LeaseStart& lease);
-  void add_robot(const DrivenRobot& robot);
+  void begin(Client& client, const LeaseStart& lease);
+  std::vector<std::string> selectors() const;
+  void take_entity_changes(Client& client);
+  bool is_shown(const DrivenRobot& robot) const;
+  RosRobot* show(const DrivenRobot& robot);
+  bool is_of_experiment(const std::string& robot) const;
+  void add_robot(const DrivenRobot& robot, const description::Model& model);
+  const description::Model* model_of(const DrivenRobot& robot) const;
+  bool remove_robot(const std::string& name);
   void answer(Client& client, const Frame& frame);
   void wait_for_peers(const Client& client, const Frame& frame);
   void wait_for_commands(const Client& client, const Frame& frame);
   void tell_awaited(const RosRobot& robot, const Frame& frame) const;
-  RosRobot* awaited(const Frame& frame, std::chrono::nanoseconds waited) const;
+  RosRobot* awaited(std::chrono::nanoseconds waited) const;
   void take_messages();
   void note_change();
   void look_at_graph();
@@ -58,7 +69,6 @@ class RosBridge {
   void wait_until_received(const Client& client) const;
   void end_program();
   std::chrono::nanoseconds end_of(const Frame& frame) const;
-  RosRobot& robot_of(const FrameRobot& frame) const;
   bool is_over(const Client& client) const { return stop_ || client.is_over(); }
 
   Options options_;
@@ -72,9 +82,24 @@ class RosBridge {
   std::vector<std::unique_ptr<RosRobot>> robots_;  // by their first inputs
   std::vector<RosRobot*> robot_of_input_;
   std::map<std::uint32_t, RosRobot*> robot_of_id_;
-  std::optional<GidFormat> format_;  // nothing: no participant has shown it yet
+  struct Shown {
+    FrameRobot* frame = nullptr;
+    RosRobot* robot = nullptr;
+  };
+  std::vector<Shown> shown_;  // robots of the frame that have topics
+  struct Spawned {
+    description::ParsedModelPtr model;  // null: a model of the experiment
+    bool is_driven = true;
+    bool has_lease = false;
+  };
+  std::map<std::string, Spawned> spawned_;  // by name: robots that services have added
+  std::set<std::string> deleted_;           // robots that services have removed from this run
+  std::mutex entity_changes_mutex_;
+  std::vector<std::variant<SpawnedRobot, std::string>> entity_changes_;  // added robots, and names of removed entities
+  std::optional<GidFormat> format_;                                      // nothing: no participant has shown it yet
   bool is_announced_ = false;
-  bool is_first_frame_ = true;
+  bool is_first_frame_ = true;  // of a lease
+  bool is_other_run_ = true;
   std::chrono::nanoseconds step_{0};
   std::unique_ptr<RosProgram> program_;
   std::unique_ptr<TruePoses> true_poses_;  // once they are wanted

@@ -13,13 +13,14 @@ class SimulationControl {
   struct Options {
     ControlOptions control;
     EntityServices::MakeExperiment experiment;
+    EntityListener listener{};
     InterfaceVersion version = InterfaceVersion::v1;
     ServiceHelper::Options helper;
   };
   /// `stop` ends this soon. Throws ControlError or wire::WireError.
   SimulationControl(RosParticipant& participant, RosGraph& graph, const Options& options, const std::atomic<bool>& stop)
       : stop_(stop),
-        services_(options.control, options.experiment, options.version, end_),
+        services_(options.control, options.experiment, options.listener, options.version, end_),
         host_(participant, graph, services_.all(), options.helper, stop) {}
   /// Answers the request that ends the run before it returns, unless `stop` is set.
   ~SimulationControl() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <set>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/cli/terminal/replay_progress.hpp"
 #include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/commands/replayed_robots.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -72,6 +74,7 @@ class Player {
           fmt::format("{} has no messages for ROS 2 nodes; 'cohort run --record FILE --record-observations HZ' records "
                       "sensor readings",
                       playback.file.string()));
+    add_robots();
     look_at_graph();
   }
 
@@ -83,14 +86,26 @@ class Player {
     log_.clear_progress();
     wait_until_received();
     if (!playback_.quiet) show(fmt::format("played {}\n", counted(played_, "message")));
-    if (dropped_ > 0)
+    if (const std::uint64_t dropped = dropped_ + (robots_ ? robots_->dropped() : 0); dropped > 0)
       log_.warning(fmt::format("{} did not reach all subscribers, which were too slow; use a lower --speed",
-                               counted(dropped_, "message")),
-                   {{"dropped", dropped_}});
+                               counted(dropped, "message")),
+                   {{"dropped", dropped}});
     return stop_ ? exit_interrupted : exit_ok;
   }
 
  private:
+  // Adds the topics of the bridge, unless it is a recording of others.
+  void add_robots() {
+    if (reader_.channel(recording::Roster::topic) == nullptr) return;
+    std::set<std::string> recorded;
+    for (const auto& [id, writer] : writers_) recorded.insert(ros2::absolute_name(reader_.channels().at(id).topic));
+    try {
+      robots_.emplace(participant_, playback_.file, recorded);
+    } catch (const std::runtime_error& error) {
+      log_.warning(fmt::format("odometry and transforms are not played: {}", error.what()));
+    }
+  }
+
   static ros2::RosParticipant::Options node_of(const Ros2Playback& playback) {
     ros2::RosParticipant::Options options{ros2::RosDomain::from_environment(), "/", "cohort_replay"};
     if (playback.domain) options.domain.number = static_cast<std::uint32_t>(*playback.domain);
@@ -108,25 +123,36 @@ class Player {
   }
 
   void tell_topics() const {
-    show(fmt::format("playing {} to ROS 2 nodes in domain {}\n", counted(writers_.size(), "topic"),
+    std::map<std::string, std::string> types;  // by topic
+    for (const auto& [id, writer] : writers_) {
+      const recording::Channel& channel = reader_.channels().at(id);
+      types[ros2::absolute_name(channel.topic)] = reader_.schemas().at(channel.schema).name;
+    }
+    if (robots_)
+      for (const auto& topic : robots_->topics()) types[topic.name] = topic.type;
+    show(fmt::format("playing {} to ROS 2 nodes in domain {}\n", counted(types.size(), "topic"),
                      node_of(playback_).domain.number));
     std::size_t lines = 0;
-    for (const auto& [id, writer] : writers_) {
-      if (++lines > most_lines) break;
-      const recording::Channel& channel = reader_.channels().at(id);
-      show(fmt::format("  {}  {}\n", ros2::absolute_name(channel.topic), reader_.schemas().at(channel.schema).name));
-    }
-    if (writers_.size() > most_lines) show(fmt::format("  and {} more\n", writers_.size() - most_lines));
+    for (const auto& [name, type] : types)
+      if (++lines <= most_lines) show(fmt::format("  {}  {}\n", name, type));
+    if (types.size() > most_lines) show(fmt::format("  and {} more\n", types.size() - most_lines));
     flush_output();
   }
 
+  // A subscription counts once, although two writers may have its topic.
   std::uint64_t subscriptions() const {
+    std::map<std::string, std::uint64_t> counts;  // by topic
+    for (const auto& [id, writer] : writers_)
+      counts[ros2::absolute_name(reader_.channels().at(id).topic)] = writer.readers();
+    if (robots_)
+      for (const auto& topic : robots_->topics()) counts[topic.name] = topic.subscriptions;
     std::uint64_t sum = 0;
-    for (const auto& [id, writer] : writers_) sum += writer.readers();
+    for (const auto& [topic, count] : counts) sum += count;
     return sum;
   }
 
   bool is_known_to_subscribers() const {
+    if (robots_ && !robots_->is_known_to_subscribers(participant_)) return false;
     return std::ranges::all_of(
         writers_, [&](const auto& each) { return participant_.is_announced_to(each.second.participants()); });
   }
@@ -151,6 +177,13 @@ class Player {
     for (const auto& [id, writer] : writers_) query.channels.push_back(id);
     query.from = Timestamp(start_of_part(playback_.part).count());
     query.to = Timestamp(end_of_part(playback_.part).count());
+    if (robots_) {
+      const auto& channels = robots_->channels();
+      query.channels.insert(query.channels.end(), channels.begin(), channels.end());
+      std::ranges::sort(query.channels);
+      query.channels.erase(std::ranges::unique(query.channels).begin(), query.channels.end());
+      follow_robots_before(query.from);
+    }
     play_latched_before(query.from);
     ReplayProgress progress(log_);
     first_.reset();
@@ -161,8 +194,9 @@ class Player {
       if (!playback_.quiet) progress.at(message->log_time, "played");
       if (reader_.channels().at(message->channel).topic == clock_topic)
         clock_.emplace_back(message->channel, recording::Bytes(message->data.begin(), message->data.end()));
-      else
+      else if (writers_.contains(message->channel))
         write(message->channel, message->data);
+      if (robots_) robots_->publish(*message);
     }
     play_clock();
     if (!first_) throw std::invalid_argument(nothing_in_part);
@@ -173,6 +207,14 @@ class Player {
     if (latched_.empty() || begin == Timestamp(0)) return;
     recording::MessageStream messages = reader_.messages({.channels = latched_, .to = begin - Timestamp(1)});
     while (const auto message = messages.next()) write(message->channel, message->data);
+  }
+
+  // Odometry is relative to the initial pose.
+  void follow_robots_before(Timestamp begin) {
+    robots_->restart();
+    if (robots_->channels().empty() || begin == Timestamp(0)) return;
+    recording::MessageStream messages = reader_.messages({.channels = robots_->channels(), .to = begin - Timestamp(1)});
+    while (const auto message = messages.next()) robots_->follow(*message);
   }
 
   // Nodes that follow the clock receive the measurements of a time before the clock reaches that time.
@@ -208,6 +250,8 @@ class Player {
     const auto until = WallClock::now() + received_within;
     for (const auto& [id, writer] : writers_)
       while (!stop_ && !writer.is_received() && WallClock::now() < until) std::this_thread::sleep_for(looked_every);
+    while (robots_ && !stop_ && !robots_->is_received() && WallClock::now() < until)
+      std::this_thread::sleep_for(looked_every);
   }
 
   const Ros2Playback& playback_;
@@ -220,6 +264,7 @@ class Player {
   ros2::GidFormat format_ = ros2::GidFormat::since_iron;
   bool is_announced_ = false;
   std::map<ChannelId, ros2::RosWriter> writers_;
+  std::optional<ReplayedRobots> robots_;
   std::vector<ChannelId> latched_;
   std::vector<std::pair<ChannelId, recording::Bytes>> clock_;  // messages of the time that is being played
   std::optional<Timestamp> first_;                             // log time at which this round began

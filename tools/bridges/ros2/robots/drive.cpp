@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 namespace cohort::ros2 {
@@ -29,6 +30,15 @@ double radius_of(const description::Link& link) {
     if (radius > 0.0) return radius;
   }
   return 0.0;
+}
+
+// The variance of an encoder's positions among themselves: a constant bias cancels out.
+double variance_of_positions(const description::Readout& readout) {
+  const int index = description::noise_on(readout, "position", 0);
+  if (index < 0) return 0.0;
+  description::Noise noise = readout.noises[static_cast<std::size_t>(index)];
+  noise.bias_deviation = 0.0;
+  return variance_of(noise);
 }
 
 }  // namespace
@@ -56,7 +66,8 @@ class DriveFinder {
     for (const description::Device& device : model_.devices)
       if (const auto* encoder = std::get_if<description::TreelEncoder>(&device))
         for (const double side : {1.0, -1.0})
-          add_measured(encoder->name + (side > 0 ? "/left/position" : "/right/position"), 1.0, side * drive.half_gauge);
+          add_measured(encoder->name + (side > 0 ? "/left/position" : "/right/position"), 1.0, side * drive.half_gauge,
+                       variance_of_positions(encoder->readout));
   }
   void operator()(const description::VelocityMotor& motor) {
     const description::Joint& joint = model_.joints[motor.joint];
@@ -132,11 +143,11 @@ class DriveFinder {
     for (const description::Device& device : model_.devices)
       if (const auto* encoder = std::get_if<description::JointEncoder>(&device);
           encoder != nullptr && encoder->joint == joint)
-        add_measured(encoder->name + "/0/position", radius, y);
+        add_measured(encoder->name + "/0/position", radius, y, variance_of_positions(encoder->readout));
   }
-  void add_measured(const std::string& name, double scale, double y) {
+  void add_measured(const std::string& name, double scale, double y, double variance) {
     if (const ChannelInfo* channel = channel_of(robot_.observation_channels, name))
-      drive_.measured_.push_back({channel->offset, scale, y, 0.0});
+      drive_.measured_.push_back({channel->offset, scale, y, scale * scale * variance, 0.0});
   }
 
   const description::Model& model_;
@@ -170,6 +181,7 @@ void Drive::command(const BodyVelocity& velocity, std::span<double> command) con
 
 void Drive::restart() {
   motion_ = {};
+  wander_.setZero();
   has_origin_ = false;
 }
 
@@ -186,18 +198,46 @@ const PlanarMotion& Drive::measure(std::span<const double> observation, double s
     sum_way += way;
     sum_way_y += way * each.y;
   }
-  has_origin_ = true;
+  const bool is_origin = !std::exchange(has_origin_, true);
   const double determinant = count * sum_yy - sum_y * sum_y;
   if (determinant <= 0.0) return motion_;
   const double dx = (sum_yy * sum_way - sum_y * sum_way_y) / determinant;
   const double turn = (sum_y * sum_way - count * sum_way_y) / determinant;
   // Along the chord of the arc, to second order in the turn.
   const double direction = motion_.heading + 0.5 * turn;
+  ReadingVariance reading;
+  for (const Measured& each : measured_) {
+    const double per_way = (sum_yy - sum_y * each.y) / determinant;
+    const double turn_per_way = (sum_y - count * each.y) / determinant;
+    reading.linear += per_way * per_way * each.variance;
+    reading.angular += turn_per_way * turn_per_way * each.variance;
+  }
   motion_.x += dx * std::cos(direction);
   motion_.y += dx * std::sin(direction);
   motion_.heading += turn;
   motion_.velocity = seconds > 0.0 ? BodyVelocity{dx / seconds, turn / seconds} : BodyVelocity{};
+  if (!is_origin) add_errors(reading, dx, direction, seconds);
   return motion_;
+}
+
+// The way and the heading are differences of two readings, the present one and that at the origin, whose errors are
+// independent. An error of the heading at the origin turns the whole way about the origin. Errors of the headings in
+// between move the robot aside at each step, independently.
+void Drive::add_errors(const ReadingVariance& reading, double dx, double direction, double seconds) {
+  const Eigen::Vector2d aside(-std::sin(direction), std::cos(direction));
+  wander_ += dx * dx * reading.angular * aside * aside.transpose();
+  const Eigen::Vector2d ahead(std::cos(motion_.heading), std::sin(motion_.heading));
+  const Eigen::Vector2d turned(-motion_.y, motion_.x);
+  const Eigen::Vector2d at_origin = Eigen::Vector2d::UnitX();
+  motion_.covariance.topLeftCorner<2, 2>() =
+      wander_ + reading.linear * (at_origin * at_origin.transpose() + ahead * ahead.transpose()) +
+      reading.angular * turned * turned.transpose();
+  motion_.covariance.topRightCorner<2, 1>() = reading.angular * turned;
+  motion_.covariance.bottomLeftCorner<1, 2>() = reading.angular * turned.transpose();
+  motion_.covariance(2, 2) = 2.0 * reading.angular;
+  const double squared = seconds * seconds;
+  motion_.variance =
+      squared > 0.0 ? BodyVelocity{2.0 * reading.linear / squared, 2.0 * reading.angular / squared} : BodyVelocity{};
 }
 
 }  // namespace cohort::ros2

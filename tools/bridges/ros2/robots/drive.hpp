@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -23,10 +24,12 @@ struct BodyVelocity {
   double angular = 0.0;  ///< about z [rad/s]
 };
 
-/// A pose in the plane, and the velocity there.
+/// A pose in the plane, the velocity there, and the variances of their errors that the noise of encoders causes.
 struct PlanarMotion {
   double x = 0.0, y = 0.0, heading = 0.0;  ///< [m], [m], [rad]
   BodyVelocity velocity{};
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y and heading
+  BodyVelocity variance{};                               ///< of the velocity, linear and angular [m^2/s^2], [rad^2/s^2]
 };
 
 class Drive {
@@ -63,12 +66,20 @@ class Drive {
     std::size_t offset = 0;
     double scale = 1.0;
     double y = 0.0;
+    double variance = 0.0;  // of the way
     double last = 0.0;
   };
+  // Variances of the origin's way and of the turn by errors of one reading.
+  struct ReadingVariance {
+    double linear = 0.0;
+    double angular = 0.0;
+  };
+  void add_errors(const ReadingVariance& reading, double dx, double direction, double seconds);
 
   std::vector<Driven> driven_;
   std::vector<Measured> measured_;
   PlanarMotion motion_;
+  Eigen::Matrix2d wander_ = Eigen::Matrix2d::Zero();  // covariance of x and y by the directions of all steps so far
   bool has_origin_ = false;
 };
 

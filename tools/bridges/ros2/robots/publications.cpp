@@ -1,6 +1,7 @@
 #include "tools/bridges/ros2/robots/publications.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -66,9 +67,11 @@ Publications::Publications(RosParticipant& participant, const description::Model
                         frames_.add_moving(observation, header.stamp, message);
                         to.add(message);
                       });
-  if (const std::optional<std::string> name = name_of_topic(settings_, "tf_static"))
+  if (const std::optional<std::string> name = name_of_topic(settings_, "tf_static")) {
+    static_topic_ = {*name, ros::TFMessage::type};
     static_frames_.emplace(participant, topic_endpoint(*name, ros::TFMessage::type,
                                                        messages::type_hash<ros::TFMessage>(), {true, true, 1}));
+  }
 }
 
 std::vector<SensorFrame> Publications::sensor_frames() const {
@@ -91,9 +94,14 @@ void Publications::add(RosParticipant& participant, const std::string& name, con
                        std::chrono::nanoseconds period) {
   const std::optional<std::string> topic = name_of_topic(settings_, name);
   if (!topic) return;
+  const PeriodicTicks measurements(period, between_frames_);
+  const double rate = rate_of_topic(settings_, name);
   topics_.push_back({name,
+                     {*topic, type},
                      frame.empty() ? frame : frames_.name_of(frame),
-                     std::max(interval_of(rate_of_topic(settings_, name)), interval_of(period)),
+                     measurements,
+                     rate > 0.0 ? PeriodicTicks::at_rate(rate, measurements.period())
+                                : PeriodicTicks(measurements.period(), measurements.period()),
                      std::move(fill),
                      RosWriter(participant, topic_endpoint(*topic, type, type_hash), matched_),
                      {},
@@ -101,21 +109,18 @@ void Publications::add(RosParticipant& participant, const std::string& name, con
                      counts_for_reply});
 }
 
-// Frames between two messages of a topic.
-std::uint64_t Publications::interval_of(double rate) const {
-  return rate <= 0.0 ? 1 : interval_of(std::chrono::nanoseconds(std::llround(1e9 / rate)));
-}
-std::uint64_t Publications::interval_of(std::chrono::nanoseconds period) const {
-  return std::max<std::uint64_t>(
-      1, static_cast<std::uint64_t>(
-             std::llround(static_cast<double>(period.count()) / static_cast<double>(between_frames_.count()))));
-}
-
 void Publications::move(std::span<const double> observation, double seconds) {
   const PlanarMotion& motion = drive_->measure(observation, seconds);
   odometry_->pose.pose = {{motion.x, motion.y, 0.0}, turned_by(motion.heading)};
   odometry_->twist.twist.linear.x = motion.velocity.linear;
   odometry_->twist.twist.angular.z = motion.velocity.angular;
+  constexpr std::array<std::size_t, 3> places = {0, 1, 5};  // of x, y and the heading among the six of ROS
+  for (std::size_t row = 0; row < places.size(); ++row)
+    for (std::size_t column = 0; column < places.size(); ++column)
+      odometry_->pose.covariance[6 * places[row] + places[column]] =
+          motion.covariance(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
+  odometry_->twist.covariance[0] = motion.variance.linear;
+  odometry_->twist.covariance[35] = motion.variance.angular;
 }
 
 // The twist is what carried the robot here from where it was in the last frame, in the axes of its frame there.
@@ -139,6 +144,7 @@ void Publications::move_truly(const WorldPose& pose, double seconds) {
 
 void Publications::begin(std::chrono::nanoseconds time) {
   last_time_.reset();
+  last_frame_.reset();
   odometry_.emplace();
   odometry_->child_frame_id = frames_.base();
   if (drive_ != nullptr) drive_->restart();
@@ -146,20 +152,26 @@ void Publications::begin(std::chrono::nanoseconds time) {
   static_frames_->write(messages::encode(frames_.fixed(ros::time(time))));
 }
 
-void Publications::publish(std::span<const double> observation, std::uint64_t tick, std::chrono::nanoseconds time,
-                           const std::optional<WorldPose>& truth) {
+void Publications::follow(std::span<const double> observation, std::chrono::nanoseconds time,
+                          const std::optional<WorldPose>& truth) {
   const double seconds = last_time_ ? std::chrono::duration<double>(time - *last_time_).count() : 0.0;
   last_time_ = time;
   if (truth)
     move_truly(*truth, seconds);
   else if (drive_ != nullptr)
     move(observation, seconds);
+}
+
+void Publications::publish(std::span<const double> observation, std::uint64_t tick, std::chrono::nanoseconds time,
+                           const std::optional<WorldPose>& truth) {
+  follow(observation, time, truth);
   const ros::Time stamp = ros::time(time);
   const std::uint64_t frame = (tick - phase_) / period_;
+  const std::uint64_t before = std::exchange(last_frame_, frame).value_or(frame == 0 ? 0 : frame - 1);
   for (Topic& topic : topics_) {
     topic.last.clear();
     topic.told.clear();
-    if (frame % topic.interval != 0) continue;
+    if (!topic.is_due(frame, before)) continue;
     // Queries for published messages need it, even without a subscriber.
     if (settings_.sync == RosSync::free && topic.writer.readers() == 0) continue;
     cdr_.clear();
@@ -207,7 +219,7 @@ bool Publications::asks(std::span<const Gid> participants) const {
     if (!topic.counts_for_reply) continue;
     const auto is_theirs = [&](const Gid& each) { return std::ranges::binary_search(participants, each); };
     if (std::ranges::none_of(topic.writer.participants(), is_theirs)) continue;
-    if (asking == nullptr || topic.interval > asking->interval) asking = &topic;
+    if (asking == nullptr || topic.period() > asking->period()) asking = &topic;
   }
   return asking == nullptr || !asking->last.empty();
 }
@@ -216,6 +228,25 @@ bool Publications::is_received() const {
   return std::ranges::all_of(topics_, [](const Topic& topic) {
     return topic.last.empty() || topic.writer.readers() == 0 || topic.writer.is_received();
   });
+}
+
+std::vector<Publications::PublishedTopic> Publications::published_topics() const {
+  std::vector<PublishedTopic> all;
+  for (const Topic& topic : topics_) {
+    all.push_back(topic.in_ros);
+    all.back().subscriptions = topic.writer.readers();
+  }
+  if (static_topic_) {
+    all.push_back(*static_topic_);
+    all.back().subscriptions = static_frames_->readers();
+  }
+  return all;
+}
+
+bool Publications::is_known_to_subscribers(const RosParticipant& participant) const {
+  const auto is_known = [&](const RosWriter& writer) { return participant.is_announced_to(writer.participants()); };
+  return (!static_frames_ || is_known(*static_frames_)) &&
+         std::ranges::all_of(topics_, [&](const Topic& topic) { return is_known(topic.writer); });
 }
 
 bool Publications::has_subscribers() const {

@@ -12,6 +12,7 @@
 #include "idl/dds/ros2/ros_participant.hpp"
 #include "idl/messages/device_messages.hpp"
 #include "idl/messages/ros_navigation_messages.hpp"
+#include "server/core/periodic_ticks.hpp"
 #include "tools/bridges/ros2/robots/drive.hpp"
 #include "tools/bridges/ros2/robots/frame_tree.hpp"
 #include "tools/bridges/ros2/robots/settings.hpp"
@@ -36,6 +37,9 @@ class Publications {
   /// Tells what is due of a frame. `truth`: the robot's pose in the world, if it is wanted.
   void publish(std::span<const double> observation, std::uint64_t tick, std::chrono::nanoseconds time,
                const std::optional<WorldPose>& truth);
+  /// Takes a frame into account without telling of it.
+  void follow(std::span<const double> observation, std::chrono::nanoseconds time,
+              const std::optional<WorldPose>& truth);
   /// Tells a frame to those of these participants who have subscribed since it was published, or once more: only topics
   /// of which they have not been told. Returns whether there was something to tell.
   bool publish_to_newcomers(std::span<const Gid> participants);
@@ -50,6 +54,14 @@ class Publications {
   std::uint64_t dropped() const { return dropped_; }
   /// Returns whether all reliable subscribers have received what was told.
   bool is_received() const;
+  struct PublishedTopic {
+    std::string name;  ///< in ROS
+    std::string type;
+    std::uint32_t subscriptions = 0;
+  };
+  std::vector<PublishedTopic> published_topics() const;
+  /// Returns whether the participant is announced to all subscribers.
+  bool is_known_to_subscribers(const RosParticipant& participant) const;
   /// Returns whether any topic has a subscriber.
   bool has_subscribers() const;
 
@@ -57,14 +69,23 @@ class Publications {
   using Fill = std::function<void(messages::CdrWriter& to, const messages::ros::Header& header,
                                   std::span<const double> observation)>;
   struct Topic {
-    std::string name;      // in the list of topics
-    std::string frame_id;  // for the header
-    std::uint64_t interval = 1;
+    std::string name;  // in the list of topics
+    PublishedTopic in_ros;
+    std::string frame_id;        // for the header
+    PeriodicTicks measurements;  // among the frames
+    PeriodicTicks messages;      // among the measurements
     Fill fill;
     RosWriter writer;
     messages::Bytes last{};   // message of the last frame; empty: none
     std::vector<Gid> told{};  // participants that subscribed then and have not left since
     bool counts_for_reply = true;
+
+    /// Returns whether it has a message at a frame.
+    /// `before`: the frame before it.
+    bool is_due(std::uint64_t frame, std::uint64_t before) const {
+      return frame == 0 || messages.count(measurements.count(frame)) != messages.count(measurements.count(before));
+    }
+    std::chrono::nanoseconds period() const { return messages.period(); }
   };
 
   template <messages::RosMessage Message>
@@ -72,8 +93,6 @@ class Publications {
            Fill fill);
   void add(RosParticipant& participant, const std::string& name, const std::string& frame, const std::string& type,
            const std::string& type_hash, bool counts_for_reply, Fill fill, std::chrono::nanoseconds period = {});
-  std::uint64_t interval_of(double rate) const;
-  std::uint64_t interval_of(std::chrono::nanoseconds period) const;
   void send(Topic& topic);
   std::vector<SensorFrame> sensor_frames() const;
   void move(std::span<const double> observation, double seconds);
@@ -92,6 +111,8 @@ class Publications {
   std::optional<RosWriter> static_frames_;
   std::optional<messages::ros::Odometry> odometry_;  // odometry of the frame, without its header
   std::optional<std::chrono::nanoseconds> last_time_;
+  std::optional<std::uint64_t> last_frame_;
+  std::optional<PublishedTopic> static_topic_;
   messages::CdrWriter cdr_;
   std::uint64_t dropped_ = 0;
 };

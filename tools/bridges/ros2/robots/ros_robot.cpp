@@ -76,10 +76,19 @@ void RosRobot::tell_commanders() {
   if (!inputs_.empty() && !std::ranges::all_of(inputs_.front().participants(),
                                                [&](const Gid& each) { return graph_.knows_nodes_of(each); }))
     return;
+  for (const Gid& each : commanding_participants()) commanders_[each] = graph_.nodes_of(each);
   const std::string now = commanders();
   if (now == told_commanders_) return;
   options_.tell(now.empty() ? told_commanders_ + " no longer commands it" : now + " commands it");
   told_commanders_ = now;
+}
+
+void RosRobot::tell_ended_nodes() {
+  std::erase_if(commanders_, [&](const auto& each) {
+    if (graph_.has(each.first)) return false;
+    options_.tell(each.second + " has ended");
+    return true;
+  });
 }
 
 // Each is told once.
@@ -168,6 +177,7 @@ bool RosRobot::follow(RosParticipant& participant, const WritersByTopic& writers
       if (const std::string why = input.why_not(writer); !why.empty()) note_mistake(input.name(), writer, " " + why);
   }
   tell_commanders();
+  tell_ended_nodes();
   return has_changed;
 }
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -91,6 +92,7 @@ class RosRobot {
   std::optional<std::chrono::steady_clock::time_point> unstamped_since_{};  // arrival of a command without a stamp
 
   void tell_commanders();
+  void tell_ended_nodes();
   void note_mistake(const std::string& topic, const std::optional<RosEndpoint>& writer, const std::string& text);
 
   // A mistake of a node. It is told with the node's name, which comes a little later than the node's endpoints.
@@ -102,6 +104,7 @@ class RosRobot {
     bool is_told = false;
   };
   std::string told_commanders_;
+  std::map<Gid, std::string> commanders_;  // nodes that command it or did so, by participant, until they end
   std::vector<Mistake> mistakes_;
 };
 

@@ -17,6 +17,12 @@ std::optional<std::string> name_of_topic(const RobotSettings& settings, std::str
   return absolute_name(name.starts_with('/') ? name : settings.name_space + "/" + name);
 }
 
+RobotSettings in_own_namespace(RobotSettings settings) {
+  settings.name_space.clear();
+  for (description::Ros2Topic& topic : settings.topics) topic.name.erase(0, topic.name.find_first_not_of('/'));
+  return settings;
+}
+
 double rate_of_topic(const RobotSettings& settings, std::string_view topic) {
   double rate = 0.0;
   for (const description::Ros2Topic& each : settings.topics)

@@ -13,6 +13,7 @@ using simulation::EntityCategory;
 using simulation::Result;
 
 constexpr const char* world_frame = "world";
+constexpr std::string_view undriven = "?undriven";  // after the name of a model
 
 // Why a pose cannot be used; empty if it can.
 std::string frame_problem(const ros::Header& header) {
@@ -91,18 +92,29 @@ simulation::SpawnEntity::Response EntityServices::answer(const simulation::Spawn
                           .resource_string = asked.entity_resource.resource_string,
                           .pose = to_wire(asked.initial_pose.pose),
                           .team = {}};
+  const bool is_driven = !spawn.uri.ends_with(undriven);
+  if (!is_driven) spawn.uri.resize(spawn.uri.size() - undriven.size());
   // A name is the simulator's to find if it may be another one.
   if (spawn.entity.empty() && spawn.allow_renaming) spawn.entity = spawn.uri.empty() ? "entity" : spawn.uri;
   const wire::Reply reply = run_.ask(spawn);
   const auto* spawned = reply.get<wire::EntityName>();
   if (!reply.is_done() || spawned == nullptr) return {result_of(reply), {}};
-  const auto& models = experiment().world.models;
-  const auto model = std::ranges::find(models, spawn.uri, &description::Model::name);
-  if (spawn.resource_string.empty() && model != models.end())
-    models_[spawned->entity] = static_cast<std::size_t>(model - models.begin());
-  else
-    models_.erase(spawned->entity);
+  note_spawned(spawned->entity, spawn, is_driven);
   return {result_of(reply), spawned->entity};
+}
+
+void EntityServices::note_spawned(const std::string& entity, const wire::SpawnEntity& asked, bool is_driven) {
+  const auto& models = experiment().world.models;
+  if (!asked.resource_string.empty()) {
+    models_.erase(entity);
+    description::ParsedModelPtr parsed = experiment().read_model(asked.resource_string);
+    if (parsed->model.is_robot()) listener_.spawned({entity, std::move(parsed), is_driven});
+    return;
+  }
+  const auto model = std::ranges::find(models, asked.uri, &description::Model::name);
+  if (model == models.end()) return;
+  models_[entity] = static_cast<std::size_t>(model - models.begin());
+  if (model->is_robot()) listener_.spawned({entity, nullptr, is_driven});
 }
 
 simulation::SpawnEntities::Response EntityServices::answer(const simulation::SpawnEntities::Request& asked) {
@@ -118,7 +130,9 @@ simulation::SpawnEntities::Response EntityServices::answer(const simulation::Spa
 }
 
 simulation::DeleteEntity::Response EntityServices::answer(const simulation::DeleteEntity::Request& asked) {
-  return {result_of(run_.ask(wire::DeleteEntity{asked.entity}))};
+  const wire::Reply reply = run_.ask(wire::DeleteEntity{asked.entity});
+  if (reply.is_done()) listener_.deleted(asked.entity);
+  return {result_of(reply)};
 }
 
 simulation::GetEntities::Response EntityServices::answer(const simulation::GetEntities::Request& asked) {

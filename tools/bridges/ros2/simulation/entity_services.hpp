@@ -14,12 +14,26 @@ namespace cohort::ros2 {
 
 namespace simulation = messages::ros::simulation;
 
+/// A robot that a service has added.
+struct SpawnedRobot {
+  std::string name;
+  description::ParsedModelPtr model;  ///< null: a model of the experiment
+  bool is_driven = true;              ///< nodes are to drive it
+};
+
+/// Notified, on the thread of the services, when a service has changed what is in the world.
+struct EntityListener {
+  std::function<void(SpawnedRobot robot)> spawned;
+  std::function<void(const std::string& entity)> deleted;
+};
+
 /// Answers of the services that are of what is in the world. One thread.
 class EntityServices {
  public:
   using MakeExperiment = std::function<std::shared_ptr<const description::Experiment>()>;
   /// `experiment` is called when a request needs it first. `run` must outlive this.
-  EntityServices(RunControl& run, MakeExperiment experiment) : run_(run), make_experiment_(std::move(experiment)) {}
+  EntityServices(RunControl& run, MakeExperiment experiment, EntityListener listener)
+      : run_(run), make_experiment_(std::move(experiment)), listener_(std::move(listener)) {}
 
   simulation::SpawnEntity::Response answer(const simulation::SpawnEntity::Request& asked);
   simulation::SpawnEntities::Response answer(const simulation::SpawnEntities::Request& asked);
@@ -39,9 +53,11 @@ class EntityServices {
   std::optional<std::size_t> model_of(const std::string& entity);
   simulation::EntityCategory category_of(const std::string& entity);
   bool is_selected(const std::string& entity, const simulation::EntityFilters& filters);
+  void note_spawned(const std::string& entity, const wire::SpawnEntity& asked, bool is_driven);
 
   RunControl& run_;
   MakeExperiment make_experiment_;
+  EntityListener listener_;
   std::shared_ptr<const description::Experiment> experiment_;
   std::map<std::string, std::size_t> models_;  // by entities of the experiment, and those that were spawned here
 };

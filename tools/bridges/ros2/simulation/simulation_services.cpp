@@ -88,8 +88,8 @@ std::string service_name(const std::string& type) {
 }
 
 SimulationServices::SimulationServices(const ControlOptions& options, EntityServices::MakeExperiment experiment,
-                                       InterfaceVersion version, const std::atomic<bool>& stop)
-    : run_(options, stop), entities_(run_, std::move(experiment)) {
+                                       EntityListener listener, InterfaceVersion version, const std::atomic<bool>& stop)
+    : run_(options, stop), entities_(run_, std::move(experiment), std::move(listener)) {
   services_ = {service<simulation::GetSimulatorFeatures>(run_),
                service<simulation::GetSimulationState>(run_),
                service<simulation::SetSimulationState>(run_),

@@ -31,8 +31,8 @@ enum class InterfaceVersion {
 class SimulationServices {
  public:
   /// Waits end while `stop` is set. `experiment` is called when a request needs it first. Throws ControlError.
-  SimulationServices(const ControlOptions& options, EntityServices::MakeExperiment experiment, InterfaceVersion version,
-                     const std::atomic<bool>& stop);
+  SimulationServices(const ControlOptions& options, EntityServices::MakeExperiment experiment, EntityListener listener,
+                     InterfaceVersion version, const std::atomic<bool>& stop);
   SimulationServices(const SimulationServices&) = delete;
   SimulationServices& operator=(const SimulationServices&) = delete;
 

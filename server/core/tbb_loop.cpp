@@ -5,9 +5,12 @@
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <mutex>
+#include <new>
 #include <thread>
 
 #include "server/core/thread_room.hpp"
@@ -20,8 +23,9 @@ namespace {
 // there is a single one for the life of the process. The number of threads of a loop depends on its arena.
 void allow_more_threads_than_cores() {
   constexpr std::size_t more_than_any_pool = 4096;
+  alignas(tbb::global_control) static std::array<std::byte, sizeof(tbb::global_control)> memory;
   [[maybe_unused]] static const auto* const allowance =
-      new tbb::global_control(tbb::global_control::max_allowed_parallelism, more_than_any_pool);
+      new (memory.data()) tbb::global_control(tbb::global_control::max_allowed_parallelism, more_than_any_pool);
 }
 
 // Occupies all threads of the arena at once, so that oneTBB starts them. On a very busy machine, some may start later.

@@ -25,9 +25,9 @@ using Random = std::mt19937_64;  // the same everywhere, as its distributions ar
 
 constexpr int ticks_of_a_world = 20;
 
-void record_world(recording::Recorder& recorder, const description::Experiment& experiment,
-                  recording::Beginning reason) {
-  Simulation simulation(experiment, 1);
+// Steps the world and records it.
+void record_world(recording::Recorder& recorder, Simulation& simulation, recording::Beginning reason) {
+  const description::Experiment& experiment = simulation.experiment();
   recorder.begin(experiment, simulation, reason);
   const std::vector<std::uint32_t> robots{0};
   for (int tick = 0; tick < ticks_of_a_world; ++tick) {
@@ -68,8 +68,9 @@ Bytes small_run(const std::string& also_recorded = "") {
                                             "teams: [{name: all, robots: all, controller: none}]\n");
   const description::Experiment experiment = parsing::read_experiment(folder / "run.yaml");
   recording::Recorder recorder(folder / "run.mcap", experiment);
-  record_world(recorder, experiment, recording::Beginning::first);
-  record_world(recorder, experiment, recording::Beginning::reset);
+  Simulation first(experiment, 1), second(experiment, 1);
+  record_world(recorder, first, recording::Beginning::first);
+  record_world(recorder, second, recording::Beginning::reset);
   recorder.finish("finished", "");
   return test::read_bytes(folder / "run.mcap");
 }

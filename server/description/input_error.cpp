@@ -5,7 +5,6 @@
 #include <set>
 #include <utility>
 
-#include "client_sdk/text/printable.hpp"
 #include "server/description/shortened.hpp"
 
 namespace cohort::description {
@@ -14,7 +13,8 @@ namespace {
 // Sorts problems: files in the order of their first problem, each from its first line to its last. A problem that is
 // found twice, in a file that is read twice, is reported once.
 std::vector<Problem> in_order(std::vector<Problem> problems) {
-  for (Problem& problem : problems) problem = shortened(std::move(problem));
+  for (Problem& problem : problems)
+    for (std::string* text : {&problem.element, &problem.message}) *text = shortened(std::move(*text));
   std::set<std::string> said;
   std::erase_if(problems, [&](const Problem& problem) { return !said.insert(problem.text()).second; });
   std::map<std::filesystem::path, std::size_t> rank;
@@ -42,13 +42,6 @@ std::string Problem::text() const {
   text += ": ";
   if (!element.empty()) text += element + ": ";
   return text + message;
-}
-
-Problem shortened(Problem problem) {
-  constexpr std::size_t longest = 4096;
-  for (std::string* text : {&problem.element, &problem.message})
-    if (text->size() > longest) *text = printable(*text, longest, Lines::kept);
-  return problem;
 }
 
 InputError::InputError(std::vector<Problem> problems)

@@ -1,11 +1,10 @@
 #pragma once
 
-#include "server/description/input_error.hpp"
+#include <string>
 
 namespace cohort::description {
 
-/// Returns the problem with an element and a message of a length that people read. A file may contain values of any
-/// length.
-Problem shortened(Problem problem);
+/// Returns a text of a length that people read. A file may contain values of any length.
+std::string shortened(std::string text);
 
 }  // namespace cohort::description

@@ -469,8 +469,8 @@ TEST_F(Description, ReportsAnIncludeOutsideOfAllFoldersAtItsLine) {
 }
 
 TEST_F(Description, ReportsNamesOfMergedModelsOnceEach) {
-  write_model("part", links("a b"));
-  std::string includes = links("base");
+  write_model("part", links("ab"));
+  std::string includes = links("c");
   for (int i = 0; i < 400; ++i)
     includes += "<include merge=\"true\"><name>p" + std::to_string(i) + "</name><uri>model://part</uri></include>";
   write_model("whole", includes);

@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
 #include "client_sdk/src/attachment.hpp"
 #include "server/core/thread_room.hpp"
@@ -96,7 +97,8 @@ void Log::urgent_warning(const std::string& message, const LogFields& fields) {
 
 void Log::problem(LogLevel level, const description::Problem& full) {
   if (!shows(level)) return;
-  description::Problem problem = description::shortened(full);
+  description::Problem problem = full;
+  for (std::string* text : {&problem.element, &problem.message}) *text = description::shortened(std::move(*text));
   if (options_.format == LogFormat::json) {
     LogFields fields = {{"file", problem.file.string()}};
     if (problem.line > 0) fields.emplace_back("line", problem.line);

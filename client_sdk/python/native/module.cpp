@@ -11,7 +11,8 @@ NB_MODULE(_native, module) {
   nanobind::set_leak_warnings(false);  // about objects that are alive when Python exits
   cohort::bind_library_calls();
   module.attr("version") = COHORT_VERSION;
-  module.def("bind_library_calls", &cohort::bind_library_calls);
+  module.def("bind_process_calls", &cohort::bind_process_calls);
+  module.def("release_process_calls", &cohort::release_process_calls);
   module.def("functions_not_portable", &cohort::functions_not_portable);
   using cohort::python::FileControllers;
   module.attr("file_controllers") = nanobind::capsule(&cohort::python::file_controllers, FileControllers::capsule);

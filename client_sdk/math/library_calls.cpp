@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -192,18 +194,56 @@ void visit_slots(const std::vector<Object>& objects, Visit&& visit) {
   }
 }
 
+std::uintptr_t& value_at(std::uintptr_t slot) { return *reinterpret_cast<std::uintptr_t*>(slot); }
+
+// Other threads may call through the slot meanwhile.
 void write_slot(const Object& object, std::uintptr_t slot, std::uintptr_t value) {
-  if (slot < object.relro_begin || slot >= object.relro_end) {
-    *reinterpret_cast<std::uintptr_t*>(slot) = value;
-    return;
-  }
+  const std::atomic_ref<std::uintptr_t> target(value_at(slot));
+  if (slot < object.relro_begin || slot >= object.relro_end) return target.store(value);
   const auto page_size = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   auto* page = reinterpret_cast<void*>(slot / page_size * page_size);
   if (mprotect(page, page_size, PROT_READ | PROT_WRITE) != 0)
     throw std::runtime_error("cannot bind the calls of " + std::string(object.soname) +
                              " to portable functions: mprotect failed");
-  *reinterpret_cast<std::uintptr_t*>(slot) = value;
+  target.store(value);
   mprotect(page, page_size, PROT_READ);
+}
+
+// A slot that was changed, and the address that it had.
+struct ChangedSlot {
+  std::uintptr_t slot = 0;
+  std::uintptr_t before = 0;
+  std::uintptr_t ours = 0;
+};
+
+void bind(const std::vector<Object>& objects, std::vector<ChangedSlot>& changed) {
+  visit_slots(objects, [&](const Object& object, const Function& function, std::uintptr_t slot) {
+    const std::uintptr_t before = value_at(slot);
+    if (before == function.ours) return;
+    write_slot(object, slot, function.ours);
+    changed.push_back({slot, before, function.ours});
+  });
+}
+
+// A library may have been unloaded since.
+void restore(std::vector<ChangedSlot>& changed) {
+  visit_slots(loaded_objects(), [&](const Object& object, const Function& function, std::uintptr_t slot) {
+    const auto found = std::ranges::find(changed, slot, &ChangedSlot::slot);
+    if (found != changed.end() && found->ours == function.ours && value_at(slot) == function.ours)
+      write_slot(object, slot, found->before);
+  });
+  changed.clear();
+}
+
+// The calls of the whole process, while they are bound.
+struct ProcessCalls {
+  std::mutex mutex;
+  int count = 0;
+  std::vector<ChangedSlot> changed;
+};
+ProcessCalls& process_calls() {
+  static ProcessCalls calls;
+  return calls;
 }
 
 // Returns true if the program has its own functions of portable_math.cpp. It exports them, so everything loaded is
@@ -217,9 +257,27 @@ bool is_bound_by_program() {
 
 void bind_library_calls() {
   if (is_bound_by_program()) return;
-  visit_slots(loaded_objects(), [](const Object& object, const Function& function, std::uintptr_t slot) {
-    if (*reinterpret_cast<const std::uintptr_t*>(slot) != function.ours) write_slot(object, slot, function.ours);
-  });
+  std::vector<ChangedSlot> for_ever;
+  bind(libraries_needed(), for_ever);
+}
+
+void bind_process_calls() {
+  if (is_bound_by_program()) return;
+  ProcessCalls& calls = process_calls();
+  const std::lock_guard lock(calls.mutex);
+  try {
+    if (calls.count == 0) bind(loaded_objects(), calls.changed);
+  } catch (...) {
+    restore(calls.changed);
+    throw;
+  }
+  ++calls.count;
+}
+
+void release_process_calls() {
+  ProcessCalls& calls = process_calls();
+  const std::lock_guard lock(calls.mutex);
+  if (calls.count > 0 && --calls.count == 0) restore(calls.changed);
 }
 
 std::vector<std::string> functions_not_portable() {
@@ -232,8 +290,7 @@ std::vector<std::string> functions_not_portable() {
   if (missing.empty()) return missing;
   missing.clear();
   visit_slots(libraries_needed(), [&](const Object&, const Function& function, std::uintptr_t slot) {
-    if (*reinterpret_cast<const std::uintptr_t*>(slot) != function.ours &&
-        std::ranges::find(missing, function.name) == missing.end())
+    if (value_at(slot) != function.ours && std::ranges::find(missing, function.name) == missing.end())
       missing.emplace_back(function.name);
   });
   return missing;

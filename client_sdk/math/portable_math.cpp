@@ -1,8 +1,7 @@
 // sin, cos, tan, asin, acos, atan, atan2, exp and log, implemented with + - * / and sqrt. Algorithms and coefficients
 // are those of fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, e_rem_pio2.c, e_asin.c, s_atan.c, e_exp.c, e_log.c).
-// Results are within 2 ulp of the C library's for |x| < 10^6, which covers every angle of a simulation. The functions
-// of float round these results. Functions that are exact in any correct implementation, such as sqrt and fmod, remain
-// those of the C library.
+// Results are within 2 units in the last place for every argument. The functions of float round these results.
+// Functions that are exact in any correct implementation, such as sqrt and fmod, remain those of the C library.
 
 #include "client_sdk/math/portable_math.hpp"
 
@@ -11,9 +10,13 @@
 #include <cstdint>
 #include <limits>
 
+#include "client_sdk/math/angle_reduction.hpp"
 #include "client_sdk/math/portable_power.hpp"
 
 namespace {
+
+using cohort::reduce_exactly;
+using cohort::ReducedAngle;
 
 constexpr double pi = 3.14159265358979311600e+00;
 constexpr double half_pi = 1.57079632679489655800e+00;
@@ -45,33 +48,30 @@ double cos_kernel(double x, double tail) {
   return w + (((1.0 - w) - half) + (z * r - x * tail));
 }
 
-struct Reduced {
-  int quadrant;
-  double value;
-  double tail;
-};
-
-// Returns x - n pi/2 in about 1.5 doubles (Cody and Waite in three parts).
-Reduced reduce(double x) {
+// Returns x - n pi/2 in about 1.5 doubles (Cody and Waite in two parts) if the products below are exact.
+ReducedAngle reduce(double x) {
   constexpr double inverse = 6.36619772367581382433e-01;
-  constexpr double part1 = 1.57079632673412561417e+00, rest1 = 6.07710050650619224932e-11;
-  constexpr double part2 = 6.07710050630396597660e-11, rest2 = 2.02226624879595063154e-21;
+  constexpr double part1 = 1.57079632673412561417e+00, rest1 = 6.07710050650619224932e-11;  // part1 has 31 bits
+  constexpr double part2 = 6.07710050630396597660e-11, rest2 = 2.02226624879595063154e-21;  // part2 has 32 bits
   const double n = __builtin_rint(x * inverse);
+  const double count = __builtin_fabs(n);
+  if (count >= 0x1p22) return reduce_exactly(x);
   double r = x - n * part1;
   double w = n * rest1;
   double value = r - w;
   // Too many bits cancelled: also subtract the second part.
   const auto exponent = [](double d) { return static_cast<int>((std::bit_cast<std::uint64_t>(d) >> 52) & 0x7ff); };
   if (exponent(x) - exponent(value) > 16) {
+    if (count >= 0x1p21) return reduce_exactly(x);
     const double t = r;
     w = n * part2;
     r = t - w;
     w = n * rest2 - ((t - r) - w);
     value = r - w;
+    // The parts of pi/2 are exact to 2^-122: this is not enough if nearly all bits cancelled.
+    if (__builtin_fabs(value) < count * 0x1p-69) return reduce_exactly(x);
   }
-  // For an angle too large to have a meaningful quadrant, any quadrant will do, as long as it is always the same.
-  const bool is_countable = __builtin_fabs(n) < 0x1p62;
-  return {is_countable ? static_cast<int>(static_cast<std::int64_t>(n) & 3) : 0, value, (r - value) - w};
+  return {static_cast<int>(static_cast<std::int64_t>(n) & 3), value, (r - value) - w};
 }
 
 bool is_finite(double x) { return x - x == 0.0; }
@@ -79,7 +79,7 @@ bool is_finite(double x) { return x - x == 0.0; }
 double portable_sin(double x) {
   if (!is_finite(x)) return x - x;
   if (__builtin_fabs(x) < 0.785) return sin_kernel(x, 0.0);
-  const Reduced r = reduce(x);
+  const ReducedAngle r = reduce(x);
   switch (r.quadrant) {
     case 0: return sin_kernel(r.value, r.tail);
     case 1: return cos_kernel(r.value, r.tail);
@@ -91,7 +91,7 @@ double portable_sin(double x) {
 double portable_cos(double x) {
   if (!is_finite(x)) return x - x;
   if (__builtin_fabs(x) < 0.785) return cos_kernel(x, 0.0);
-  const Reduced r = reduce(x);
+  const ReducedAngle r = reduce(x);
   switch (r.quadrant) {
     case 0: return cos_kernel(r.value, r.tail);
     case 1: return -sin_kernel(r.value, r.tail);

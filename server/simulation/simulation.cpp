@@ -7,6 +7,7 @@
 #include "server/core/hash.hpp"
 #include "server/core/random.hpp"
 #include "server/core/snapshot.hpp"
+#include "server/core/tick_stage.hpp"
 #include "server/physics/make_world.hpp"
 #include "server/simulation/action_events.hpp"
 #include "server/simulation/build_identity.hpp"
@@ -62,16 +63,21 @@ const SharedExperiment& Simulation::shared_with_one_at(std::span<const Pose> X_W
 
 void Simulation::step() {
   note_change();
+  StageMarks stages;
+  stages.enter("actuators");
   robots_.actuate();
   schedule_.push(tick_);
+  stages.enter("physics");
   world_->step();
   ++tick_;
+  stages.enter("events");
   name_quarantined();
   count_touches();
   happened_ = breakable_joints_.broken();
   actions_.finish_step();
   handle_actions();
   begin_tick();
+  stages.enter("sensors");
   sense();
 }
 
@@ -166,12 +172,16 @@ void Simulation::count_touches() {
 }
 
 std::string Simulation::act(const Action& action) {
+  StageMarks stages;
+  stages.enter("requests of clients");
   std::string done = act_unsensed(action);
   sense();
   return done;
 }
 
 std::vector<ActionResult> Simulation::act(std::span<const Action> actions) {
+  StageMarks stages;
+  stages.enter("requests of clients");
   std::vector<ActionResult> results;
   results.reserve(actions.size());
   bool is_changed = false;

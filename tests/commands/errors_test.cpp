@@ -279,6 +279,8 @@ INSTANTIATE_TEST_SUITE_P(
               "COHORT_LOG: invalid level 'loud'; known: debug, info, warn, error, off",
               {{"COHORT_LOG", "loud"}}},
         Typed{{"serve", "x", "--netwrk", "y"}, "there is no option '--netwrk'; did you mean '--network'?"},
+        Typed{{"ctl", "set-pose", "x", "--pose", "0 0 0 0 1e100 0"},
+              "expected roll, pitch and yaw from -1e6 to 1e6 rad, not '0 0 0 0 1e100 0'"},
         Typed{{"host", "x"}, "--robots is required"}, Typed{{"check"}, "FILE is required"},
         Typed{{"page"}, "FILE is required"}, Typed{{"page", "run.mcap"}, "--output is required"},
         Typed{{"page", "run.mcap", "-o", "run.html", "--fps", "0"}, "--fps: expected a number above 0"},

@@ -143,6 +143,8 @@ def test_an_invalid_command_is_named_and_nothing_moves(simulation, value):
         (lambda s: s.set_pose("explorers/sbot_0", (0, 0)), "position is"),
         (lambda s: s.set_pose("explorers/sbot_0", (0, 0, math.nan)), "finite"),
         (lambda s: s.set_pose("explorers/sbot_0", (0, 0, 0), orientation=(0, 0, 0, 0)), "quaternion"),
+        (lambda s: s.set_pose("explorers/sbot_0", (0, 0, 0), 1e100), "yaw is 1e\\+100, expected an angle from -1e6"),
+        (lambda s: s.spawn("sbot", (0, 0, 0), yaw=math.nan), "yaw is nan"),
         (lambda s: s.apply_force("explorers/sbot_0", duration=-1), "duration is -1"),
         (lambda s: s.spawn("<sdf>"), "sdf"),
         (lambda s: s.robots[0].observation_channels.index("proximity/99/reading"), "the nearest are proximity/"),

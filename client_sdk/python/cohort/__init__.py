@@ -22,12 +22,8 @@
 
 The values of an observation or a command are in the order of its channels, which have names, units and bounds
 (`Robot.observation_channels`). A pose is x y z [m] and a quaternion w x y z in the world frame, which has z up. Results
-are bit-identical to those of `cohort run`. For this purpose, importing this package replaces `math.sin`, `math.exp` and
-similar functions with those of Cohort. Their results differ from those of the C library by at most 2 units in the last
-place.
+are bit-identical to those of `cohort run`. `cohort.math` has sin, exp and similar functions with these bits.
 """
-
-import numpy  # before _native, which also binds NumPy's calls to portable functions
 
 from cohort import _native, math
 from cohort._files import examples
@@ -43,7 +39,6 @@ from cohort.simulation import Robot, Simulation
 from cohort.view import View
 
 __version__ = _native.version
-del numpy
 
 __all__ = [
     "Batch",

@@ -1,5 +1,6 @@
 """Functions that C++ calls to run controllers written in Python."""
 
+import contextlib
 import importlib.util
 import pathlib
 import sys
@@ -7,7 +8,18 @@ import traceback
 
 import numpy
 
+from cohort import _native
 from cohort.controller import Controller, ParameterError, Start, TeamController
+
+
+@contextlib.contextmanager
+def portable_calls():
+    """Has `math.sin` and similar functions of this process be those of Cohort, for controllers that call them."""
+    _native.bind_process_calls()
+    try:
+        yield
+    finally:
+        _native.release_process_calls()
 
 
 class Adapter:
@@ -111,7 +123,8 @@ def controller_in(file):
     sys.modules[name] = module
     if str(path.parent) not in sys.path:
         sys.path.insert(0, str(path.parent))  # permanently, because it may import modules later
-    specification.loader.exec_module(module)
+    with portable_calls():
+        specification.loader.exec_module(module)
     classes = [
         value
         for value in vars(module).values()

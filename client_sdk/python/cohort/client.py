@@ -7,11 +7,9 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from cohort import _client, _native
-from cohort._hosting import Maker
+from cohort import _client
+from cohort._hosting import Maker, portable_calls
 from cohort.controller import Controller, TeamController
-
-_native.bind_library_calls()  # also in the libraries that _client has loaded: all call the same functions
 
 
 class ClientError(RuntimeError):
@@ -44,9 +42,10 @@ def host(
     )
     if not selectors:
         raise ValueError("robots is empty, expected at least one selector")
-    end, error = _client.host(
-        Maker(controller), selectors, server or "", -1 if domain is None else domain, os.fspath(secure or "")
-    )
+    with portable_calls():
+        end, error = _client.host(
+            Maker(controller), selectors, server or "", -1 if domain is None else domain, os.fspath(secure or "")
+        )
     if end == "interrupted":
         raise KeyboardInterrupt
     if end != "finished":
@@ -67,4 +66,5 @@ def main(controller: type[Controller] | type[TeamController], arguments: Sequenc
         arguments: options of the program; by default those of the command line.
     """
     arguments = sys.argv if arguments is None else [sys.argv[0], *arguments]
-    sys.exit(_client.run_program(Maker(controller), arguments))
+    with portable_calls():
+        sys.exit(_client.run_program(Maker(controller), arguments))

@@ -161,9 +161,9 @@ class Controller:
 
     Each robot has its own object, created without arguments. One thread calls all of them. An exception ends the run
     with its message. For bit-identical runs, commands must depend only on the arguments of the last `start` and of all
-    steps since. So do not use a clock, a random device, or state that robots share. Functions such as `math.sin` are
-    those of Cohort, with bit-identical results on every machine. The results of NumPy's functions depend on the
-    processor; use `cohort.math` for arrays.
+    steps since. So do not use a clock, a random device, or state that robots share. While controllers are called,
+    functions such as `math.sin` are those of Cohort, with bit-identical results on every machine. The results of
+    NumPy's functions depend on the processor; use `cohort.math` for arrays.
 
         class Wanderer(cohort.Controller):
             def start(self, start):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import json
 import os
@@ -11,7 +12,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Union
 
 from cohort import _files, _native
-from cohort._hosting import Maker, maker_in
+from cohort._hosting import Maker, maker_in, portable_calls
 from cohort.controller import Controller, TeamController
 
 if TYPE_CHECKING:
@@ -266,7 +267,9 @@ class Experiment:
         Raises RuntimeError with the reason if the run fails, and KeyboardInterrupt after Ctrl-C.
         """
         drivers = [self._driver_of(team, controllers) for team in self.teams]
-        facts = _native.run(self._native, threads, drivers, _files.plugin_folders(), record or "")
+        calls_python = any(isinstance(each, Maker) for each in drivers)
+        with portable_calls() if calls_python else contextlib.nullcontext():
+            facts = _native.run(self._native, threads, drivers, _files.plugin_folders(), record or "")
         result = Result(seed=self.seed, **facts)
         if result.end == "failed":
             raise RuntimeError(f"the run failed at tick {result.ticks}: {result.error}")

@@ -12,12 +12,15 @@ import numpy
 from numpy.typing import ArrayLike
 
 from cohort import _native, _plots
+from cohort import math as portable
 from cohort.channels import Channels
 from cohort.experiment import Experiment
 from cohort.view import View
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+_GREATEST_ANGLE = 1e6  # as in files [rad]
 
 
 def _vector(values, name, size=3):
@@ -30,7 +33,9 @@ def _vector(values, name, size=3):
 def _orientation(yaw, orientation):
     if orientation is not None:
         return _vector(orientation, "orientation", 4)
-    return numpy.array([math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)])
+    if not abs(yaw) <= _GREATEST_ANGLE:
+        raise ValueError(f"yaw is {yaw!r}, expected an angle from -1e6 to 1e6 rad")
+    return numpy.array([portable.cos(yaw / 2), 0.0, 0.0, portable.sin(yaw / 2)])
 
 
 class Robot:

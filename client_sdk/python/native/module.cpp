@@ -13,7 +13,8 @@ NB_MODULE(_native, module) {
   cohort::python::watch_for_the_end_of_python();
   cohort::bind_library_calls();
   module.attr("version") = COHORT_VERSION;
-  module.def("bind_library_calls", &cohort::bind_library_calls);
+  module.def("bind_process_calls", &cohort::bind_process_calls);
+  module.def("release_process_calls", &cohort::release_process_calls);
   module.def("functions_not_portable", &cohort::functions_not_portable);
   using cohort::python::FileControllers;
   module.attr("file_controllers") = nanobind::capsule(&cohort::python::file_controllers, FileControllers::capsule);

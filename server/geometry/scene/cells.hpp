@@ -24,8 +24,17 @@ class Cells {
   }
   double size() const { return edge_; }  ///< [m]
 
-  /// Returns the index of the column or row that contains a coordinate.
-  std::int64_t index_of(double coordinate) const { return integer_floor(coordinate * inverse_); }
+  /// Returns the index of the column or row that contains a coordinate; of the outermost one for a coordinate beyond it
+  /// or NaN.
+  std::int64_t index_of(double coordinate) const { return integer_floor(grid_coordinate(coordinate * inverse_)); }
+
+  /// Returns an upper bound on the number of cells that a rectangle touches; NaN if a bound of it is NaN.
+  double most_in(const Bounds& rectangle) const {
+    // std::max returns its first argument if that is NaN.
+    const double width = std::max(rectangle.upper.x() - rectangle.lower.x(), 0.0);
+    const double depth = std::max(rectangle.upper.y() - rectangle.lower.y(), 0.0);
+    return (width * inverse_ + 2.0) * (depth * inverse_ + 2.0);
+  }
 
   /// Chooses the number of buckets for this many items and returns it. Different cells may share a bucket.
   std::size_t choose_buckets(std::size_t items) {
@@ -52,13 +61,14 @@ class Cells {
   /// Returns whether testing this many items one by one takes no longer than visiting all cells of a rectangle. This
   /// bounds the cost of a search for any cell size and any rectangle.
   bool are_more_than(std::size_t items, const Bounds& rectangle) const {
-    const Eigen::Vector2d size = (rectangle.upper - rectangle.lower).head<2>().cwiseMax(0.0);
-    return !((size.x() * inverse_ + 2.0) * (size.y() * inverse_ + 2.0) <= most_cells_of(items));
+    return !(most_in(rectangle) <= most_cells_of(items));
   }
   /// Returns the same for the cells along a ray that ends at `end`.
-  bool along_are_more_than(std::size_t items, const Eigen::Vector3d& direction, double end) const {
+  bool along_are_more_than(std::size_t items, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                           double end) const {
     const double across = std::abs(direction.x()) + std::abs(direction.y());
-    return across != 0.0 && !(end * across * inverse_ <= most_cells_of(items));
+    if (across == 0.0) return !(end < infinity);  // a search without end in one cell
+    return !(end * across * inverse_ <= most_cells_of(items)) || !contains(origin.x()) || !contains(origin.y());
   }
 
   /// Calls `visit(column, row)` for the cells along a ray of unit direction, near ones first. `visit` returns the
@@ -92,6 +102,7 @@ class Cells {
   }
 
  private:
+  bool contains(double coordinate) const { return grid_coordinate(coordinate * inverse_) == coordinate * inverse_; }
   static double most_cells_of(std::size_t items) {
     constexpr double few = 64.0;
     return few + static_cast<double>(items);

@@ -18,14 +18,16 @@ class CornerGrid {
   void set_cell_size(double edge) { cells_.set_size(edge); }
   double cell_size() const { return cells_.size(); }
 
-  /// Builds the grid. `items`: indices; `bounds[item]` must be finite, and at most as wide as a cell along x and y.
-  /// Equal input gives an equal grid, regardless of its earlier content.
+  /// Builds the grid. `items`: indices. An item that is wider than a cell along x or y, or not finite, is in no cell:
+  /// every search visits it. Equal input gives an equal grid, regardless of its earlier content.
   void build(std::span<const std::uint32_t> items, const std::vector<Bounds>& bounds);
 
   /// Calls `visit(item)` once for each item whose bounds overlap `query`, in an order that depends only on the content
   /// of the grid. The query may be infinite.
   template <class Visit>
   void for_each_overlap(const Bounds& query, Visit&& visit) const {
+    for (const Entry& entry : apart_)
+      if (query.overlaps(entry.bounds)) visit(entry.item);
     if (entries_.empty()) return;
     const Bounds within{query.lower.cwiseMax(extent_.lower), query.upper.cwiseMin(extent_.upper)};
     if (cells_.are_more_than(entries_.size(), within)) {
@@ -52,9 +54,10 @@ class CornerGrid {
   template <class Visit>
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
                       Visit&& visit) const {
+    for (const Entry& entry : apart_) range = std::min(range, visit(entry.item));
     if (entries_.empty()) return;
     double end = cells_.end_of(origin, direction, range, extent_);
-    if (cells_.along_are_more_than(entries_.size(), direction, end)) {
+    if (cells_.along_are_more_than(entries_.size(), origin, direction, end)) {
       for (const Entry& entry : entries_) visit(entry.item);
       return;
     }
@@ -67,6 +70,8 @@ class CornerGrid {
   }
 
  private:
+  static constexpr std::uint32_t no_bucket = 0xffffffffu;
+
   struct Entry {
     Bounds bounds;
     std::uint32_t item = 0;
@@ -87,7 +92,8 @@ class CornerGrid {
   Cells cells_;
   std::vector<std::uint32_t> begin_;  // start of each bucket in entries_, and one past the last
   std::vector<Entry> entries_;
-  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // bounds of all items
+  std::vector<Entry> apart_;                                         // items in no cell
+  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // bounds of all entries
   std::vector<std::uint32_t> buckets_;                               // buckets of the items, used while building
 };
 

@@ -19,21 +19,24 @@ void Grid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>
         act(cells_.bucket_of(column, row));
   };
 
-  items_.assign(items.begin(), items.end());
+  items_.clear();
+  apart_.clear();
   entries_.clear();
-  if (items.empty()) return;
-  extent_ = bounds[items[0]];
-  for (const std::uint32_t item : items) extent_.include(bounds[item]);
+  for (const std::uint32_t item : items)
+    (cells_.most_in(bounds[item]) <= most_cells_an_item ? items_ : apart_).push_back(item);
+  if (items_.empty()) return;
+  extent_ = bounds[items_[0]];
+  for (const std::uint32_t item : items_) extent_.include(bounds[item]);
 
   // Counting sort into buckets: count, then prefix sums, then insert the items from the last to the first, which leaves
   // the start of each bucket.
-  const std::size_t buckets = cells_.choose_buckets(items.size());
+  const std::size_t buckets = cells_.choose_buckets(items_.size());
   begin_.assign(buckets + 1, 0);
-  for (const std::uint32_t item : items) for_each_cell(item, [&](std::size_t bucket) { ++begin_[bucket]; });
+  for (const std::uint32_t item : items_) for_each_cell(item, [&](std::size_t bucket) { ++begin_[bucket]; });
   for (std::size_t i = 0; i < buckets; ++i) begin_[i + 1] += begin_[i];
   entries_.resize(begin_[buckets]);
-  for (std::size_t i = items.size(); i-- > 0;)
-    for_each_cell(items[i], [&](std::size_t bucket) { entries_[--begin_[bucket]] = items[i]; });
+  for (std::size_t i = items_.size(); i-- > 0;)
+    for_each_cell(items_[i], [&](std::size_t bucket) { entries_[--begin_[bucket]] = items_[i]; });
 }
 
 }  // namespace cohort::geometry

@@ -16,17 +16,20 @@ class Grid {
  public:
   void set_cell_size(double edge) { cells_.set_size(edge); }
 
-  /// Returns the number of cells that `bounds` touches; for very large bounds, it exceeds what a grid should hold.
+  /// Returns the number of cells that `bounds` touches; for very large bounds, it exceeds what a grid should hold. NaN
+  /// if a bound is NaN.
   double cells_covered(const Bounds& bounds) const;
 
-  /// Builds the grid. `items`: indices; `bounds[item]` must be finite. Equal input gives an equal grid, regardless of
-  /// its earlier content.
+  /// Builds the grid. `items`: indices. An item that would fill very many cells, or is not finite, is in no cell: every
+  /// search visits it. Equal input gives an equal grid, regardless of its earlier content.
   void build(std::span<const std::uint32_t> items, const std::vector<Bounds>& bounds);
 
   /// Calls `visit(item)` once for each item of the grid whose bounds overlap `query`, in an order that depends only on
   /// the content of the grid.
   template <class Visit>
   void for_each_overlap(const Bounds& query, const std::vector<Bounds>& bounds, Visit&& visit) const {
+    for (const std::uint32_t item : apart_)
+      if (query.overlaps(bounds[item])) visit(item);
     if (entries_.empty()) return;
     if (cells_.are_more_than(items_.size(), query)) {
       for (const std::uint32_t item : items_)
@@ -59,9 +62,10 @@ class Grid {
   template <class Visit>
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
                       Visit&& visit) const {
+    for (const std::uint32_t item : apart_) range = std::min(range, visit(item));
     if (entries_.empty()) return;
     double end = cells_.end_of(origin, direction, range, extent_);
-    if (cells_.along_are_more_than(items_.size(), direction, end)) {
+    if (cells_.along_are_more_than(items_.size(), origin, direction, end)) {
       for (const std::uint32_t item : items_) visit(item);
       return;
     }
@@ -72,6 +76,8 @@ class Grid {
   }
 
  private:
+  static constexpr double most_cells_an_item = 256.0;  // more than Scene gives it
+
   std::span<const std::uint32_t> bucket(std::int64_t column, std::int64_t row) const {
     const std::size_t index = cells_.bucket_of(column, row);
     return {entries_.data() + begin_[index], entries_.data() + begin_[index + 1]};
@@ -80,8 +86,9 @@ class Grid {
   Cells cells_;
   std::vector<std::uint32_t> begin_;    // start of each bucket in entries_, and one past the last
   std::vector<std::uint32_t> entries_;  // items, ascending within a bucket
-  std::vector<std::uint32_t> items_;    // each once
-  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // bounds of all items
+  std::vector<std::uint32_t> items_;    // those in cells, each once
+  std::vector<std::uint32_t> apart_;    // those in no cell
+  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // bounds of the items in cells
 };
 
 }  // namespace cohort::geometry

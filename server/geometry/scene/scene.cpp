@@ -76,7 +76,7 @@ void Scene::build() {
     if (is_removed_[index]) continue;
     const double width = 2.0 * solids_[index].radius;
     if (!solids_[index].moves) {
-      (static_grid_.cells_covered(bounds_[index]) > most_cells ? large_ : small).push_back(index);
+      (static_grid_.cells_covered(bounds_[index]) <= most_cells ? small : large_).push_back(index);
     } else {
       (width <= edge ? moving_ : width * width > most_cells * edge * edge ? large_moving_ : wide_).push_back(index);
     }

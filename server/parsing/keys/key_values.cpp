@@ -1,8 +1,10 @@
 #include "server/parsing/keys/key_values.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "server/core/angle.hpp"
 #include "server/core/text.hpp"
 
 namespace cohort::parsing {
@@ -35,8 +37,22 @@ std::optional<Pose> pose_of_quaternion(const std::array<double, 7>& v) {
   const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
   constexpr double no_direction = 1e-6;
   constexpr double rounding = 1e-14;
-  if (q.norm() < no_direction) return std::nullopt;
+  if (q.norm() < no_direction || !std::isfinite(q.norm())) return std::nullopt;
   return Pose{{v[0], v[1], v[2]}, std::abs(q.squaredNorm() - 1.0) < rounding ? q : q.normalized()};
+}
+
+// Returns whether a text of numbers has an angle that is out of range.
+bool has_wrong_angle(std::string_view text, const ExtensionKey& key) {
+  std::vector<std::string_view> angles = words(text);
+  std::size_t others = angles.size();
+  if (key.value == ExtensionValue::pose && angles.size() == 6) others = 3;
+  if (key.value == ExtensionValue::place && angles.size() == 3) others = 2;
+  if (key.unit == "rad") others = 0;
+  angles.erase(angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(others));
+  return std::ranges::any_of(angles, [](std::string_view angle) {
+    const std::optional<double> number = parse_real(angle);
+    return number && std::isfinite(*number) && !is_angle(*number);
+  });
 }
 
 bool is_in_range(double number, ExtensionValue kind) {
@@ -58,6 +74,7 @@ void KeyValues::prefix_texts(std::string_view key, const std::string& prefix) {
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): one short case for each kind of value.
 std::optional<KeyValues::Value> parse_value(std::string_view text, const ExtensionKey& key) {
   using Value = KeyValues::Value;
+  if (has_wrong_angle(text, key)) return std::nullopt;
   switch (key.value) {
     case ExtensionValue::name:
     case ExtensionValue::object:
@@ -141,7 +158,8 @@ std::string why_wrong(std::string_view text, const ExtensionKey& key) {
   if (text.empty()) return "expected " + expected(key);
   if (key.value == ExtensionValue::choice)
     return "unknown value '" + std::string(text) + "'" + suggestion(text, {key.choices.begin(), key.choices.end()});
-  return "expected " + expected(key) + ", not '" + std::string(text) + "'";
+  const std::string range = has_wrong_angle(text, key) ? std::string("; angles must be ") + angle_range : "";
+  return "expected " + expected(key) + ", not '" + std::string(text) + "'" + range;
 }
 
 }  // namespace cohort::parsing

@@ -6,9 +6,9 @@ std::span<const Explanation> world_explanations() {
   static constexpr Explanation all[] = {
       {"values", "", R"md(
 All values are in SI units: m, kg, s, rad, N, N m. Frames are right-handed, with z up and x forward. All numbers
-are finite. A pose is `x y z roll pitch yaw`, with rotations about the fixed axes x, then y, then z. A pose may
-also be `x y z qx qy qz qw`, with a quaternion. In YAML, a pose or vector is a string as in SDF, or a list of
-numbers.
+are finite, and angles are from -1e6 to 1e6 rad. A pose is `x y z roll pitch yaw`, with rotations about the fixed
+axes x, then y, then z. A pose may also be `x y z qx qy qz qw`, with a quaternion. In YAML, a pose or vector is a
+string as in SDF, or a list of numbers.
 
 An optional key may be absent; it then has no value. A *name* refers to a link, joint or device of the same
 model. A *scoped name* includes the group of the object, as in `team/sbot_1`.

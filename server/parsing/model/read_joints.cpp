@@ -2,6 +2,7 @@
 #include <sdf/Error.hh>
 #include <sdf/JointAxis.hh>
 
+#include "server/core/angle.hpp"
 #include "server/parsing/model/read_model.hpp"
 
 namespace cohort::parsing {
@@ -50,7 +51,7 @@ void read_dynamics(const sdf::JointAxis& sdf_axis, const SdfReport& report, Join
   check("damping", is_out_of_range(axis.damping), "a damping >= 0");
   check("friction", is_out_of_range(axis.friction), "a friction >= 0");
   check("spring_stiffness", is_out_of_range(axis.spring_stiffness), "a stiffness >= 0");
-  check("spring_reference", std::isinf(axis.spring_reference), "a finite position");
+  check("spring_reference", std::abs(axis.spring_reference) > greatest_angle, "a position from -1e6 to 1e6");
 }
 
 void read_limits(const sdf::JointAxis& sdf_axis, const SdfReport& report, JointAxis& axis) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "server/core/text.hpp"
+#include "server/parsing/sdf/schema/sdf_angles.hpp"
 #include "server/parsing/sdf/schema/sdf_schema.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
@@ -86,6 +87,7 @@ std::optional<ignition::math::Pose3d> pose_in_world(const XmlNode* pose) {
     if (!attribute || refers_to_frame(name) || !attribute->SetFromString(value)) return std::nullopt;
   }
   if (pose->text.empty()) return ignition::math::Pose3d::Zero;
+  if (flaw_of_angles(*pose)) return std::nullopt;
   for (const std::string_view part : words(pose->text))
     if (const auto number = parse_real(part); !number || !std::isfinite(*number)) return std::nullopt;
   ignition::math::Pose3d X;

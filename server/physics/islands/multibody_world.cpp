@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "server/core/tick_stage.hpp"
 #include "server/physics/islands/island_solver.hpp"
 
 namespace cohort::physics {
@@ -195,8 +196,11 @@ void MultibodyWorld::step() {
   quarantined_.clear();
   const bool all_is_as_it_was = awake_.empty() && reported_at_ == assembly_.revision;
   if (!all_is_as_it_was) {
+    StageMarks stages;
+    stages.enter("collision detection");
     detect();
     find_islands();
+    stages.enter("contact and joint forces");
     solve_islands();
     report_contacts();
     assembly_.connections.settle([&](const Connection::End& end) { return assembly_.pose_of(end); }, assembly_.step);

@@ -52,7 +52,7 @@ class PlanarGrid {
     std::int64_t column = 0;
     std::int64_t row = 0;
   };
-  std::int64_t cell_of(double at) const { return integer_floor(at * inverse_); }
+  std::int64_t cell_of(double at) const { return integer_floor(grid_coordinate(at * inverse_)); }
   std::size_t bucket_of(std::int64_t column, std::int64_t row) const {
     const auto start = static_cast<std::uint64_t>(row) * 0x9e3779b97f4a7c15u >> 20;
     return static_cast<std::size_t>((start + static_cast<std::uint64_t>(column)) & mask_);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "server/core/tick_stage.hpp"
 #include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {
@@ -105,8 +106,11 @@ void PlanarWorld::step() {
     for (std::uint32_t index = 0; index < members_.size(); ++index)
       if (members_[index].record)
         members_[index].record->before(LinksOf{planar_, index}, planar_.model(index).link_count());
+  StageMarks stages;
+  stages.enter("collision detection");
   collision_.detect(workers_);
   find_islands();
+  stages.enter("contact forces");
   workers_.for_each_chunk(islands_.count(), islands_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
     for (std::size_t i = begin; i < end; ++i)
       solve_island(islands_.members(static_cast<std::uint32_t>(i)), memory_[worker]);

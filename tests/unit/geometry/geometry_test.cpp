@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "server/core/infinity.hpp"
@@ -188,6 +189,54 @@ TEST(Grids, FindItemsWithCellsOfAnySize) {
       EXPECT_TRUE(along_corners.contains(target)) << edge;
     }
   }
+}
+
+TEST(Grids, SearchesEndForAnyExtentFiniteOrNot) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double any[] = {0.0, 0.3, -0.3, 1e9, -1e9, 1e15, -1e15, 1e142, -1e300, infinity, -infinity, nan};
+  std::vector<Bounds> bounds;
+  for (const double lower : any)
+    for (const double upper : any)
+      for (const double other : {0.0, nan}) {
+        if (lower > upper) continue;
+        bounds.push_back({{lower, other, 0.0}, {upper, other, 0.1}});
+        bounds.push_back({{other, lower, nan}, {other, upper, 0.1}});
+      }
+  const auto near = static_cast<std::uint32_t>(bounds.size());
+  bounds.push_back({{0.1, 0.1, 0.0}, {0.2, 0.2, 0.1}});
+  std::vector<std::uint32_t> items(bounds.size());
+  std::iota(items.begin(), items.end(), 0u);
+  Grid grid;
+  CornerGrid corner_grid;
+  grid.set_cell_size(0.1);
+  corner_grid.set_cell_size(0.1);
+  grid.build(items, bounds);
+  corner_grid.build(items, bounds);
+  for (const Bounds& query : bounds) {
+    std::multiset<std::uint32_t> expected, found, found_by_corners;
+    for (const std::uint32_t item : items)
+      if (query.overlaps(bounds[item])) expected.insert(item);
+    grid.for_each_overlap(query, bounds, [&](std::uint32_t item) { found.insert(item); });
+    corner_grid.for_each_overlap(query, [&](std::uint32_t item) { found_by_corners.insert(item); });
+    EXPECT_EQ(found, expected);
+    EXPECT_EQ(found_by_corners, expected);
+  }
+  for (const double x : any)
+    for (const double y : any)
+      for (const double dx : {0.0, 0.6, 1e-300, nan})
+        for (const double range : {0.0, 10.0, infinity}) {
+          const Vector3d origin(x, y, 0.05), direction(dx, 0.8, 0.0), up(dx, 0.0, 1.0);
+          for (const Vector3d& way : {direction, up}) {
+            grid.for_each_along(origin, way, range, [&](std::uint32_t) { return range; });
+            corner_grid.for_each_along(origin, way, range, [&](std::uint32_t) { return range; });
+          }
+        }
+  std::set<std::uint32_t> along;
+  grid.for_each_along({-1, 0.15, 0.05}, {1, 0, 0}, 10.0, [&](std::uint32_t item) {
+    along.insert(item);
+    return 10.0;
+  });
+  EXPECT_TRUE(along.contains(near));
 }
 
 class RandomScene : public ::testing::Test {

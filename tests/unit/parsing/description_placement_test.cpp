@@ -266,6 +266,10 @@ INSTANTIATE_TEST_SUITE_P(
              in_placement + "/cohort:formation/cohort:spacing", "missing"},
         Flaw{"<cohort:formation><cohort:member>0 0 0</cohort:member></cohort:formation>", 3,
              in_placement + "/cohort:formation", "has 1 members"},
+        Flaw{"<cohort:formation><cohort:member>0 0 1e100</cohort:member></cohort:formation>", 3,
+             in_placement + "/cohort:formation/cohort:member", "angles must be from -1e6 to 1e6 rad"},
+        Flaw{"<cohort:grid><cohort:spacing>1</cohort:spacing></cohort:grid><cohort:yaw>1e100</cohort:yaw>", 3,
+             in_placement + "/cohort:yaw", "expected a number, not '1e100'; angles must be from -1e6 to 1e6 rad"},
         Flaw{"<cohort:formation><cohort:member>0 0</cohort:member></cohort:formation>", 3,
              in_placement + "/cohort:formation/cohort:member", "three numbers 'x y heading'"}));
 

@@ -265,6 +265,8 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"world: {name: w}\nduration: 3\n", 2, "duration", "unknown key; known: version, world"},
         Flaw{"world:\n  physics:\n    type: ode\n    max_step_size: 0.01 s\n", 4, "world/physics/max_step_size",
              "'s' is not a number"},
+        Flaw{"world:\n  include: {uri: model://sbot, pose: [0, 0, 0, 1e100, 0, 0]}\n", 2, "world/include[sbot]/pose",
+             "expected angles from -1e6 to 1e6 rad"},
         Flaw{"world:\n  gravity: [0, 0]\n", 2, "world/gravity", "cannot have the value '0 0'"},
         Flaw{"world:\n  model: {static: true, link: {}}\n", 2, "world/model", "missing: the attribute 'name'"},
         Flaw{"world:\n  model:\n    name: m\n    static: true\n    link:\n      collision:\n        geometry:\n"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tests/support/robots.hpp"
 
@@ -195,6 +196,24 @@ TEST(Simulation, NamesTheRobotThatLeftTheWorldAndContinues) {
   experiment.world.physics.strict = true;
   Simulation strict(experiment, 1);
   EXPECT_THROW(while (strict.tick() < 100) strict.step(), std::runtime_error);
+}
+
+TEST(Simulation, EndsItsTicksForAnyPoseThatTheDescriptionHas) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+  for (const double number : {1e30, -1e142, 1e300, infinite, -infinite, nan})
+    for (int coordinate = 0; coordinate < 7; ++coordinate)
+      for (const std::size_t instance : {1U, 2U}) {
+        SCOPED_TRACE(std::to_string(number) + " in " + std::to_string(coordinate));
+        description::World world = world_with_floor();
+        place(world, static_shape("wall", description::Box{{0.1, 0.5, 0.3}}), "wall", at(0.5, 0, 0.15));
+        place(world, tracked_robot(), "odd", at(0, 0, 0));
+        place(world, tracked_robot(), "usual", at(0, 1, 0));
+        Pose& X_WM = world.instances[instance].X_WM;
+        (coordinate < 3 ? X_WM.position[coordinate] : X_WM.orientation.coeffs()[coordinate - 3]) = number;
+        Simulation simulation(experiment_of(world), 1);
+        for (int i = 0; i < 3; ++i) simulation.step();
+        EXPECT_TRUE(simulation.robot_pose(1).position.allFinite());
+      }
 }
 
 TEST(Simulation, GivesTheSameBitsWhenRebuilt) {

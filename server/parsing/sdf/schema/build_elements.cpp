@@ -8,6 +8,7 @@
 
 #include "server/core/text.hpp"
 #include "server/parsing/files/sdf_version.hpp"
+#include "server/parsing/sdf/schema/sdf_angles.hpp"
 #include "server/parsing/sdf/schema/sdf_schema.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
@@ -162,6 +163,8 @@ bool TreeReader::add_required(const sdf::ElementPtr& element) {
 
 bool TreeReader::read(const XmlNode& node, const sdf::ElementPtr& element, const sdf::ElementPtr& definition) {
   if (!read_attributes(node, element) || !read_value(node, element)) return false;
+  if (const auto flaw = flaw_of_angles(node))
+    fail(sdf::ErrorCode::ELEMENT_INCORRECT_TYPE, *flaw, *element->LineNumber(), element->XmlPath());
   if (element->GetCopyChildren()) {
     for (const XmlNode& child : node.children) copy_unknown(child, element);
     return true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/core/angle.hpp"
 #include "server/core/text.hpp"
 
 namespace cohort::parsing {
@@ -53,10 +54,15 @@ std::optional<std::string> what_is_wrong(const std::string& value, const UrdfAtt
     const std::optional<double> number = parse_real(part);
     return number && std::isfinite(*number) && (!attribute.positive || *number > 0.0);
   });
-  if (parts.size() == attribute.numbers && is_right) return std::nullopt;
+  const bool has_angles = attribute.name == "rpy";
+  const bool is_in_range = !has_angles || std::ranges::all_of(parts, [](std::string_view part) {
+    return is_angle(parse_real(part).value_or(0.0));
+  });
+  if (parts.size() == attribute.numbers && is_right && is_in_range) return std::nullopt;
   return "expected " +
          (attribute.numbers == 1 ? std::string("a number") : std::to_string(attribute.numbers) + " numbers") +
-         (attribute.positive ? " > 0" : "") + " for '" + name + "', not '" + value + "'";
+         (attribute.positive ? " > 0" : "") + (has_angles ? std::string(" ") + angle_range : "") + " for '" + name +
+         "', not '" + value + "'";
 }
 
 }  // namespace cohort::parsing

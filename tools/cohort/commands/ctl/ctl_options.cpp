@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/core/angle.hpp"
 #include "server/core/text.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/ctl/ctl_spawn.hpp"
@@ -49,6 +50,8 @@ WorldPose pose_in(const std::string& text) {
   WorldPose pose;
   pose.position = {numbers[0], numbers[1], numbers[2]};
   if (numbers.size() == 3) return pose;
+  if (!std::all_of(numbers.begin() + 3, numbers.end(), is_angle))
+    throw UsageError(std::string("expected roll, pitch and yaw ") + angle_range + ", not '" + text + "'");
   const double cr = std::cos(numbers[3] / 2), sr = std::sin(numbers[3] / 2);
   const double cp = std::cos(numbers[4] / 2), sp = std::sin(numbers[4] / 2);
   const double cy = std::cos(numbers[5] / 2), sy = std::sin(numbers[5] / 2);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/description/world.hpp"
+#include "server/parsing/parsing.hpp"
 
 namespace cohort::parsing {
 

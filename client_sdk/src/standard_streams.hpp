@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// Standard input, output and error of a program, whatever they are connected to.
+/// Standard input, output and error of a program: terminals, files, pipes or sockets.
 namespace cohort {
 
 /// Opens /dev/null for each of the three that is closed. Otherwise the next file that the program opens, such as a

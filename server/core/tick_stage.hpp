@@ -13,7 +13,7 @@ class TickStage {
   /// Returns how many ticks, or requests between ticks, have begun.
   std::uint64_t begun() const { return begun_.load(std::memory_order_relaxed); }
 
-  /// The stage that this thread marks; null if nobody watches.
+  /// The stage that this thread marks; null without a watchdog.
   static inline thread_local TickStage* of_this_thread = nullptr;
 
  private:
@@ -22,8 +22,8 @@ class TickStage {
   std::atomic<std::uint64_t> begun_{0};  // written by one thread
 };
 
-/// Marks the stages of a tick on this thread, until it is destroyed. Costs one look at a thread-local pointer if nobody
-/// watches, and otherwise a store for each stage. Marks may be nested; the outermost ones begin a tick or a request.
+/// Marks the stages of a tick on this thread, until it is destroyed. Costs one look at a thread-local pointer without a
+/// watchdog, and otherwise a store for each stage. Marks may be nested; the outermost ones begin a tick or a request.
 class StageMarks {
  public:
   StageMarks() : stage_(TickStage::of_this_thread), before_(stage_ != nullptr ? stage_->name() : nullptr) {

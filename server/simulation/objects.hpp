@@ -68,7 +68,7 @@ class Objects {
   physics::World& world_;
   std::uint32_t described_;
   std::vector<char> present_;
-  std::vector<std::uint64_t> fingerprints_;  // of the models of the added objects
+  std::vector<std::uint64_t> fingerprints_;  // by added object: that of its model
   std::shared_ptr<ByName> by_name_;          // for lookup only, never iterated; shared like the experiment
   std::uint64_t history_ticks_ = 1;
   std::vector<std::deque<PastPose>> histories_;  // in the order of History::objects

@@ -145,7 +145,7 @@ PictureCamera camera_for(const Simulation& simulation, double aspect) {
   if (!all.lower.allFinite()) all = {Vector3d::Constant(-1.0), Vector3d::Constant(1.0)};
   PictureCamera camera;
   camera.target_W = 0.5 * (all.lower + all.upper);
-  // What is there is usually flat, and seen at an angle: the ball around it may be larger than the picture.
+  // Worlds are usually flat, and seen at an angle: the ball around them may be larger than the picture.
   const double radius = 0.85 * 0.5 * (all.upper - all.lower).norm();
   const double half_angle = 0.5 * camera.vertical_field_of_view * std::min(1.0, aspect);
   camera.position_W = camera.target_W + radius / std::sin(half_angle) * Vector3d(0.0, -0.6, 0.8);

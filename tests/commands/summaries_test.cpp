@@ -4,7 +4,7 @@
 
 #include "tests/commands/small_experiment.hpp"
 
-// What a run says about itself at its end.
+// The output of a run at its end.
 namespace cohort::test {
 namespace {
 

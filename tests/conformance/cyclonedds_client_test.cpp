@@ -9,8 +9,8 @@
 namespace cohort::test {
 namespace {
 
-// A DDS implementation that tells its types would find that its own differ from those of the server in the names that
-// it has for them, if the server told them too.
+// This DDS implementation tells how its types are composed. If the server told it too, they would differ, since each
+// has names of its own for the same parts.
 TEST(ClientOnCycloneDdsForPython, GivesIdenticalResults) {
   const std::string python = COHORT_CYCLONEDDS_PYTHON;
   if (python.empty()) GTEST_SKIP() << "no Cyclone DDS 11 here: tools/python-environment --cyclonedds";

@@ -174,7 +174,7 @@ TEST(Readout, ARateIsExactOnAverageIfItsPeriodIsNoWholeNumberOfSteps) {
 TEST(Readout, ALatencyIsExactOnAverageIfItIsNoWholeNumberOfSteps) {
   for (const auto latency : {4ms, 15ms, 33ms}) {
     const std::vector<double> out = reports({{}, 0.0, 50ms, latency}, 100'000);
-    double sum = 0.0;  // of the ages of readings when they are reported
+    double sum = 0.0;  // sum of the ages of readings when they are reported
     std::size_t count = 0;
     for (std::size_t tick = 1; tick < out.size(); ++tick)
       if (out[tick] != out[tick - 1]) {

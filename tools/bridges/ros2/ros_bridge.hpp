@@ -98,7 +98,7 @@ class RosBridge {
   std::vector<std::variant<SpawnedRobot, std::string>> entity_changes_;  // added robots, and names of removed entities
   std::optional<GidFormat> format_;                                      // nothing: no participant has shown it yet
   bool is_announced_ = false;
-  bool is_first_frame_ = true;  // of a lease
+  bool is_first_frame_ = true;  // the next frame is the first of a lease
   bool is_other_run_ = true;
   std::chrono::nanoseconds step_{0};
   std::unique_ptr<RosProgram> program_;

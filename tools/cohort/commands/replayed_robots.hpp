@@ -44,7 +44,7 @@ class ReplayedRobots {
     std::chrono::nanoseconds step{0};
     std::optional<ros2::Drive> drive;
     std::unique_ptr<ros2::Publications> publications;
-    std::optional<std::chrono::nanoseconds> time;  // of the last observation
+    std::optional<std::chrono::nanoseconds> time;  // time of the last observation
   };
   static std::unique_ptr<Robot> make_robot(ros2::RosParticipant& participant, const description::Experiment& experiment,
                                            const recording::Roster& roster, std::uint32_t robot,
@@ -55,7 +55,7 @@ class ReplayedRobots {
   std::vector<recording::ChannelId> channels_;
   std::map<recording::ChannelId, std::unique_ptr<Robot>> robots_;  // by the channels of their observations
   std::optional<recording::ChannelId> poses_;                      // if they are needed
-  std::map<std::string, WorldPose> pose_of_;                       // of robots, by name
+  std::map<std::string, WorldPose> pose_of_;                       // by the names of robots
 };
 
 }  // namespace cohort::tool

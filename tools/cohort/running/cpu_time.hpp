@@ -2,7 +2,7 @@
 
 namespace cohort::tool {
 
-/// Returns the CPU time of this process and of the processes that it has started, also of those that still run [s].
+/// Returns the CPU time of this process and of all processes that it has started, ended or not [s].
 double cpu_seconds();
 
 }  // namespace cohort::tool

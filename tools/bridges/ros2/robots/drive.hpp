@@ -28,8 +28,8 @@ struct BodyVelocity {
 struct PlanarMotion {
   double x = 0.0, y = 0.0, heading = 0.0;  ///< [m], [m], [rad]
   BodyVelocity velocity{};
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y and heading
-  BodyVelocity variance{};                               ///< of the velocity, linear and angular [m^2/s^2], [rad^2/s^2]
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< covariance of x, y and heading
+  BodyVelocity variance{};                               ///< variances of both velocities [m^2/s^2], [rad^2/s^2]
 };
 
 class Drive {
@@ -66,7 +66,7 @@ class Drive {
     std::size_t offset = 0;
     double scale = 1.0;
     double y = 0.0;
-    double variance = 0.0;  // of the way
+    double variance = 0.0;  // variance of the way
     double last = 0.0;
   };
   // Variances of the origin's way and of the turn by errors of one reading.

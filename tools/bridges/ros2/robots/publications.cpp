@@ -114,7 +114,7 @@ void Publications::move(std::span<const double> observation, double seconds) {
   odometry_->pose.pose = {{motion.x, motion.y, 0.0}, turned_by(motion.heading)};
   odometry_->twist.twist.linear.x = motion.velocity.linear;
   odometry_->twist.twist.angular.z = motion.velocity.angular;
-  constexpr std::array<std::size_t, 3> places = {0, 1, 5};  // of x, y and the heading among the six of ROS
+  constexpr std::array<std::size_t, 3> places = {0, 1, 5};  // places of x, y and the heading among the six of ROS
   for (std::size_t row = 0; row < places.size(); ++row)
     for (std::size_t column = 0; column < places.size(); ++column)
       odometry_->pose.covariance[6 * places[row] + places[column]] =

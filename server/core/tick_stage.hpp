@@ -14,6 +14,7 @@ class TickStage {
   std::uint64_t begun() const { return begun_.load(std::memory_order_relaxed); }
 
   /// The stage that this thread marks; null without a watchdog.
+  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a watchdog sets it
   static inline thread_local TickStage* of_this_thread = nullptr;
 
  private:

@@ -78,7 +78,8 @@ void draw_solid(const geometry::Scene& scene, std::uint32_t solid, Picture& pict
   }
   for (int row = rows.begin; row < rows.end; ++row)
     for (int column = columns.begin; column < columns.end; ++column) {
-      const auto pixel = static_cast<std::size_t>(row * picture.width + column);
+      const std::size_t pixel =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(column);
       auto& hit = picture.hits[pixel];
       const double range = hit ? hit->distance : std::numeric_limits<double>::infinity();
       scene.improve(hit, solid, picture.origin_W, picture.rays_W[pixel], range);

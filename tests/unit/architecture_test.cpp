@@ -209,7 +209,7 @@ TEST(Architecture, EachLibraryIsIncludedWhereItIsListed) {
   const std::regex others(
       "[a-z_]+|(std|sys|net|netinet|arpa|linux)[a-z]*/"
       ".*|(std[a-z]+|inttypes|dlfcn|elf|link|fcntl|ifaddrs|netdb|poll|pthread|spawn|"
-      "termios|unistd|math|string|signal|fenv|time|errno|sched|semaphore|threads)\\.h|Eigen/.*|fmt/"
+      "termios|unistd|aio|mqueue|math|string|signal|fenv|time|errno|sched|semaphore|threads)\\.h|Eigen/.*|fmt/"
       ".*|cohort\\.h|cohort_build/"
       ".*|cxxabi\\.h|"
       "immintrin\\.h|x86intrin\\.h|execinfo\\.h");

@@ -46,8 +46,7 @@ PageFile::~PageFile() {
   ::unlink(path_.c_str());
 }
 
-pid_t start_program(VirtualProgram::Options& options, const std::filesystem::path& program,
-                    const std::string& page_file) {
+pid_t start_program(ProgramOptions& options, const std::filesystem::path& program, const std::string& page_file) {
   const std::filesystem::path library = preload_library();
   std::vector<std::string> environment;
   std::string preload = library.string();

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tools/exec/clock_page.hpp"
-#include "tools/exec/virtual_program.hpp"
+#include "tools/exec/program_options.hpp"
 
 namespace cohort::exec {
 
@@ -28,7 +28,6 @@ class PageFile {
 
 /// Starts a program with the library that replaces its clocks. Throws std::runtime_error that says why it cannot be
 /// started.
-pid_t start_program(VirtualProgram::Options& options, const std::filesystem::path& program,
-                    const std::string& page_file);
+pid_t start_program(ProgramOptions& options, const std::filesystem::path& program, const std::string& page_file);
 
 }  // namespace cohort::exec

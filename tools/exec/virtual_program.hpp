@@ -4,12 +4,11 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
+
+#include "tools/exec/program_options.hpp"
 
 namespace cohort::exec {
 
@@ -25,19 +24,7 @@ class VirtualProgram {
  public:
   using Time = std::chrono::nanoseconds;
 
-  struct Options {
-    std::vector<std::string> command{};      ///< a program of $PATH or its path, and its arguments
-    std::string name{};                      ///< for people; empty: that of the program
-    std::vector<std::string> environment{};  ///< NAME=VALUE, in addition to this process's
-    std::filesystem::path folder{};          ///< that it runs in; empty: this process's
-    Time start{0};                           ///< its monotonic clock at first
-    Time date{0};                            ///< offset of its calendar clock (since 1970) from that
-    /// Called in the new process before it becomes the program, after a fork: system calls alone, no memory of the
-    /// heap. Returns false, with errno, if it cannot be started so.
-    std::function<bool()> prepare{};
-    std::function<bool()> given_up{};                     ///< asked while it computes, several times a second
-    std::function<void(const std::string& text)> tell{};  ///< reports problems to the user
-  };
+  using Options = ProgramOptions;
 
   /// Starts the program. Throws std::runtime_error that says why it cannot be started, or cannot have virtual time.
   explicit VirtualProgram(Options options);

@@ -63,6 +63,7 @@ pid_t start_program(ProgramOptions& options, const std::filesystem::path& progra
   environment.push_back(std::string(page_variable) + "=" + page_file);
   const auto pointers = [](std::vector<std::string>& texts) {
     std::vector<char*> all;
+    all.reserve(texts.size() + 1);
     for (std::string& text : texts) all.push_back(text.data());
     all.push_back(nullptr);
     return all;

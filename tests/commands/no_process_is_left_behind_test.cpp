@@ -114,7 +114,7 @@ TEST_F(NoProcessIsLeftBehind, WhenAControllerIsStoppedAndAnotherIsStuckAndIgnore
   kill(controllers.back(), SIGSTOP);
   run->signal(SIGINT);
   expect_an_orderly_end();
-  EXPECT_NE(run->output().find("team 'pair' (r0): controller process"), std::string::npos) << run->output();
+  EXPECT_NE(run->output().find("team 'pair' (r0): process"), std::string::npos) << run->output();
   EXPECT_NE(run->output().find("was killed"), std::string::npos) << run->output();
 }
 

@@ -12,11 +12,13 @@
 
 #include "client_sdk/math/angle_reduction.hpp"
 #include "client_sdk/math/portable_power.hpp"
+#include "client_sdk/math/wide.hpp"
 
 namespace {
 
 using cohort::reduce_exactly;
 using cohort::ReducedAngle;
+using cohort::Wide;
 
 constexpr double pi = 3.14159265358979311600e+00;
 constexpr double half_pi = 1.57079632679489655800e+00;
@@ -24,19 +26,21 @@ constexpr double half_pi_low = 6.12323399573676603587e-17;  // pi/2 - half_pi
 
 double sqrt_of(double x) { return __builtin_sqrt(x); }
 
-// Returns sin(x + tail) for |x| <= pi/4.
-double sin_kernel(double x, double tail) {
+// Returns sin(x + tail) for |x| <= pi/4; the sum of both members is more precise than the first.
+Wide sin_parts(double x, double tail) {
   const double z = x * x;
   const double v = z * x;
   const double r =
       8.33333333332248946124e-03 +
       z * (-1.98412698298579493134e-04 +
            z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
-  return x - ((z * (0.5 * tail - v * r) - tail) - v * -1.66666666666666324348e-01);
+  const double rest = (z * (0.5 * tail - v * r) - tail) - v * -1.66666666666666324348e-01;
+  return cohort::quick_sum(x, -rest);
 }
+double sin_kernel(double x, double tail) { return sin_parts(x, tail).high; }
 
-// Returns cos(x + tail) for |x| <= pi/4.
-double cos_kernel(double x, double tail) {
+// Returns cos(x + tail) in the same way.
+Wide cos_parts(double x, double tail) {
   const double z = x * x;
   const double r = z * (4.16666666666666019037e-02 +
                         z * (-1.38888888888741095749e-03 +
@@ -45,8 +49,9 @@ double cos_kernel(double x, double tail) {
                                        z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
   const double half = 0.5 * z;
   const double w = 1.0 - half;
-  return w + (((1.0 - w) - half) + (z * r - x * tail));
+  return cohort::quick_sum(w, ((1.0 - w) - half) + (z * r - x * tail));
 }
+double cos_kernel(double x, double tail) { return cos_parts(x, tail).high; }
 
 // Returns x - n pi/2 in about 1.5 doubles (Cody and Waite in two parts) if the products below are exact.
 ReducedAngle reduce(double x) {
@@ -98,6 +103,27 @@ double portable_cos(double x) {
     case 2: return -cos_kernel(r.value, r.tail);
     default: return sin_kernel(r.value, r.tail);
   }
+}
+
+// Returns `result`, or the better `result + error` if the error is more than `most` units in the last place.
+double corrected(double result, double error, double most) {
+  const std::uint64_t exponent = std::bit_cast<std::uint64_t>(result) & 0x7ff0000000000000u;
+  const double unit = std::bit_cast<double>(exponent) * 0x1p-52;
+  return __builtin_fabs(error) > most * unit ? result + error : result;
+}
+
+double portable_tan(double x) {
+  if (!is_finite(x)) return x - x;
+  const ReducedAngle r = __builtin_fabs(x) < 0.785 ? ReducedAngle{0, x, 0.0} : reduce(x);
+  const Wide sine = sin_parts(r.value, r.tail), cosine = cos_parts(r.value, r.tail);
+  const bool is_odd = (r.quadrant & 1) != 0;
+  const Wide& above = is_odd ? cosine : sine;
+  const Wide& below = is_odd ? sine : cosine;
+  const double ratio = above.high / below.high;
+  const Wide product = cohort::product_of(ratio, below.high);
+  const double rest = ((above.high - product.high) - product.low) + (above.low - ratio * below.low);
+  const double result = corrected(ratio, rest / below.high, 1.6);  // the error is known to 0.4 units
+  return is_odd ? -result : result;
 }
 
 double portable_atan(double x) {
@@ -174,8 +200,14 @@ double portable_asin(double x) {
   if (magnitude < 0.5) return x + x * asin_ratio(x * x);
   const double z = 0.5 * (1.0 - magnitude);
   const double s = sqrt_of(z);
-  const double result = half_pi - (2.0 * (s + s * asin_ratio(z)) - half_pi_low);
-  return x < 0.0 ? -result : result;
+  const double ratio = asin_ratio(z);
+  const double result = half_pi - (2.0 * (s + s * ratio) - half_pi_low);
+  // The root is start + rest; the square of start is exact.
+  const double start = std::bit_cast<double>(std::bit_cast<std::uint64_t>(s) & 0xfffffffff8000000u);
+  const double rest = (z - start * start) / (s + start);
+  const double error = ((half_pi - 2.0 * start) - result) - (2.0 * s * ratio + (2.0 * rest - half_pi_low));
+  const double right = corrected(result, error, 1.8);  // the error is known to 0.2 units
+  return x < 0.0 ? -right : right;
 }
 
 double portable_acos(double x) {
@@ -260,7 +292,7 @@ void sincos(double x, double* sine, double* cosine) noexcept {
   *sine = portable_sin(x);
   *cosine = portable_cos(x);
 }
-double tan(double x) noexcept { return portable_sin(x) / portable_cos(x); }
+double tan(double x) noexcept { return portable_tan(x); }
 double atan(double x) noexcept { return portable_atan(x); }
 double atan2(double y, double x) noexcept { return portable_atan2(y, x); }
 double asin(double x) noexcept { return portable_asin(x); }
@@ -278,7 +310,7 @@ void sincosf(float x, float* sine, float* cosine) noexcept {
   *sine = static_cast<float>(portable_sin(x));
   *cosine = static_cast<float>(portable_cos(x));
 }
-float tanf(float x) noexcept { return static_cast<float>(portable_sin(x) / portable_cos(x)); }
+float tanf(float x) noexcept { return static_cast<float>(portable_tan(x)); }
 float atanf(float x) noexcept { return static_cast<float>(portable_atan(x)); }
 float atan2f(float y, float x) noexcept { return static_cast<float>(portable_atan2(y, x)); }
 float asinf(float x) noexcept { return static_cast<float>(portable_asin(x)); }

@@ -203,7 +203,7 @@ double portable_asin(double x) {
   const double ratio = asin_ratio(z);
   const double result = half_pi - (2.0 * (s + s * ratio) - half_pi_low);
   // The root is start + rest; the square of start is exact.
-  const double start = std::bit_cast<double>(std::bit_cast<std::uint64_t>(s) & 0xfffffffff8000000u);
+  const auto start = std::bit_cast<double>(std::bit_cast<std::uint64_t>(s) & 0xfffffffff8000000u);
   const double rest = (z - start * start) / (s + start);
   const double error = ((half_pi - 2.0 * start) - result) - (2.0 * s * ratio + (2.0 * rest - half_pi_low));
   const double right = corrected(result, error, 1.8);  // the error is known to 0.2 units

@@ -5,11 +5,11 @@
 - simulation_client.py look: sees the service's endpoints, and takes none for a service that it can call.
 """
 
-import re
 import sys
 
 import rclpy
 from rclpy.node import Node
+from service_calls import caller_of
 from simulation_interfaces import msg, srv
 
 UNSUPPORTED, OK, NOT_FOUND, FAILED, ALREADY = 0, 1, 2, 4, 101
@@ -22,23 +22,8 @@ BOX = """<sdf version="1.9"><model name="crate"><link name="link">
 
 rclpy.init()
 node = Node("simulation_client")
-clients = {}
+call = caller_of(node)
 differences = 0
-
-
-def call(service: str, request=None):
-    """Returns the response to a request: of a service's type, its name without spaces."""
-    kind = getattr(srv, service)
-    if service not in clients:
-        name = re.sub("(?!^)([A-Z])", r"_\1", service).lower()
-        clients[service] = node.create_client(kind, "/" + name)
-        if not clients[service].wait_for_service(timeout_sec=60):
-            sys.exit(f"no service /{name}")
-    future = clients[service].call_async(request or kind.Request())
-    rclpy.spin_until_future_complete(node, future, timeout_sec=60)
-    if not future.done():
-        sys.exit(f"{service}: no response")
-    return future.result()
 
 
 def differs(text: str) -> None:

@@ -5,7 +5,6 @@
 """
 
 import random
-import re
 import sys
 import time
 
@@ -13,29 +12,15 @@ import rclpy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
+from service_calls import PATIENCE, caller_of
 from simulation_interfaces import srv
 
 OK, PAUSED, QUITTING = 1, 2, 3
-PATIENCE = 60  # s
 
 rclpy.init()
 node = Node("spawner")
-clients = {}
+call = caller_of(node)
 differences = 0
-
-
-def call(service: str, request=None):
-    kind = getattr(srv, service)
-    if service not in clients:
-        name = re.sub("(?!^)([A-Z])", r"_\1", service).lower()
-        clients[service] = node.create_client(kind, "/" + name)
-        if not clients[service].wait_for_service(timeout_sec=PATIENCE):
-            sys.exit(f"no service /{name}")
-    future = clients[service].call_async(request or kind.Request())
-    rclpy.spin_until_future_complete(node, future, timeout_sec=PATIENCE)
-    if not future.done():
-        sys.exit(f"{service}: no response")
-    return future.result()
 
 
 def expect(what: str, value, expected) -> None:

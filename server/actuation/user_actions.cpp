@@ -11,8 +11,10 @@ void UserActions::add_robot(RobotId robot, BodyId body, const description::Model
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     const auto* const action = std::get_if<description::UserAction>(&model.devices[device]);
     if (action == nullptr) continue;
-    numbers_[{body, DeviceId{device}}] = static_cast<std::uint32_t>(actions_.size());
-    actions_.push_back({.name = action->name, .robot = robot, .body = body});
+    const auto [known, is_new] =
+        numbers_.try_emplace({world_.slot_of(body), DeviceId{device}}, static_cast<std::uint32_t>(actions_.size()));
+    if (is_new) actions_.emplace_back();
+    actions_[known->second] = {.name = action->name, .robot = robot, .body = body};
   }
 }
 

@@ -33,15 +33,15 @@ class UserActions {
   /// The arguments must outlive this object.
   UserActions(const description::World& description, const physics::World& world);
 
-  /// Adds the robot with the next id.
+  /// Adds the robot with the next id, whose body is in the world.
   void add_robot(RobotId robot, BodyId body, const description::Model& model);
   /// Returns the index of the action of a robot's device.
-  std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({body, device}); }
+  std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({world_.slot_of(body), device}); }
   void command(std::uint32_t action, double value) { actions_[action].value = value; }
   /// Determines which actions begin; to be called after each step.
   void finish_step();
 
-  /// Returns all actions, in the order of the robots, then of their devices.
+  /// Returns all actions, in the order of the slots of the robots' bodies, then of their devices.
   std::span<const ActionOfRobot> all() const { return actions_; }
 
   void hash(StateHash& hash) const;
@@ -51,7 +51,7 @@ class UserActions {
  private:
   const physics::World& world_;
   std::vector<ActionOfRobot> actions_;
-  std::map<std::pair<BodyId, DeviceId>, std::uint32_t> numbers_;
+  std::map<std::pair<std::uint32_t, DeviceId>, std::uint32_t> numbers_;  // by slot of the body and device
 };
 
 }  // namespace cohort::actuation

@@ -44,7 +44,7 @@ class SnapshotWriter {
 };
 
 /// The layout of a simulation's numbers in a snapshot. Later builds extend it, and read the earlier ones.
-enum class SnapshotLayout { first, with_belt_loads };
+enum class SnapshotLayout { first, with_belt_loads, with_slots };
 
 /// Reads the data of a SnapshotWriter, in the same order. Throws SnapshotError at the end of the bytes. A snapshot may
 /// come from an untrusted source, so callers must validate the numbers.
@@ -97,7 +97,7 @@ class SnapshotReader {
 
  private:
   std::span<const std::byte> bytes_;
-  SnapshotLayout layout_ = SnapshotLayout::with_belt_loads;
+  SnapshotLayout layout_ = SnapshotLayout::with_slots;
 };
 
 }  // namespace cohort

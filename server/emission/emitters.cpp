@@ -17,6 +17,15 @@ constexpr double beacon_cell = 1.0;
 
 std::uint32_t count_of(const auto& emitters) { return static_cast<std::uint32_t>(emitters.size()); }
 
+// Sets an emitter that exists, or adds the next one.
+template <class Emitter>
+void put(std::vector<Emitter>& emitters, std::uint32_t index, Emitter emitter) {
+  if (index == emitters.size())
+    emitters.push_back(std::move(emitter));
+  else
+    emitters[index] = std::move(emitter);
+}
+
 }  // namespace
 
 Emitters::Emitters(const description::World& description, const physics::World& world) : world_(world) {
@@ -27,38 +36,72 @@ Emitters::Emitters(const description::World& description, const physics::World& 
 }
 
 void Emitters::add_body(BodyId body, const description::Model& model) {
-  for (std::size_t i = 0; i < model.emitters.size(); ++i) add(body, i, model.emitters[i]);
-  add_devices(body, model);
-}
-
-void Emitters::add(BodyId body, std::size_t place, const description::Emitter& emitter) {
-  const Mount mount{body, LinkId{emitter.link}, emitter.X_LE};
-  const bool is_on = emitter.is_on;
-  const auto note = [&](Kind kind, const auto& emitters) {
-    entries_.push_back({body, place, kind, count_of(emitters) - 1});
-  };
-  if (const auto* light = std::get_if<description::Light>(&emitter.what)) {
-    lamps_.push_back({.mount = mount, .light = *light, .is_on = is_on});
-    note(Kind::lamp, lamps_);
-  } else if (const auto* sound = std::get_if<description::Sound>(&emitter.what)) {
-    tones_.push_back({mount, *sound, is_on});
-    note(Kind::tone, tones_);
-  } else if (const auto* marker = std::get_if<description::Marker>(&emitter.what)) {
-    markers_.push_back({mount, marker->color, is_on});
-    note(Kind::marker, markers_);
-  } else {
-    const auto& source = std::get<description::ClimateSource>(emitter.what);
-    climate_sources_.push_back({.mount = mount, .source = source, .is_on = is_on});
-    note(Kind::climate_source, climate_sources_);
+  const std::uint32_t slot = world_.slot_of(body);
+  const bool is_new = slot == firsts_.size();
+  if (is_new) firsts_.push_back(counts());
+  Firsts next = firsts_[slot];
+  for (std::size_t i = 0; i < model.emitters.size(); ++i) {
+    const description::Emitter& emitter = model.emitters[i];
+    const Entry entry = set({body, LinkId{emitter.link}, emitter.X_LE}, i, emitter, next);
+    if (is_new) entries_.push_back(entry);
+  }
+  for (std::size_t device = 0; device < model.devices.size(); ++device) {
+    const std::vector<description::DeviceEmitter> emitters = description::emitters_of(model.devices[device]);
+    if (emitters.empty()) continue;
+    if (is_new) devices_.push_back({slot, DeviceId{device}, next});
+    for (const description::DeviceEmitter& emitter : emitters)
+      set({body, LinkId{emitter.link}, emitter.X_LE}, emitter, next);
   }
 }
 
+Emitters::Firsts Emitters::counts() const {
+  return {{count_of(lamps_), count_of(tones_), count_of(markers_), count_of(beacons_)}, count_of(climate_sources_)};
+}
+
+Emitters::Entry Emitters::set(const Mount& mount, std::size_t place, const description::Emitter& emitter,
+                              Firsts& next) {
+  const bool is_on = emitter.is_on;
+  const auto entry = [&](Kind kind, std::uint32_t index) {
+    return Entry{world_.slot_of(mount.body), place, kind, index};
+  };
+  if (const auto* light = std::get_if<description::Light>(&emitter.what)) {
+    put(lamps_, next.lamp, {.mount = mount, .light = *light, .is_on = is_on});
+    return entry(Kind::lamp, next.lamp++);
+  }
+  if (const auto* sound = std::get_if<description::Sound>(&emitter.what)) {
+    put(tones_, next.tone, {mount, *sound, is_on});
+    return entry(Kind::tone, next.tone++);
+  }
+  if (const auto* marker = std::get_if<description::Marker>(&emitter.what)) {
+    put(markers_, next.marker, {mount, marker->color, is_on});
+    return entry(Kind::marker, next.marker++);
+  }
+  const auto& source = std::get<description::ClimateSource>(emitter.what);
+  put(climate_sources_, next.climate_source, {.mount = mount, .source = source, .is_on = is_on});
+  return entry(Kind::climate_source, next.climate_source++);
+}
+
+void Emitters::set(const Mount& mount, const description::DeviceEmitter& emitter, Firsts& next) {
+  std::visit(Overloaded{
+                 [&](const description::Light& light) { put(lamps_, next.lamp++, {.mount = mount, .light = light}); },
+                 [&](const description::Sound& sound) {
+                   put(tones_, next.tone++, {mount, sound});
+                 },
+                 [&](const description::Marker& marker) {
+                   put(markers_, next.marker++, {mount, marker.color});
+                 },
+                 [&](const description::Beacon& beacon) {
+                   put(beacons_, next.beacon++, {mount, beacon.range, false, std::vector<double>(beacon.message_size)});
+                 },
+             },
+             emitter.what);
+}
+
 void Emitters::change(BodyId body, std::size_t emitter, const description::EmitterChange& change) {
-  const auto found = std::lower_bound(entries_.begin(), entries_.end(), std::pair{body, emitter},
-                                      [](const Entry& entry, const std::pair<BodyId, std::size_t>& key) {
-                                        return std::pair{entry.body, entry.emitter} < key;
-                                      });
-  if (found == entries_.end() || found->body != body || found->emitter != emitter)
+  const std::pair key(world_.slot_of(body), emitter);
+  const auto key_of = [](const Entry& entry) { return std::pair(entry.slot, entry.emitter); };
+  const auto found = std::ranges::lower_bound(entries_, key, {}, key_of);
+  if (found == entries_.end() || key_of(*found) != key)
     throw std::invalid_argument("the object does not have this emitter");
   const auto set = [](auto& value, const auto& to) {
     if (to) value = *to;
@@ -94,40 +137,11 @@ void Emitters::change(BodyId body, std::size_t emitter, const description::Emitt
   }
 }
 
-void Emitters::add_devices(BodyId body, const description::Model& model) {
-  for (std::size_t device = 0; device < model.devices.size(); ++device) {
-    const OfDevice first{count_of(lamps_), count_of(tones_), count_of(markers_), count_of(beacons_)};
-    const std::vector<description::DeviceEmitter> emitters = description::emitters_of(model.devices[device]);
-    if (emitters.empty()) continue;
-    for (const description::DeviceEmitter& emitter : emitters)
-      add_to_device({body, LinkId{emitter.link}, emitter.X_LE}, emitter);
-    devices_.push_back({body, DeviceId{device}, first});
-  }
-}
-
-void Emitters::add_to_device(const Mount& mount, const description::DeviceEmitter& emitter) {
-  std::visit(Overloaded{
-                 [&](const description::Light& light) { lamps_.push_back({.mount = mount, .light = light}); },
-                 [&](const description::Sound& sound) {
-                   tones_.push_back({mount, sound});
-                 },
-                 [&](const description::Marker& marker) {
-                   markers_.push_back({mount, marker.color});
-                 },
-                 [&](const description::Beacon& beacon) {
-                   beacons_.push_back({mount, beacon.range, false, std::vector<double>(beacon.message_size)});
-                 },
-             },
-             emitter.what);
-}
-
 Emitters::OfDevice Emitters::of_device(BodyId body, DeviceId device) const {
-  const auto found = std::lower_bound(devices_.begin(), devices_.end(), std::pair{body, device},
-                                      [](const DeviceEntry& entry, const std::pair<BodyId, DeviceId>& key) {
-                                        return std::pair{entry.body, entry.device} < key;
-                                      });
-  if (found == devices_.end() || found->body != body || found->device != device)
-    throw std::logic_error("the device is not an emitter");
+  const std::pair key(world_.slot_of(body), device);
+  const auto key_of = [](const DeviceEntry& entry) { return std::pair(entry.slot, entry.device); };
+  const auto found = std::ranges::lower_bound(devices_, key, {}, key_of);
+  if (found == devices_.end() || key_of(*found) != key) throw std::logic_error("the device is not an emitter");
   return found->first;
 }
 

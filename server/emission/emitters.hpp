@@ -63,14 +63,14 @@ struct Beacon {
 
 /// The emitters of robots and objects, which others perceive from a distance. Actuators change emitters, and sensors
 /// read them; in between `update` takes the poses of a new boundary. Emitters of a body that is not in the world are
-/// off. An emitter's index among those of its kind is never reused. Changes and `update` belong to one thread; all else
-/// may run from any thread in between.
+/// off, and those of a released body become those of the next body in its slot. Changes and `update` belong to one
+/// thread; all else may run from any thread in between.
 class Emitters {
  public:
   /// Creates the emitters of all instances, from their models and devices. Keeps references to both arguments.
   Emitters(const description::World& description, const physics::World& world);
 
-  /// Adds a new body with one of the description's models.
+  /// Adds a new body with one of the description's models. Bodies are added as their world adds them.
   void add_body(BodyId body, const description::Model& model);
   /// Updates the poses and the active emitters at this boundary.
   void update(WorkerPool& workers);
@@ -127,21 +127,25 @@ class Emitters {
   void restore(SnapshotReader& reader);
 
  private:
+  struct Firsts : OfDevice {
+    std::uint32_t climate_source = 0;
+  };
   struct DeviceEntry {
-    BodyId body;
+    std::uint32_t slot = 0;  // the slot of its body
     DeviceId device;
     OfDevice first;
   };
   enum class Kind : std::uint8_t { lamp, tone, marker, climate_source };
   struct Entry {
-    BodyId body;
+    std::uint32_t slot = 0;  // the slot of its body
     std::size_t emitter = 0;
     Kind kind = Kind::lamp;
     std::uint32_t index = 0;  // index among those of its kind
   };
-  void add(BodyId body, std::size_t place, const description::Emitter& emitter);
-  void add_devices(BodyId body, const description::Model& model);
-  void add_to_device(const Mount& mount, const description::DeviceEmitter& emitter);
+  Firsts counts() const;
+  // These set the next emitters and advance `next`.
+  Entry set(const Mount& mount, std::size_t place, const description::Emitter& emitter, Firsts& next);
+  void set(const Mount& mount, const description::DeviceEmitter& emitter, Firsts& next);
   std::size_t emitter_count() const;
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit);
@@ -152,8 +156,9 @@ class Emitters {
   std::vector<Marker> markers_;
   std::vector<ClimateSource> climate_sources_;
   std::vector<Beacon> beacons_;
-  std::vector<Entry> entries_;        // ascending by body, then emitter
-  std::vector<DeviceEntry> devices_;  // ascending by body, then device
+  std::vector<Firsts> firsts_;        // by slot
+  std::vector<Entry> entries_;        // ascending by slot, then emitter
+  std::vector<DeviceEntry> devices_;  // ascending by slot, then device
 
   std::vector<std::uint32_t> lit_lamps_;
   std::vector<std::uint32_t> sounding_tones_;

@@ -15,8 +15,11 @@ void DetachableJoints::add_body(BodyId body, const description::Model& model) {
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     const auto its = description::held_child_of(model.devices[device]);
     if (!its) continue;
-    numbers_[{body, DeviceId{device}}] = static_cast<std::uint32_t>(joints_.size());
-    Joint& joint = joints_.emplace_back(Joint{.body = body, .link = LinkId{its->link}});
+    const auto [known, is_new] =
+        numbers_.try_emplace({world_.slot_of(body), DeviceId{device}}, static_cast<std::uint32_t>(joints_.size()));
+    if (is_new) joints_.emplace_back();
+    Joint& joint = joints_[known->second];
+    joint = {.body = body, .link = LinkId{its->link}};
     const auto child = std::ranges::find(instances, its->child, &description::Instance::name);
     if (child == instances.end()) continue;
     const auto& links = description_.models[child->model].links;

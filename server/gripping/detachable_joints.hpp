@@ -25,7 +25,7 @@ class DetachableJoints {
   /// Adds a new body with one of the description's models, which is already an instance of the description.
   void add_body(BodyId body, const description::Model& model);
   /// Returns the index of the joint that is a device of a robot.
-  std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({body, device}); }
+  std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({world_.slot_of(body), device}); }
 
   /// Fixes both links in their current relative pose, once both are in the world, or releases them. If the held object
   /// leaves the world or is moved away, the joint must be released before it can hold again.
@@ -53,7 +53,7 @@ class DetachableJoints {
   const description::World& description_;
   physics::World& world_;
   std::vector<Joint> joints_;
-  std::map<std::pair<BodyId, DeviceId>, std::uint32_t> numbers_;
+  std::map<std::pair<std::uint32_t, DeviceId>, std::uint32_t> numbers_;  // by slot of the body and device
 };
 
 }  // namespace cohort::gripping

@@ -42,8 +42,10 @@ void Grippers::add_body(BodyId body, const description::Model& model) {
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     const auto* gripper = std::get_if<description::Gripper>(&model.devices[device]);
     if (gripper == nullptr) continue;
-    numbers_[{body, DeviceId{device}}] = static_cast<std::uint32_t>(grippers_.size());
-    grippers_.push_back({.body = body, .device = gripper});
+    const auto [known, is_new] =
+        numbers_.try_emplace({world_.slot_of(body), DeviceId{device}}, static_cast<std::uint32_t>(grippers_.size()));
+    if (is_new) grippers_.emplace_back();
+    grippers_[known->second] = {.body = body, .device = gripper};
   }
   for (const description::GripRing& ring : model.grip_rings) largest_ring_ = std::max(largest_ring_, ring.radius);
 }

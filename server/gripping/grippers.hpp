@@ -35,7 +35,7 @@ class Grippers {
   /// Adds a new body with one of the description's models.
   void add_body(BodyId body, const description::Model& model);
   /// Returns the index of the gripper that is a device of a robot.
-  std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({body, device}); }
+  std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({world_.slot_of(body), device}); }
 
   /// Moves the opening towards `opening` for one step, then grasps, holds or releases. When it closes beyond half, it
   /// grasps the nearest object within its acceptance, or the first that arrives there while it is closed. If the held
@@ -82,7 +82,7 @@ class Grippers {
   double step_;
   double largest_ring_ = 0.0;
   std::vector<Gripper> grippers_;
-  std::map<std::pair<BodyId, DeviceId>, std::uint32_t> numbers_;
+  std::map<std::pair<std::uint32_t, DeviceId>, std::uint32_t> numbers_;  // by slot of the body and device
 };
 
 }  // namespace cohort::gripping

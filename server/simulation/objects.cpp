@@ -27,10 +27,12 @@ Objects::Objects(SharedExperiment& experiment, physics::World& world, const Obje
   }
 }
 
-void Objects::add_instance(description::Instance instance) {
+void Objects::add_instance(description::Instance instance, BodyId body) {
   by_name_->emplace(instance.name, present_.size());
   present_.push_back(1);
-  fingerprints_.push_back(description::fingerprint(experiment_->world.models[instance.model]));
+  slots_.push_back(world_.slot_of(body));
+  added_hash_.add(hash_name(instance.name));
+  added_hash_.add(description::fingerprint(experiment_->world.models[instance.model]));
   experiment_.edit().world.instances.push_back(std::move(instance));
 }
 
@@ -42,10 +44,14 @@ std::optional<std::uint32_t> Objects::find(const std::string& name) const {
 void Objects::set_present(std::uint32_t object, bool present) {
   if (is_present(object) == present) return;
   present_[object] = present ? 1 : 0;
-  if (present)
-    world_.set_present(BodyId{object}, true);
-  else
-    world_.set_present(BodyId{object}, false);
+  if (is_gone(object)) gone_hash_ += hash_of_gone(object);
+  world_.set_present(BodyId{object}, present);
+}
+
+std::uint64_t Objects::hash_of_gone(std::uint32_t object) {
+  StateHash hash;
+  hash.add(std::uint64_t{object});
+  return hash.value();
 }
 
 std::uint32_t Objects::add(const std::string& name, std::size_t model, const Pose& X_WM) {
@@ -54,7 +60,7 @@ std::uint32_t Objects::add(const std::string& name, std::size_t model, const Pos
     throw std::invalid_argument("at most " + std::to_string(most_added) + " objects can be added in one run");
   experiment_.edit();
   const BodyId body = world_.add_body(model, X_WM);
-  add_instance({name, model, X_WM});
+  add_instance({name, model, X_WM}, body);
   return body.value;
 }
 
@@ -79,13 +85,12 @@ const std::deque<PastPose>& Objects::history(std::uint32_t object) const {
 // Unchanged members add nothing else to the hash.
 void Objects::hash(StateHash& hash) const {
   const std::vector<description::Instance>& instances = experiment_->world.instances;
-  for (std::uint32_t object = 0; object < size(); ++object) {
-    if (object >= described_) {
-      hash.add(hash_name(instances[object].name));
-      hash.add(fingerprints_[object - described_]);
-    }
+  for (std::uint32_t object = 0; object < described_; ++object)
     if (is_present(object) != instances[object].is_present)
       hash.add(static_cast<std::uint64_t>(object) << 1 | static_cast<std::uint64_t>(is_present(object)));
+  if (size() > described_) {
+    hash.add(added_hash_.value());
+    hash.add(gone_hash_);
   }
   for (const std::deque<PastPose>& history : histories_)
     for (const PastPose& past : history) {
@@ -103,16 +108,20 @@ void Objects::save_added(SnapshotWriter& writer) const {
     writer.add_all(instance.name.data(), instance.name.size());
     writer.add_count(instance.model);
     visit_pose(instance.X_WM, [&](const double& number) { writer.add(number); });
+    writer.add(slots_[object - described_]);
+    writer.add(is_gone(object));
   }
 }
 
-void Objects::restore_added(SnapshotReader& reader) {
+std::vector<Objects::Added> Objects::read_added(SnapshotReader& reader) const {
   reader.expect_count(described_, "models in the world");
+  std::vector<Added> all;
   constexpr std::size_t least_bytes = 1;
   const std::size_t count = reader.read_count(least_bytes);
   if (count > most_added) throw SnapshotError("snapshot: too many objects");
   for (std::size_t left = count; left > 0; --left) {
-    description::Instance instance;
+    Added& added = all.emplace_back();
+    description::Instance& instance = added.instance;
     instance.name.resize(reader.read_count(least_bytes));
     reader.read_all(instance.name.data(), instance.name.size());
     std::uint64_t model = 0;
@@ -120,13 +129,20 @@ void Objects::restore_added(SnapshotReader& reader) {
     instance.model = static_cast<std::size_t>(model);
     restore_pose(reader, instance.X_WM);
     if (instance.model >= experiment_->world.models.size()) throw SnapshotError("snapshot: unknown model");
-    try {
-      experiment_.edit();
-      world_.add_body(instance.model, instance.X_WM, physics::Arrival::restored);
-    } catch (const std::invalid_argument& error) {
-      throw SnapshotError("snapshot: invalid object: " + std::string(error.what()));
-    }
-    add_instance(std::move(instance));
+    added.slot = size() + static_cast<std::uint32_t>(all.size()) - 1;  // in layouts before slots
+    if (reader.layout() < SnapshotLayout::with_slots) continue;
+    reader.read(added.slot);
+    reader.read(added.is_gone);
+  }
+  return all;
+}
+
+void Objects::restore_added(const Added& added) {
+  try {
+    experiment_.edit();
+    add_instance(added.instance, world_.add_body(added.instance.model, added.instance.X_WM, added.slot));
+  } catch (const std::invalid_argument& error) {
+    throw SnapshotError("snapshot: invalid object: " + std::string(error.what()));
   }
 }
 
@@ -145,6 +161,9 @@ void Objects::save(SnapshotWriter& writer) const {
 void Objects::restore(SnapshotReader& reader) {
   reader.expect_count(present_.size(), "objects");
   reader.read_all(present_.data(), present_.size());
+  gone_hash_ = 0;
+  for (std::uint32_t object = described_; object < size(); ++object)
+    if (is_gone(object)) gone_hash_ += hash_of_gone(object);
   for (std::deque<PastPose>& history : histories_) {
     history.resize(reader.read_count(sizeof(PastPose)));
     for (PastPose& past : history) {

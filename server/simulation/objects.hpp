@@ -42,6 +42,8 @@ class Objects {
   std::uint32_t add(const std::string& name, std::size_t model, const Pose& X_WM);
   /// Returns the number of objects in the description.
   std::uint32_t described() const { return described_; }
+  /// Returns true if the object was added and removed again: it never comes back.
+  bool is_gone(std::uint32_t object) const { return object >= described_ && !is_present(object); }
 
   /// Records the poses that the experiment asks for, at a boundary.
   void record(std::uint64_t tick);
@@ -49,10 +51,18 @@ class Objects {
   const std::deque<PastPose>& history(std::uint32_t object) const;
 
   void hash(StateHash& hash) const;
+  /// An added object in a snapshot.
+  struct Added {
+    description::Instance instance;
+    std::uint32_t slot = 0;  ///< the slot of its body, also if the object is gone
+    bool is_gone = false;
+  };
   /// Saves the added objects, before all else of a world.
   void save_added(SnapshotWriter& writer) const;
-  /// Adds them again, right before the world is restored.
-  void restore_added(SnapshotReader& reader);
+  std::vector<Added> read_added(SnapshotReader& reader) const;
+  /// Adds one of them again, in their order, right before the world is restored. It is in the world, even if it is
+  /// gone.
+  void restore_added(const Added& added);
   void save(SnapshotWriter& writer) const;
   /// Restores the rest, after the world.
   void restore(SnapshotReader& reader);
@@ -60,7 +70,8 @@ class Objects {
  private:
   using ByName = std::unordered_map<std::string, std::uint32_t>;
 
-  void add_instance(description::Instance instance);
+  void add_instance(description::Instance instance, BodyId body);
+  static std::uint64_t hash_of_gone(std::uint32_t object);
   // Limits the number of added objects, as untrusted clients can add robots.
   static constexpr std::size_t most_added = 100'000;
 
@@ -68,8 +79,10 @@ class Objects {
   physics::World& world_;
   std::uint32_t described_;
   std::vector<char> present_;
-  std::vector<std::uint64_t> fingerprints_;  // by added object: that of its model
-  std::shared_ptr<ByName> by_name_;          // for lookup only, never iterated; shared like the experiment
+  std::vector<std::uint32_t> slots_;  // by added object
+  StateHash added_hash_;              // hash of the names and models of the added objects
+  std::uint64_t gone_hash_ = 0;       // sum over the gone objects
+  std::shared_ptr<ByName> by_name_;   // for lookup only, never iterated; shared like the experiment
   std::uint64_t history_ticks_ = 1;
   std::vector<std::deque<PastPose>> histories_;  // in the order of History::objects
 };

@@ -72,6 +72,7 @@ void Robots::add() {
   const auto id = size();
   const description::World& description = around_.experiment.world;
   Robot& robot = robots_.emplace_back();
+  kept_.push_back(id);
   robot.body = BodyId{description.robots[id]};
   of_body_.resize(description.instances.size(), none);
   of_body_[robot.body.value] = id;
@@ -93,9 +94,30 @@ void Robots::add() {
   robot.actuators.reserve(devices.actuators.size());
   for (std::unique_ptr<actuation::Actuator>& actuator : devices.actuators)
     robot.actuators.push_back({std::move(actuator), parts.actuator_sizes[robot.actuators.size()]});
-  robot.observation_offset = observations_.size();
-  observations_.resize(observations_.size() + kinds()[robot.kind].observation_size);
+  robot.observation_offset = add_observation(around_.world.slot_of(robot.body), kinds()[robot.kind].observation_size);
   robot.command = parts.neutral;
+}
+
+// A robot has the values of the one whose slot it has taken, which was of the same kind.
+std::size_t Robots::add_observation(std::uint32_t slot, std::size_t size) {
+  constexpr std::size_t nowhere = 0xffffffffffffffff;
+  if (slot >= observation_offsets_.size()) observation_offsets_.resize(slot + 1, nowhere);
+  std::size_t& offset = observation_offsets_[slot];
+  if (offset == nowhere) {
+    offset = observations_.size();
+    observations_.resize(offset + size);
+  }
+  std::fill_n(observations_.begin() + static_cast<std::ptrdiff_t>(offset), size, 0.0);
+  return offset;
+}
+
+void Robots::release(std::uint32_t id) {
+  Robot& robot = robots_[id];
+  robot.sensors = std::vector<SensorOfRobot>();
+  robot.actuators = std::vector<ActuatorOfRobot>();
+  robot.command = std::vector<double>();
+  std::erase(kept_, id);
+  std::erase_if(sharing_views_, [&](const Place& place) { return place.robot == id; });
 }
 
 Robots::DevicesOfRobot Robots::make_devices(const Robot& robot) {
@@ -154,6 +176,7 @@ bool Robots::is_due(std::uint32_t robot, std::uint64_t tick) const {
 }
 
 std::span<const double> Robots::observation(std::uint32_t robot) const {
+  if (is_released(robot)) return {};
   return {observations_.data() + robots_[robot].observation_offset,
           kinds_->described[robots_[robot].kind].observation_size};
 }
@@ -187,6 +210,7 @@ CommandFault Robots::unfit(std::uint32_t robot, const Channel& channel, double v
 }
 
 bool Robots::set_command(std::uint32_t robot, std::span<const double> values) {
+  if (is_released(robot)) return false;
   std::vector<double>& command = robots_[robot].command;
   // Compares bits, as the hash does: 0.0 and -0.0 differ.
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
@@ -200,7 +224,8 @@ bool Robots::set_neutral_command(std::uint32_t robot) {
 }
 
 void Robots::actuate() {
-  for (Robot& robot : robots_) {
+  for (const std::uint32_t id : kept_) {
+    Robot& robot = robots_[id];
     if (std::ranges::any_of(robot.sensors, [](const SensorOfRobot& each) { return each.sensor->disables_robot(); }))
       robot.command = kinds_->parts[robot.kind].neutral;
     std::span<const double> values = robot.command;
@@ -222,8 +247,9 @@ void Robots::update_shared_views(std::uint64_t tick) {
 void Robots::sense(std::uint64_t tick) {
   update_shared_views(tick);
   around_.workers.for_each_chunk(
-      robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
-        for (auto id = static_cast<std::uint32_t>(begin); id < end; ++id) {
+      kept_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const std::uint32_t id = kept_[i];
           if (!is_present(id)) continue;
           Robot& robot = robots_[id];
           const bool is_asked = is_due(id, tick);
@@ -268,8 +294,9 @@ void Robots::restore(SnapshotReader& reader) {
   for (Robot& robot : robots_) {
     reader.expect_count(robot.command.size(), "commanded values of a robot");
     reader.read_all(robot.command.data(), robot.command.size());
-    const auto fault = check_command(static_cast<std::uint32_t>(&robot - robots_.data()), robot.command);
-    if (fault) throw SnapshotError("snapshot: invalid command: " + fault->text);
+    const auto id = static_cast<std::uint32_t>(&robot - robots_.data());
+    const auto fault = check_command(id, robot.command);
+    if (fault && !is_released(id)) throw SnapshotError("snapshot: invalid command: " + fault->text);
     for (SensorOfRobot& each : robot.sensors) {
       each.sensor->restore(reader);
       each.signal_chain.restore(reader);

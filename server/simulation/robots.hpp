@@ -60,6 +60,8 @@ class Robots {
   /// Adds the next robot of the experiment's world. It must already be in the world and in a team, and known to
   /// everything else that knows its body. It has not received a frame yet.
   void add();
+  /// Frees the devices of a robot whose body was released.
+  void release(std::uint32_t robot);
   std::uint32_t size() const { return static_cast<std::uint32_t>(robots_.size()); }
   const std::string& name(std::uint32_t robot) const { return around_.experiment.world.robot(robot).name; }
   std::span<const RobotKind> kinds() const { return kinds_->described; }
@@ -71,6 +73,12 @@ class Robots {
   /// Returns `none` if the body is not a robot's.
   std::uint32_t of_body(BodyId body) const { return body.value < of_body_.size() ? of_body_[body.value] : none; }
   bool is_present(std::uint32_t robot) const { return around_.objects.is_present(robots_[robot].body.value); }
+  /// Returns true if the robot was removed for good: it has no devices, and its observation and command are empty.
+  bool is_released(std::uint32_t robot) const {
+    return around_.world.slot_of(robots_[robot].body) == physics::World::released;
+  }
+  /// Returns the robots that are not released, ascending.
+  std::span<const std::uint32_t> kept() const { return kept_; }
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
 
   std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const;
@@ -137,6 +145,7 @@ class Robots {
   CommandFault wrong_size(std::uint32_t robot, std::size_t size) const;
   CommandFault unfit(std::uint32_t robot, const Channel& channel, double value) const;
   void update_shared_views(std::uint64_t tick);
+  std::size_t add_observation(std::uint32_t slot, std::size_t size);
 
   Surroundings around_;
   sensing::SharedViews views_;
@@ -144,9 +153,11 @@ class Robots {
   std::shared_ptr<const Kinds> kinds_;  // shared by worlds of one experiment
   std::size_t described_;               // number of robots at the start
   std::vector<Robot> robots_;
+  std::vector<std::uint32_t> kept_;
   std::vector<std::uint32_t> of_body_;
   std::vector<double> observations_;
-  std::vector<std::vector<double>> scratch_;  // by worker
+  std::vector<std::size_t> observation_offsets_;  // by slot of the body
+  std::vector<std::vector<double>> scratch_;      // by worker
 };
 
 }  // namespace cohort

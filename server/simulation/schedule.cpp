@@ -123,7 +123,8 @@ std::string Schedule::act(const description::Event& event) {
 std::string Schedule::act_from_outside(const description::Event& event, std::uint64_t tick) {
   apply(event);
   const auto object = static_cast<std::uint32_t>(event.object);
-  if (std::holds_alternative<description::SetPresence>(event.effect)) removed_.push_back(object);
+  if (std::holds_alternative<description::SetPresence>(event.effect) && object < stages_.size())
+    removed_.push_back(object);
   if (const auto* const force = std::get_if<description::ApplyForce>(&event.effect))
     pushes_.push_back({object, *force, tick + ticks_of(force->duration, experiment_.world.step)});
   return event.kind + " '" + objects_.name(object) + "'";

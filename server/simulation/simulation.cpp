@@ -16,9 +16,8 @@ namespace cohort {
 namespace {
 
 constexpr std::size_t bodies_a_chunk = 64;
-// The first bytes of a snapshot: of this layout, and of the first layout, which lacks the loads of belts.
-constexpr std::uint64_t snapshot_mark = 0x32746f68'74726f68u;
-constexpr std::uint64_t first_snapshot_mark = 0x746f6873'74726f68u;
+// The first bytes of a snapshot, by layout.
+constexpr std::uint64_t snapshot_marks[] = {0x746f6873'74726f68u, 0x32746f68'74726f68u, 0x33746f68'74726f68u};
 
 }  // namespace
 
@@ -89,7 +88,10 @@ void Simulation::on_action(const std::string& name, ActionHandler handler) {
 }
 
 void Simulation::handle_actions() {
-  for (const actuation::ActionOfRobot& action : actions_.all()) {
+  if (handlers_.empty()) return;
+  const auto all = actions_.all();
+  // A copy, as a handler may spawn and remove robots.
+  for (const actuation::ActionOfRobot& action : std::vector(all.begin(), all.end())) {
     bool is_handled = false;
     for (const auto& [name, handler] : handlers_) {  // a handler may add one
       if (name != action.name || !world_->is_active(action.body)) continue;
@@ -133,8 +135,8 @@ void Simulation::note_bodies() {
   body_hashes_.resize(world_->body_count());
   const geometry::Scene& scene = world_->scene();
   is_ground_.resize(world_->body_count(), 0);
-  for (; solids_noted_ < scene.size(); ++solids_noted_)
-    if (geometry::is_ground(scene.solid(solids_noted_).shape())) is_ground_[scene.solid(solids_noted_).body.value] = 1;
+  for (std::uint32_t solid = 0; solid < scene.size(); ++solid)
+    if (geometry::is_ground(scene.solid(solid).shape())) is_ground_[scene.solid(solid).body.value] = 1;
 }
 
 void Simulation::name_quarantined() {
@@ -165,10 +167,11 @@ void Simulation::count_touches() {
     note(contact.body_a, contact.body_b);
     note(contact.body_b, contact.body_a);
   }
-  for (std::uint32_t robot = 0; robot < robots_.size(); ++robot)
+  for (const std::uint32_t robot : robots_.kept()) {
     if (is_present(robot)) ++touches_.robot_ticks;
-  for (const char touched : touches_obstacle) touches_.obstacles += static_cast<std::uint64_t>(touched);
-  for (const char touched : touches_robot) touches_.robots += static_cast<std::uint64_t>(touched);
+    touches_.obstacles += static_cast<std::uint64_t>(touches_obstacle[robot]);
+    touches_.robots += static_cast<std::uint64_t>(touches_robot[robot]);
+  }
 }
 
 std::string Simulation::act(const Action& action) {
@@ -200,7 +203,18 @@ std::vector<ActionResult> Simulation::act(std::span<const Action> actions) {
 std::string Simulation::act_unsensed(const Action& action) {
   note_change();
   if (const auto* const spawn = std::get_if<SpawnObject>(&action)) return spawn_object(*spawn);
-  return schedule_.act_from_outside(event_of(action, {experiment_->world, *world_, objects_}), tick_);
+  const description::Event event = event_of(action, {experiment_->world, *world_, objects_});
+  std::string done = schedule_.act_from_outside(event, tick_);
+  const auto object = static_cast<std::uint32_t>(event.object);
+  if (objects_.is_gone(object)) release(object);
+  return done;
+}
+
+// Frees what an object needed that never comes back.
+void Simulation::release(std::uint32_t object) {
+  const BodyId body{object};
+  world_->release_body(body);
+  if (const std::uint32_t robot = robots_.of_body(body); robot != Robots::none) robots_.release(robot);
 }
 
 std::string Simulation::spawn_object(const SpawnObject& spawn) {
@@ -234,7 +248,7 @@ std::string Simulation::add_new(const SpawnObject& spawn, std::size_t model) {
 
 std::vector<std::byte> Simulation::save() const {
   SnapshotWriter writer;
-  writer.add(snapshot_mark);
+  writer.add(std::end(snapshot_marks)[-1]);
   writer.add(hash_name(COHORT_VERSION));
   writer.add(seed_);
   writer.add(static_cast<std::uint64_t>(experiment_->world.step.count()));
@@ -260,8 +274,9 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   SnapshotReader reader(snapshot);
   std::uint64_t mark = 0;
   reader.read(mark);
-  if (mark != snapshot_mark && mark != first_snapshot_mark) throw SnapshotError("this is not a snapshot");
-  if (mark == first_snapshot_mark) reader.set_layout(SnapshotLayout::first);
+  const auto layout = std::ranges::find(snapshot_marks, mark);
+  if (layout == std::end(snapshot_marks)) throw SnapshotError("this is not a snapshot");
+  reader.set_layout(static_cast<SnapshotLayout>(layout - std::begin(snapshot_marks)));
   std::uint64_t version = 0;
   reader.read(version);
   if (std::ranges::find(versions_of_snapshots(), version, hash_name) == versions_of_snapshots().end())
@@ -297,15 +312,19 @@ void Simulation::save_added(SnapshotWriter& writer) const {
 }
 
 void Simulation::restore_added(SnapshotReader& reader) {
-  objects_.restore_added(reader);
-  const description::World& world = experiment_->world;
-  for (std::uint32_t object = objects_.described(); object < objects_.size(); ++object) {
+  const std::vector<Objects::Added> all = objects_.read_added(reader);
+  for (const Objects::Added& added : all) {
     std::uint32_t team = 0;
-    if (world.models[world.instances[object].model].is_robot()) {
+    if (experiment_->world.models[added.instance.model].is_robot()) {
       reader.read(team);
       if (team >= experiment_->teams.size()) throw SnapshotError("snapshot: unknown team of a robot");
     }
+    const std::uint32_t object = objects_.size();
+    objects_.restore_added(added);
     enrol(object, team);
+    if (!added.is_gone) continue;
+    objects_.set_present(object, false);
+    release(object);
   }
   note_bodies();
 }
@@ -318,6 +337,8 @@ std::uint64_t Simulation::state_hash() const {
 std::uint64_t Simulation::computed_state_hash() const {
   workers_.for_each_chunk(body_hashes_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t body = begin; body < end; ++body) {
+      body_hashes_[body] = 0;
+      if (world_->slot_of(BodyId{body}) == physics::World::released) continue;
       StateHash hash;
       world_->hash_body(BodyId{body}, hash);
       if (const std::uint32_t robot = robots_.of_body(BodyId{body}); robot != Robots::none) robots_.hash(robot, hash);

@@ -85,10 +85,11 @@ class Simulation {
   }
   /// Registers a handler, for programs that embed a simulation. From now on `step` calls it on its own thread, at the
   /// boundary after the step and before the events. It is called for every robot in the world that has an action of
-  /// this name (docs/reference, `cohort:action`), in the order of the robots. Several handlers are called in the order
-  /// of their registration. A handler may call `act` and add handlers. It must depend only on the simulation, or runs
-  /// are not reproducible; its own data is not part of a snapshot. Its exceptions pass through `step`, and the
-  /// simulation must not be used afterwards. Throws std::invalid_argument if no robot has such an action.
+  /// this name (docs/reference, `cohort:action`), in an order that depends only on the state. Several handlers are
+  /// called in the order of their registration. A handler may call `act` and add handlers. It must depend only on the
+  /// simulation, or runs are not reproducible; its own data is not part of a snapshot. Its exceptions pass through
+  /// `step`, and the simulation must not be used afterwards. Throws std::invalid_argument if no robot has such an
+  /// action.
   void on_action(const std::string& name, ActionHandler handler);
 
   /// Sets the robot's command from this tick on, until the next call. `values` must have passed `check_command`. Until
@@ -175,6 +176,7 @@ class Simulation {
   void begin_tick();
   void note_bodies();
   void enrol(std::uint32_t object, std::size_t team);
+  void release(std::uint32_t object);
   void save_added(SnapshotWriter& writer) const;
   void restore_added(SnapshotReader& reader);
 
@@ -192,7 +194,6 @@ class Simulation {
   Schedule schedule_;
   SpawnedModels spawned_models_;
   std::vector<char> is_ground_;  // by body
-  std::uint32_t solids_noted_ = 0;
   std::uint64_t tick_ = 0;
   TouchCounts touches_;
   std::vector<std::string> quarantined_;

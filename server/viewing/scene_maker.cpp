@@ -61,6 +61,7 @@ void SceneMaker::choose_lamps() {
   std::vector<char> is_led(emitters.lamps().size(), 0);
   const description::World& world = simulation_.description();
   for (const std::size_t instance : world.robots) {
+    if (simulation_.world().slot_of(BodyId{instance}) == physics::World::released) continue;
     const auto& devices = world.models[world.instances[instance].model].devices;
     for (std::size_t device = 0; device < devices.size(); ++device) {
       const auto lamps = std::ranges::count_if(description::emitters_of(devices[device]), [](const auto& emitter) {

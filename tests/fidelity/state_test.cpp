@@ -70,7 +70,7 @@ TEST_P(State, ContinuesFromASnapshotWithTheSameBits) {
   BusyWorld busy(GetParam(), 1);
   for (int tick = 0; tick < 150; ++tick) busy.step(tick);
   BusyWorld restored(GetParam(), 2);
-  restored.small.world().add_body(1, at(-0.8, -0.5, 0), physics::Arrival::restored);
+  restored.small.world().add_body(1, at(-0.8, -0.5, 0), busy.small.world().slot_of(busy.added));
   restore_from(busy.small.world(), restored.small.world());
   restored.added = busy.added;
   ASSERT_EQ(hash_of(restored.small.world()), hash_of(busy.small.world()));

@@ -57,11 +57,15 @@ void ArraySimulation::command() {
     take_bounds_of_float32(kind.command, values);
     return values;
   };
-  for (std::uint32_t robot = 0; robot < simulation_->robot_count(); ++robot)
+  // Released robots have no command either.
+  const auto has_none = [&](std::uint32_t robot) { return simulation_->command(robot).empty(); };
+  for (std::uint32_t robot = 0; robot < simulation_->robot_count(); ++robot) {
+    if (has_none(robot)) continue;
     if (const auto fault = simulation_->check_command(robot, values_of(robot)))
       throw std::invalid_argument(fault->text);
+  }
   for (std::uint32_t robot = 0; robot < simulation_->robot_count(); ++robot)
-    simulation_->set_command(robot, values_of(robot));
+    if (!has_none(robot)) simulation_->set_command(robot, values_of(robot));
 }
 
 void ArraySimulation::step() {

@@ -102,6 +102,12 @@ void Scene::put_back(std::uint32_t index) {
   build();
 }
 
+void Scene::renew(std::uint32_t index, BodyId body, const Pose& X_WC) {
+  is_removed_[index] = 0;
+  solids_[index].body = body;
+  set_pose(index, X_WC);
+}
+
 void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
   solids_[index].X_WC = X_WC;
   p_CW_[index] = X_WC.inverse().position;

@@ -41,9 +41,11 @@ class Scene {
   void reserve(std::size_t solids);
   /// Chooses the cell size and sorts the static solids. Call it after the last `add`, and again after later ones.
   void build();
-  /// Excludes a solid from all further queries until `put_back`. Its index is never reused.
+  /// Excludes a solid from all further queries until `put_back`. Its index stays its own until `renew`.
   void remove(std::uint32_t index);
   void put_back(std::uint32_t index);
+  /// Puts a removed solid back as one of another body of the same model; `build` must follow before the next query.
+  void renew(std::uint32_t index, BodyId body, const Pose& X_WC);
   bool is_removed(std::uint32_t index) const { return is_removed_[index] != 0; }
 
   std::size_t size() const { return solids_.size(); }

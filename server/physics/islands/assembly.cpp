@@ -104,6 +104,26 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody, const M
   return index;
 }
 
+void Assembly::renew_static(BodyId body, const description::Model& model, const Pose& X_WM, std::uint32_t first_solid) {
+  std::uint32_t next = first_solid;
+  for (const description::Link& link : model.links)
+    for (const description::Collision& part : link.collisions) scene.renew(next++, body, X_WM * link.X_ML * part.X_LC);
+}
+
+void Assembly::renew_member(std::uint32_t index, std::unique_ptr<Multibody> multibody) {
+  Member& member = members[index];
+  member.body = multibody->body();
+  member.multibody = std::move(multibody);
+  if (member.fluid) member.fluid = std::make_unique<FluidBody>(fluid_models.at(&member.multibody->mechanism()));
+  member.record.reset();
+  member.is_fast = false;
+  member.is_active = member.is_finite = member.is_inside = true;
+  member.still_steps = 0;
+  ++revision;
+  for (const Part& part : member.parts)
+    scene.renew(part.solid, member.body, member.multibody->motion().segment_pose(part.segment) * part.X_SC);
+}
+
 void Assembly::take_out(std::uint32_t member) {
   ++revision;
   members[member].is_active = false;

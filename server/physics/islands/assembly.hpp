@@ -89,6 +89,11 @@ struct Assembly {
   void add_static(BodyId body, const description::Model& model, const Pose& X_WM, const ModelParts& parts);
   /// Adds a moving body and returns its member index. One thread only.
   std::uint32_t add_member(std::unique_ptr<Multibody> multibody, const ModelParts& parts);
+  /// Adds a static body like `add_static`. It gets the solids, from `first_solid` on, of a removed body of the same
+  /// model; the scene must be built afterwards. One thread only.
+  void renew_static(BodyId body, const description::Model& model, const Pose& X_WM, std::uint32_t first_solid);
+  /// Adds a moving body like `add_member`, in place of one of the same model that was taken out. One thread only.
+  void renew_member(std::uint32_t index, std::unique_ptr<Multibody> multibody);
   /// Removes a member; nothing touches it from then on. One thread only.
   void take_out(std::uint32_t member);
   /// Puts a member back as it was, but at rest if its state broke or it had left the world. One thread only.

@@ -56,14 +56,14 @@ MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool
     if (!description.instances[body].is_present) remove_body(BodyId{body});
 }
 
-BodyId MultibodyWorld::add_body(std::size_t model, const Pose& X_WM, Arrival arrival) {
-  const BodyId body = create_body(model, X_WM);
+BodyId MultibodyWorld::add_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot) {
+  const BodyId body = create_body(model, X_WM, saved_slot);
   assembly_.scene.build();
-  if (arrival == Arrival::anew && is_static(body)) sleep_.wake_all();
+  if (!saved_slot && is_static(body)) sleep_.wake_all();
   return body;
 }
 
-BodyId MultibodyWorld::create_body(std::size_t model_index, const Pose& X_WM) {
+BodyId MultibodyWorld::create_body(std::size_t model_index, const Pose& X_WM, std::optional<std::uint32_t> saved_slot) {
   const BodyId body{bodies_.size()};
   const description::Model& model = description_.models[model_index];
   if (model_index >= parts_.size()) {  // the model was added later
@@ -71,16 +71,22 @@ BodyId MultibodyWorld::create_body(std::size_t model_index, const Pose& X_WM) {
     parts_.resize(model_index + 1);
   }
   std::unique_ptr<Multibody> multibody = model.is_static ? nullptr : make_multibody(model_index, X_WM, body);
-  PlacedBody& placed = bodies_.emplace_back();
+  PlacedBody placed;
   placed.model = static_cast<std::uint32_t>(model_index);
   placed.X_WM = X_WM;
-  placed.first_solid = placed.end_of_solids = static_cast<std::uint32_t>(assembly_.scene.size());
-  if (multibody) {
+  const bool is_slot_used = slots_.take(placed, saved_slot);
+  if (multibody && is_slot_used) {
+    assembly_.renew_member(placed.member, std::move(multibody));
+  } else if (multibody) {
     placed.member = assembly_.add_member(std::move(multibody), parts_of(model_index));
+  } else if (is_slot_used) {
+    assembly_.renew_static(body, model, X_WM, placed.first_solid);
   } else {
+    placed.first_solid = static_cast<std::uint32_t>(assembly_.scene.size());
     assembly_.add_static(body, model, X_WM, parts_of(model_index));
     placed.end_of_solids = static_cast<std::uint32_t>(assembly_.scene.size());
   }
+  bodies_.push_back(placed);
   return body;
 }
 

@@ -8,6 +8,7 @@
 #include "server/physics/islands/islands.hpp"
 #include "server/physics/islands/large_island_solver.hpp"
 #include "server/physics/islands/sleep.hpp"
+#include "server/physics/world/body_slots.hpp"
 #include "server/physics/world/physics_world.hpp"
 #include "server/physics/world/placed_body.hpp"
 
@@ -25,8 +26,10 @@ class MultibodyWorld final : public World, private WorldConnections {
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
   Activity activity(BodyId body) const override;
-  BodyId add_body(std::size_t model, const Pose& X_WM, Arrival arrival) override;
+  BodyId add_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot) override;
   void set_present(BodyId body, bool is_present) override;
+  void release_body(BodyId body) override;
+  std::uint32_t slot_of(BodyId body) const override { return bodies_[body.value].slot; }
   void place_body(BodyId index, const Pose& X_WM) override;
   void push_body(BodyId body, LinkId link, const Wrench& wrench) override;
 
@@ -79,7 +82,7 @@ class MultibodyWorld final : public World, private WorldConnections {
   };
 
   std::unique_ptr<Multibody> make_multibody(std::size_t model, const Pose& X_WM, BodyId body);
-  BodyId create_body(std::size_t model, const Pose& X_WM);
+  BodyId create_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot = {});
   const ModelParts& parts_of(std::size_t model);
   void remove_body(BodyId body);
   void put_back_body(BodyId body);
@@ -108,6 +111,7 @@ class MultibodyWorld final : public World, private WorldConnections {
   std::vector<std::shared_ptr<const ModelParts>> parts_;      // by model, null for one without bodies so far
   geometry::SolidKinds kinds_;
   std::vector<PlacedBody> bodies_;
+  BodySlots slots_;
   Assembly assembly_;
   Islands islands_;
   LargeIslandSolver large_island_solver_;

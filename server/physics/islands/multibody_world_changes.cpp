@@ -33,6 +33,10 @@ void MultibodyWorld::put_back_body(BodyId index) {
   for (std::uint32_t solid = body.first_solid; solid < body.end_of_solids; ++solid) assembly_.scene.put_back(solid);
 }
 
+void MultibodyWorld::release_body(BodyId index) {
+  slots_.release(bodies_[index.value], link_pose(index, LinkId{0}), description_);
+}
+
 void MultibodyWorld::place_body(BodyId index, const Pose& X_WM) {
   PlacedBody& body = bodies_[index.value];
   body.X_WM = X_WM;

@@ -32,15 +32,26 @@ std::uint32_t PlanarBodies::add(const PlanarModel& model, const Pose& X_WM) {
 
   places_.emplace_back();
   velocities_.emplace_back();
-  const Vector3d up_M = X_WM.orientation.conjugate() * Vector3d::UnitZ();
-  inertias_.push_back(model.is_immovable() ? PlanarInertia{}
-                                           : PlanarInertia{1.0 / model.mass(), 1.0 / up_M.dot(model.inertia() * up_M)});
-
+  inertias_.emplace_back();
   X_BS_.resize(X_BS_.size() + mechanism.segments().size());
-  coordinates_.insert(coordinates_.end(), mechanism.zero_coordinates().begin(), mechanism.zero_coordinates().end());
+  coordinates_.resize(coordinates_.size() + mechanism.zero_coordinates().size());
   motors_.resize(motors_.size() + model.motors().size());
-  put(index, X_WM);
+  renew(index, X_WM);
   return index;
+}
+
+void PlanarBodies::renew(std::uint32_t index, const Pose& X_WM) {
+  Member& member = members_[index];
+  const PlanarModel& model = *member.model;
+  member.has_moving_joints = false;
+  velocities_[index] = {};
+  const Vector3d up_M = X_WM.orientation.conjugate() * Vector3d::UnitZ();
+  inertias_[index] = model.is_immovable() ? PlanarInertia{}
+                                          : PlanarInertia{1.0 / model.mass(), 1.0 / up_M.dot(model.inertia() * up_M)};
+  std::ranges::copy(model.mechanism().zero_coordinates(),
+                    coordinates_.begin() + static_cast<std::ptrdiff_t>(member.first_coordinate));
+  std::fill_n(motors_.begin() + static_cast<std::ptrdiff_t>(member.first_motor), model.motors().size(), Motor{});
+  put(index, X_WM);
 }
 
 void PlanarBodies::put(std::uint32_t index, const Pose& X_WM) {

@@ -50,6 +50,9 @@ class PlanarBodies {
   /// Adds a member and returns its index, which counts up. The model must outlive this.
   std::uint32_t add(const PlanarModel& model, const Pose& X_WM);
 
+  /// Places a member as `add` does, with its joints at zero.
+  void renew(std::uint32_t member, const Pose& X_WM);
+
   std::size_t size() const { return members_.size(); }
   const PlanarModel& model(std::uint32_t member) const { return *members_[member].model; }
   const PlanarPlace& place(std::uint32_t member) const { return places_[member]; }

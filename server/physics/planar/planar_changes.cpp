@@ -36,6 +36,10 @@ void PlanarWorld::put_back_body(BodyId index) {
   for (std::uint32_t i = 0; i < member.part_count; ++i) scene_.put_back(parts_[member.first_part + i].solid);
 }
 
+void PlanarWorld::release_body(BodyId index) {
+  slots_.release(bodies_[index.value], link_pose(index, LinkId{0}), description_);
+}
+
 void PlanarWorld::place_body(BodyId index, const Pose& X_WM) {
   PlacedBody& body = bodies_[index.value];
   if (body.member != Anchors::nobody) place_on_ground(body.member, X_WM);

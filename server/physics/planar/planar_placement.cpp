@@ -66,12 +66,12 @@ PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& work
     if (!description.instances[body].is_present) remove_body(BodyId{body});
 }
 
-BodyId PlanarWorld::add_body(std::size_t model, const Pose& X_WM, Arrival arrival) {
-  if (arrival == Arrival::anew) check_new(description_.models[model], X_WM);
-  const BodyId body = create_body(model, X_WM);
+BodyId PlanarWorld::add_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot) {
+  if (!saved_slot) check_new(description_.models[model], X_WM);
+  const BodyId body = create_body(model, X_WM, saved_slot);
   scene_.build();
   const std::uint32_t member = bodies_[body.value].member;
-  if (arrival == Arrival::anew && member != Anchors::nobody) put_on_ground(member);
+  if (!saved_slot && member != Anchors::nobody) put_on_ground(member);
   return body;
 }
 
@@ -122,29 +122,29 @@ bool PlanarWorld::needs_ground(const PlanarModel& model) const {
   return !model.is_immovable() && description_.gravity.z() * model.mass() != 0.0;
 }
 
-BodyId PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM) {
+BodyId PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM, std::optional<std::uint32_t> saved_slot) {
   const BodyId body{bodies_.size()};
   const description::Model& model = description_.models[model_index];
   if (model_index >= models_.size()) models_.resize(model_index + 1);  // the model was added later
   try {
     if (!model.is_static && !models_[model_index]) models_[model_index] = std::make_shared<const PlanarModel>(model);
     check_placed(model, X_WM);
-    PlacedBody& placed = bodies_.emplace_back();
+    PlacedBody placed;
     placed.model = static_cast<std::uint32_t>(model_index);
     placed.X_WM = X_WM;
-    if (model.is_static) {
-      add_static(body);
-    } else {
-      add_moving(body);
-    }
+    const bool is_slot_used = slots_.take(placed, saved_slot);
+    if (is_slot_used)
+      model.is_static ? renew_static(placed, body) : renew_moving(placed, body);
+    else
+      model.is_static ? add_static(placed, body) : add_moving(placed, body);
+    bodies_.push_back(placed);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("model '" + model.name + "': " + error.what());
   }
   return body;
 }
 
-void PlanarWorld::add_static(BodyId id) {
-  PlacedBody& body = bodies_[id.value];
+void PlanarWorld::add_static(PlacedBody& body, BodyId id) {
   const description::Model& model = description_.models[body.model];
   const std::vector<geometry::SolidKindPtr>& kinds = kinds_.of_model(body.model, model);
   body.first_solid = body.end_of_solids = static_cast<std::uint32_t>(scene_.size());
@@ -158,18 +158,26 @@ void PlanarWorld::add_static(BodyId id) {
   }
 }
 
-void PlanarWorld::add_moving(BodyId body) {
-  const PlanarModel& model = *models_[bodies_[body.value].model];
-  const std::uint32_t index = planar_.add(model, bodies_[body.value].X_WM);
-  bodies_[body.value].member = index;
+void PlanarWorld::renew_static(const PlacedBody& body, BodyId id) {
+  std::uint32_t next = body.first_solid;
+  for (const description::Link& link : description_.models[body.model].links)
+    for (const description::Collision& collision : link.collisions) {
+      scene_.renew(next, id, body.X_WM * link.X_ML * collision.X_LC);
+      collision_.place_static(next++);
+    }
+}
+
+void PlanarWorld::add_moving(PlacedBody& body, BodyId id) {
+  const PlanarModel& model = *models_[body.model];
+  const std::uint32_t index = planar_.add(model, body.X_WM);
+  body.member = index;
   collision_.add_member(model.is_immovable());
   grounds_.emplace_back();
   Member& member = members_.emplace_back();
-  member.body = body;
+  member.body = id;
   member.first_part = static_cast<std::uint32_t>(parts_.size());
   const std::vector<description::Link>& links = model.mechanism().model().links;
-  const std::vector<geometry::SolidKindPtr>& kinds =
-      kinds_.of_model(bodies_[body.value].model, model.mechanism().model());
+  const std::vector<geometry::SolidKindPtr>& kinds = kinds_.of_model(body.model, model.mechanism().model());
   std::size_t next = 0;
   for (std::size_t link = 0; link < links.size(); ++link) {
     const Mechanism::LinkPlace& place = model.mechanism().link(link);
@@ -178,7 +186,7 @@ void PlanarWorld::add_moving(BodyId body) {
       if (!place.collides) continue;
       const Pose X_SC = place.X_SL * collision.X_LC;
       const Pose X_WC = planar_.segment_pose(index, place.segment) * X_SC;
-      const std::uint32_t solid = scene_.add(kind, body, true, X_WC);
+      const std::uint32_t solid = scene_.add(kind, id, true, X_WC);
       parts_.push_back({solid, place.segment, X_SC, {}});
       parts_in_body_.emplace_back();
       collision_.add_moving();
@@ -187,6 +195,22 @@ void PlanarWorld::add_moving(BodyId body) {
     }
   }
   find_parts_in_body(member, index);
+  place_solids(index);
+}
+
+void PlanarWorld::renew_moving(const PlacedBody& body, BodyId id) {
+  const std::uint32_t index = body.member;
+  Member& member = members_[index];
+  planar_.renew(index, body.X_WM);
+  grounds_[index] = {};
+  member.body = id;
+  member.is_active = member.is_finite = member.is_inside = true;
+  member.has_ground = false;
+  member.record.reset();
+  collision_.put_back(index);
+  find_parts_in_body(member, index);
+  for (std::uint32_t i = member.first_part; i < member.first_part + member.part_count; ++i)
+    scene_.renew(parts_[i].solid, id, planar_.segment_pose(index, parts_[i].segment) * parts_[i].X_SC);
   place_solids(index);
 }
 

@@ -10,6 +10,7 @@
 #include "server/physics/planar/planar_collision.hpp"
 #include "server/physics/planar/planar_ground.hpp"
 #include "server/physics/planar/planar_solver.hpp"
+#include "server/physics/world/body_slots.hpp"
 #include "server/physics/world/motion_record.hpp"
 #include "server/physics/world/physics_world.hpp"
 #include "server/physics/world/placed_body.hpp"
@@ -46,8 +47,10 @@ class PlanarWorld final : public World, private WorldConnections {
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
   Activity activity(BodyId body) const override;
-  BodyId add_body(std::size_t model, const Pose& X_WM, Arrival arrival) override;
+  BodyId add_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot) override;
   void set_present(BodyId body, bool is_present) override;
+  void release_body(BodyId body) override;
+  std::uint32_t slot_of(BodyId body) const override { return bodies_[body.value].slot; }
   void place_body(BodyId index, const Pose& X_WM) override;
   void push_body(BodyId body, LinkId link, const Wrench& wrench) override;
 
@@ -122,9 +125,11 @@ class PlanarWorld final : public World, private WorldConnections {
     std::vector<Before> before;
   };
 
-  BodyId create_body(std::size_t model, const Pose& X_WM);
-  void add_static(BodyId body);
-  void add_moving(BodyId body);
+  BodyId create_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot = {});
+  void add_static(PlacedBody& body, BodyId id);
+  void renew_static(const PlacedBody& body, BodyId id);
+  void add_moving(PlacedBody& body, BodyId id);
+  void renew_moving(const PlacedBody& body, BodyId id);
   void remove_body(BodyId body);
   void put_back_body(BodyId body);
   void put_on_ground(std::uint32_t index);
@@ -157,6 +162,7 @@ class PlanarWorld final : public World, private WorldConnections {
   std::vector<std::shared_ptr<const PlanarModel>> models_;  // null for static models
   geometry::SolidKinds kinds_;
   std::vector<PlacedBody> bodies_;
+  BodySlots slots_;
   std::vector<Member> members_;
   std::vector<Part> parts_;
   std::vector<PartInBody> parts_in_body_;  // by part, as parts_

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "server/core/ids.hpp"
@@ -69,9 +70,6 @@ enum class Activity : std::uint8_t {
   asleep,  ///< still for half a second, with all bodies coupled to it; steps skip it until something touches it
 };
 
-/// `anew`: the body is new in its world. `restored`: it was in the world of a snapshot that is restored next.
-enum class Arrival : std::uint8_t { anew, restored };
-
 /// A body that is no longer simulated: it keeps its last pose, touches nothing and is invisible.
 struct Quarantine {
   enum class Reason : std::uint8_t {
@@ -103,13 +101,22 @@ class World : public WorldState, public WorldRecords {
   bool is_asleep(BodyId body) const { return activity(body) == Activity::asleep; }
 
   /// Adds an instance of one of the description's models, possibly one added after the world was built. Called between
-  /// steps. Returns its body, the next free index. Throws std::invalid_argument for a model that cannot be simulated or
-  /// placed there; nothing is changed then. With Arrival::restored, `restore` must follow at once and sets its pose.
-  virtual BodyId add_body(std::size_t model, const Pose& X_WM, Arrival arrival = Arrival::anew) = 0;
+  /// steps. Returns its body, the next index. Throws std::invalid_argument for a model that cannot be simulated or
+  /// placed there; nothing is changed then. `saved_slot`: for a body of a snapshot, the slot that it had there;
+  /// `restore` must follow at once and sets its pose.
+  virtual BodyId add_body(std::size_t model, const Pose& X_WM,
+                          std::optional<std::uint32_t> saved_slot = std::nullopt) = 0;
   /// Removes a body from the world, also a static one: it touches nothing, is invisible and does not move, and its
   /// connections are released. Or puts a removed or quarantined body back as it was, at rest if it was quarantined.
   /// Called between steps, like the next two.
   virtual void set_present(BodyId body, bool is_present) = 0;
+  /// Frees the memory of a removed body, which cannot be put back then: its slot serves the next body of the same
+  /// model. Its root link keeps its pose. Called between steps.
+  virtual void release_body(BodyId body) = 0;
+  /// Returns the index of the memory that a body occupies; `released` for a body without any. Parts of a simulation
+  /// that keep data of bodies in arrays use it, so that they do not grow either.
+  static constexpr std::uint32_t released = 0xffffffffu;
+  virtual std::uint32_t slot_of(BodyId body) const = 0;
   /// Places the whole model of a body at X_WM, at rest, with its joints unchanged; its connections are released. Throws
   /// std::invalid_argument if a planar body has no ground there; its pose is then unchanged.
   virtual void place_body(BodyId body, const Pose& X_WM) = 0;

@@ -9,15 +9,21 @@
 
 namespace cohort::physics {
 
-/// An instance of a model, and the changes from outside since the world began.
-struct PlacedBody {
-  Pose X_WM;  ///< pose at which it was placed; a static body stays there
-  std::uint32_t model = 0;
+/// The member or the solids of a body.
+struct BodyMemory {
   std::uint32_t member = Anchors::nobody;  ///< `nobody`: static
   std::uint32_t first_solid = 0;           ///< for a static body
   std::uint32_t end_of_solids = 0;         ///< for a static body, one past its last
-  bool is_placed_again = false;            ///< X_WM differs from the description
-  bool is_out = false;                     ///< a static body was removed
+};
+
+/// An instance of a model, and the changes from outside since the world began. A released body is like a static one
+/// that was removed and has no solids.
+struct PlacedBody : BodyMemory {
+  Pose X_WM;  ///< pose at which it was placed; a static body stays there
+  std::uint32_t model = 0;
+  std::uint32_t slot = 0;        ///< index in BodySlots
+  bool is_placed_again = false;  ///< X_WM differs from the description
+  bool is_out = false;           ///< a static body was removed
 };
 
 /// Hashes these changes; adds nothing for a body without any.

@@ -152,7 +152,8 @@ std::string draw_series(Replay& replay, const PlotCommand& command, Log& log, co
     const double time = std::chrono::duration<double>(replay.recorded().log_time).count();
     for (std::size_t q = 0; q < quantities.size(); ++q)
       for (std::size_t i = 0; i < robots.size(); ++i)
-        page.panels[q].series[i].measured.emplace_back(time, quantities[q].value(replay.simulation(), robots[i]));
+        if (replay.simulation().is_present(robots[i]))
+          page.panels[q].series[i].measured.emplace_back(time, quantities[q].value(replay.simulation(), robots[i]));
   };
   if (!replay_part(replay, command.part, log, stop, visit)) return "";
   for (figures::Panel& panel : page.panels)

@@ -64,7 +64,6 @@ struct CohortClient {
   // Answers the event of one robot, and with the last robot the event itself.
   void answer() {
     if (!std::exchange(is_under_way_, false)) return;
-    if (start_ && !start_->mistake) check_parameters();
     if (start_ && start_->mistake) {
       const cohort::Start& start = start_->start;
       fail("the controller of robot '" + start.name + "' failed in start at tick " + std::to_string(start.tick) + ": " +
@@ -137,14 +136,6 @@ struct CohortClient {
     given_.kind = cohort_event_end;
     given_.end = cohort::end_of(ended.end);
     event_.reset();  // the client returns it again
-  }
-
-  void check_parameters() {
-    try {
-      start_->start.parameters.check_all_were_asked_for();
-    } catch (const std::exception& error) {
-      start_->mistake = error.what();
-    }
   }
 
   // Returns the number of C events for the current event.

@@ -1,5 +1,8 @@
+#include <chrono>
 #include <exception>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -11,6 +14,23 @@
 #include "client_sdk/src/standard_streams.hpp"
 
 namespace cohort {
+namespace {
+
+// Returns the error of a program that has read some parameters of a robot and left out others.
+std::optional<std::string> problem_of_parameters(const LeaseStart& lease) {
+  for (const DrivenRobot& robot : lease.robots) {
+    if (robot.start.parameters.none_was_asked_for()) continue;
+    try {
+      robot.start.parameters.check_all_were_asked_for();
+    } catch (const ParameterError& error) {
+      return "the controller of robot '" + robot.start.name + "' failed in start at tick " +
+             std::to_string(robot.start.tick) + ": " + error.what();
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 struct Client::State {
   explicit State(const ClientOptions& given)
@@ -26,6 +46,21 @@ struct Client::State {
       why = text;
     };
     thread = std::thread([this] { run(); });
+  }
+
+  // Acts like `HandOver::take`, and keeps a start for `answer`.
+  std::optional<ClientEvent> take(std::optional<std::chrono::steady_clock::time_point> deadline) {
+    std::optional<ClientEvent> event = hand_over.take(deadline);
+    if (const auto* lease = event ? std::get_if<LeaseStart>(&*event) : nullptr) unanswered_start = *lease;
+    return event;
+  }
+
+  void answer() {
+    const std::optional<LeaseStart> lease = std::exchange(unanswered_start, std::nullopt);
+    if (const auto problem = lease ? problem_of_parameters(*lease) : std::nullopt)
+      hand_over.fail(*problem);
+    else
+      hand_over.answer();
   }
 
   void run() noexcept {
@@ -45,6 +80,7 @@ struct Client::State {
   Claims claims;
   HandOver hand_over;
   LoopHost host;
+  std::optional<LeaseStart> unanswered_start;  // the current event
   std::mutex mutex;
   std::string why;  // guarded by `mutex`
   std::thread thread;
@@ -60,18 +96,21 @@ Client::~Client() {
 
 ClientEvent Client::next() {
   answer();
-  return *state_->hand_over.take(std::nullopt);
+  return *state_->take(std::nullopt);
 }
 
 std::optional<ClientEvent> Client::next(std::chrono::milliseconds at_most) {
   answer();
-  return state_->hand_over.take(std::chrono::steady_clock::now() + at_most);
+  return state_->take(std::chrono::steady_clock::now() + at_most);
 }
 
 void Client::claim(std::vector<std::string> robots) { state_->claims.set(std::move(robots)); }
-void Client::answer() { state_->hand_over.answer(); }
+void Client::answer() { state_->answer(); }
 void Client::leave_unanswered() { state_->hand_over.leave_unanswered(); }
-void Client::fail(const std::string& why) { state_->hand_over.fail(why); }
+void Client::fail(const std::string& why) {
+  state_->unanswered_start.reset();
+  state_->hand_over.fail(why);
+}
 bool Client::is_over() const { return state_->watch.is_over(); }
 int Client::descriptor() const { return state_->hand_over.descriptor(); }
 

@@ -169,6 +169,17 @@ struct SceneShapeTexture {
                  field("shape", &SceneShapeTexture::shape), field("texture", &SceneShapeTexture::texture));
 };
 
+/// A value of a command that drives a robot over the ground.
+struct SceneDrive {
+  std::uint32_t model = 0;
+  std::uint32_t value = 0;  ///< index into the values of the model's command
+  double ahead = 0.0;       ///< value that drives forward at full speed, in the unit of its channel
+  double turn = 0.0;        ///< value that turns counter-clockwise at full speed
+  static constexpr const char* type = "cohort_msgs/msg/SceneDrive";
+  static constexpr auto fields = std::tuple(field("model", &SceneDrive::model), field("value", &SceneDrive::value),
+                                            field("ahead", &SceneDrive::ahead), field("turn", &SceneDrive::turn));
+};
+
 /// The contents of a world. A new one is sent for each world, when objects are added, and at the end of the last run;
 /// the last one is empty.
 struct Scene {
@@ -186,6 +197,7 @@ struct Scene {
   std::vector<SceneTexture> textures{};
   std::vector<SceneMeshTexture> mesh_textures{};
   std::vector<SceneShapeTexture> shape_textures{};
+  std::vector<SceneDrive> drives{};  ///< sorted by model
   static constexpr const char* type = "cohort_msgs/msg/Scene";
   static constexpr std::size_t least_fields = 11;  ///< those of 0.1, up to `end_text`
   static constexpr auto fields =
@@ -193,7 +205,8 @@ struct Scene {
                  field("meshes", &Scene::meshes), field("models", &Scene::models), field("entities", &Scene::entities),
                  field("lamps", &Scene::lamps), field("tones", &Scene::tones), field("leds", &Scene::leds),
                  field("end", &Scene::end), field("end_text", &Scene::end_text), field("textures", &Scene::textures),
-                 field("mesh_textures", &Scene::mesh_textures), field("shape_textures", &Scene::shape_textures));
+                 field("mesh_textures", &Scene::mesh_textures), field("shape_textures", &Scene::shape_textures),
+                 field("drives", &Scene::drives));
 };
 
 /// The poses at a boundary. Links are sorted by model, then by link of the model, then by entity of that model, so that

@@ -1,6 +1,8 @@
 #include "server/viewing/check_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -60,6 +62,14 @@ void check_shape_texture(const messages::Scene& scene, const messages::SceneShap
   expect(texture.texture < scene.textures.size(), "a shape has an unknown texture");
 }
 
+void check_drive(const messages::Scene& scene, const messages::SceneDrive& drive) {
+  expect(drive.model < scene.models.size(), "a drive has an unknown model");
+  std::uint64_t values = 0;
+  for (const messages::SceneChannel& channel : scene.models[drive.model].command) values += channel.size;
+  expect(drive.value < values, "a drive has an unknown value");
+  expect(std::isfinite(drive.ahead) && std::isfinite(drive.turn), "a drive is not finite");
+}
+
 }  // namespace
 
 std::size_t check_scene(const messages::Scene& scene) {
@@ -70,6 +80,7 @@ std::size_t check_scene(const messages::Scene& scene) {
   check_textures(scene);
   for (const messages::SceneMeshTexture& texture : scene.mesh_textures) check_mesh_texture(scene, texture);
   for (const messages::SceneShapeTexture& texture : scene.shape_textures) check_shape_texture(scene, texture);
+  for (const messages::SceneDrive& drive : scene.drives) check_drive(scene, drive);
   std::size_t links = 0;
   for (const messages::SceneEntity& entity : scene.entities) {
     expect(entity.model < scene.models.size(), "an object has an unknown model");

@@ -1,9 +1,11 @@
 #include "server/viewing/scene_models.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 
+#include "server/description/ground_drive.hpp"
 #include "server/viewing/scene_textures.hpp"
 
 namespace cohort::viewing {
@@ -233,6 +235,18 @@ std::vector<messages::SceneChannel> channels_of(const std::vector<Channel>& from
   return channels;
 }
 
+// Adds the values by which people drive robots of a model.
+void add_drives(const description::Model& from, std::uint32_t model, const std::vector<Channel>& command,
+                std::vector<messages::SceneDrive>& drives) {
+  for (const description::DriveChannel& each : description::ground_drive(from)) {
+    std::uint32_t value = 0;
+    for (const Channel& channel : command) {
+      if (channel.name == each.channel) drives.push_back({model, value, each.ahead, each.turn});
+      value += channel.size;
+    }
+  }
+}
+
 }  // namespace
 
 void add_models(const Simulation& simulation, messages::Scene& scene) {
@@ -255,7 +269,10 @@ void add_models(const Simulation& simulation, messages::Scene& scene) {
     const RobotKind& kind = simulation.kinds()[simulation.kind_of(robot)];
     model.observation = channels_of(kind.observation);
     model.command = channels_of(kind.command);
+    const auto number = static_cast<std::uint32_t>(world.robot(robot).model);
+    add_drives(world.models[number], number, kind.command, scene.drives);
   }
+  std::ranges::stable_sort(scene.drives, {}, &messages::SceneDrive::model);
 }
 
 }  // namespace cohort::viewing

@@ -152,6 +152,23 @@ async function drivesByKeys(page) {
   await assert.rejects(run(page, "drive people/nobody"), /there is no robot/);
 }
 
+// Robots with a twist, two wheels, four wheels and belts.
+async function drivesByArrows(page) {
+  await drawCoarsely(page);
+  for (const robot of ["people/turtlebot3", "people/two_wheeler", "people/skid_steer", "people/on_belts"]) {
+    await run(page, `drive ${robot}`);
+    assert.match(await page.locator("#driven").textContent(), /arrows or w a s d/, robot);
+    assert.equal(await page.locator("#sliders input").count(), 0, "the arrows drive all values");
+    await page.locator("#canvas").focus();
+    await goesAhead(page, robot, ...key(page, "ArrowUp"));
+    const from = await untilAtRest(page, robot);
+    await page.keyboard.down("ArrowLeft");
+    await untilMoved(page, robot, from, 0, 0.3);
+    await page.keyboard.up("ArrowLeft");
+    await untilAtRest(page, robot);
+  }
+}
+
 async function drivesByPad(page) {
   const robot = "people/pad";
   await page.addInitScript(() => {
@@ -421,6 +438,7 @@ async function offersNoHands(page) {
 
 await runScenario({
   drives_by_keys: drivesByKeys,
+  drives_by_arrows: drivesByArrows,
   drives_by_pad: drivesByPad,
   drives_alone: drivesAlone,
   drives_on: drivesOn,

@@ -1,4 +1,5 @@
 #include <csignal>
+#include <utility>
 
 #include "tests/view/viewing.hpp"
 
@@ -76,6 +77,71 @@ TEST_F(Hands, DriveARobotByKeysAndSliders) { drives("drives_by_keys"); }
 TEST_F(Hands, DriveARobotByAGamePad) { drives("drives_by_pad"); }
 TEST_F(Hands, ReleaseTheRobotOfASilentPageToAnotherPage) { drives("drives_alone"); }
 TEST_F(Hands, AddDragSwitchAndRemoveObjects) { drives("handles_objects"); }
+
+// A link with the inertia of a solid box.
+std::string box_link(const std::string& name, const std::string& pose, const std::string& mass, const std::string& size,
+                     const std::string& inertia) {
+  return "<link name='" + name + "'><pose>" + pose + "</pose><inertial><mass>" + mass + "</mass><inertia><ixx>" +
+         inertia + "</ixx><iyy>" + inertia + "</iyy><izz>" + inertia +
+         "</izz></inertia></inertial><collision name='c'><geometry><box><size>" + size +
+         "</size></box></geometry></collision></link>";
+}
+
+// A chassis on four wheels whose names say nothing, and whose axes point to the left and to the right.
+std::string skid_steer() {
+  std::string text = box_link("chassis", "0 0 0.15 0 0 0", "4", "0.3 0.2 0.1", "0.05");
+  int number = 0;
+  for (const char* place : {"0.12 0.15", "0.12 -0.15", "-0.12 0.15", "-0.12 -0.15"}) {
+    const std::string name = "w" + std::to_string(number);
+    const std::string axis = ++number % 2 == 0 ? "0 -1 0" : "0 1 0";
+    text += "<link name='" + name + "'><pose>" + place +
+            " 0.08 0 0 0</pose><inertial><mass>0.4</mass><inertia><ixx>0.001</ixx><iyy>0.0013</iyy><izz>0.001</izz>"
+            "</inertia></inertial><collision name='c'><pose>0 0 0 1.5707963267948966 0 0</pose><geometry><cylinder>"
+            "<radius>0.08</radius><length>0.04</length></cylinder></geometry></collision></link><joint name='" +
+            name + "_axle' type='continuous'><parent>chassis</parent><child>" + name + "</child><axis><xyz>" + axis +
+            "</xyz></axis></joint><cohort:velocity_motor name='" + name + "'><cohort:joint>" + name +
+            "_axle</cohort:joint><cohort:max_velocity>5</cohort:max_velocity><cohort:max_effort>5</cohort:max_effort>"
+            "</cohort:velocity_motor>";
+  }
+  return text;
+}
+
+// A chassis on two belts.
+std::string on_belts() {
+  std::string text = box_link("chassis", "0 0 0.15 0 0 0", "4", "0.3 0.2 0.1", "0.05");
+  for (const auto& [name, y] : {std::pair<std::string, std::string>{"p", "-0.15"}, {"q", "0.15"}})
+    text += box_link(name, "0 " + y + " 0.05 0 0 0", "1", "0.3 0.06 0.1", "0.01") + "<joint name='" + name +
+            "_mount' type='fixed'><parent>chassis</parent><child>" + name + "</child></joint><cohort:belt name='" +
+            name + "'><cohort:link>" + name +
+            "</cohort:link><cohort:max_velocity>0.4</cohort:max_velocity></cohort:belt>";
+  return text;
+}
+
+TEST_F(Hands, DriveRobotsWithATwistWheelsOrTracksByArrows) {
+  const auto included = [](const std::string& model, int y) {
+    return "<include><uri>model://" + model + "</uri><name>people/" + model + "</name><pose>0 " + std::to_string(y) +
+           " 0 0 0 0</pose></include>";
+  };
+  const auto written = [](const std::string& name, const std::string& content, int y) {
+    return "<model name='people/" + name + "'><pose>0 " + std::to_string(y) + " 0.001 0 0 0</pose>" + content +
+           "</model>";
+  };
+  write_file(scratch / "world.sdf",
+             "<sdf version='1.9' xmlns:cohort='https://cohort-sim.org/sdf/1'><world name='driven'>"
+             "<gravity>0 0 -9.81</gravity><model name='ground'><static>true</static><link name='body'>"
+             "<collision name='c'><geometry><plane><normal>0 0 1</normal><size>20 20</size></plane></geometry>"
+             "</collision></link></model>" +
+                 included("turtlebot3", 0) + included("two_wheeler", 2) + written("skid_steer", skid_steer(), 4) +
+                 written("on_belts", on_belts(), 6) + "</world></sdf>");
+  write_file(scratch / "experiment.yaml",
+             "world: world.sdf
+duration: 600
+teams:
+"
+             "  - {name: people, robots: people/*, controller: keyboard, mode: free}
+");
+  drives("drives_by_arrows");
+}
 
 TEST_F(Hands, AreIdleWhereThereIsARecording) {
   run_demo({"--duration", "0.5", "--record", scratch / "run.mcap"});

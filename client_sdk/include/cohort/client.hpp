@@ -85,7 +85,9 @@ struct DrivenRobot {
 
 /// The start of a lease, the right to drive robots: from now on, the client drives these robots and no others. It is
 /// the first event, and it occurs again after each takeover, reset and restore, and when `Client::claim` has added
-/// robots; `robots[i].start.reason` gives the reason. Channels must be looked up again.
+/// robots; `robots[i].start.reason` gives the reason. Channels must be looked up again. A program that reads
+/// `robots[i].start.parameters` must read all of them before it answers; otherwise the client ends with an error. A
+/// program that reads none of them, such as a bridge, may drive robots whose parameters are for another controller.
 struct LeaseStart {
   std::uint64_t tick = 0;                 ///< tick of the next frame
   std::chrono::nanoseconds step{0};       ///< simulated time between ticks

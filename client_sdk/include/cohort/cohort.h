@@ -110,8 +110,10 @@ bool cohort_has_command(const CohortStart* start, const char* name);
 /* ---- Parameters of the team in the experiment file ----
  *
  * Keys of nested maps are joined by '.'. Read every parameter at the start: a parameter that is not read is reported
- * as an error in the file. The functions return `fallback` if the parameter is missing. A parameter of the wrong type
- * is an error; the result is then also `fallback`. */
+ * as an error in the file. In your own loop, this is an error only if the loop has read another parameter of the robot
+ * before it answers the start event. A bridge, which reads none, may drive robots whose parameters are for another
+ * controller. The functions return `fallback` if the parameter is missing. A parameter of the wrong type is an error;
+ * the result is then also `fallback`. */
 
 bool cohort_has_parameter(const CohortStart* start, const char* name); /* also marks it as read */
 double cohort_real(const CohortStart* start, const char* name, double fallback);

@@ -27,7 +27,8 @@ class ParameterError : public std::runtime_error {
 };
 
 /// The parameters of a controller in the experiment file. Read every parameter in `Controller::start`: a parameter that
-/// is not read is reported as an error in the file, and the controller does not start. Use an object on one thread at a
+/// is not read is reported as an error in the file, and the controller does not start. In a program with a loop of its
+/// own, this is an error only if the program has read another parameter of the robot. Use an object on one thread at a
 /// time.
 class Parameters {
  public:
@@ -55,13 +56,15 @@ class Parameters {
 
   /// Throws ParameterError for the first parameter that has not been read.
   void check_all_were_asked_for() const;
+  /// Returns true if no parameter has been requested, not even a missing one.
+  bool none_was_asked_for() const { return asked_.empty(); }
 
  private:
   const Parameter* find(std::string_view name) const;
   const Parameter& get(std::string_view name) const;
 
   std::vector<Parameter> parameters_;
-  mutable std::vector<std::string> asked_;  // for `check_all_were_asked_for` only
+  mutable std::vector<std::string> asked_;  // requested names, also of missing parameters
 };
 
 }  // namespace cohort

@@ -2,6 +2,7 @@
 
 #include <future>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client_sdk/include/cohort/cohort.h"
@@ -30,6 +31,12 @@ class CClientTest : public testing::Test {
     server.admit({.epoch = epoch,
                   .start_reason = reason,
                   .step_ns = 10'000'000,
+                  .robots = {{.robot = 0, .name = "r0"}, {.robot = 4, .name = "r4"}}});
+  }
+  void admit_with(std::vector<wire::Parameter> parameters) {
+    server.admit({.epoch = 1,
+                  .step_ns = 10'000'000,
+                  .teams = {{.name = "team", .controller = "other", .parameters = std::move(parameters)}},
                   .robots = {{.robot = 0, .name = "r0"}, {.robot = 4, .name = "r4"}}});
   }
   // Returns the next event; fails the test and closes the client instead of waiting without limit.
@@ -111,6 +118,39 @@ TEST_F(CClientTest, AFailedLookupEndsTheLoopAndIsReportedToTheServer) {
   EXPECT_NE(error.find("has no command channel 'count/0/dubled'; the nearest are count/0/doubled"), std::string::npos)
       << error;
   EXPECT_TRUE(told.contains("loop: "));
+  ASSERT_TRUE(eventually([&] { return server.heard_report().has_value(); }));
+  EXPECT_EQ(server.heard_report()->kind, wire::ReportKind::failed);
+}
+
+TEST_F(CClientTest, ALoopThatReadsNoParametersDrivesRobotsWhoseParametersAreForAnotherController) {
+  admit_with({{"gain", {"2"}}, {"speed", {"3"}}});
+  take_starts(cohort_start_first);
+  EXPECT_EQ(take_frame(0).kind, cohort_event_observation);
+}
+
+TEST_F(CClientTest, ALoopThatReadsAllParametersOfOneRobotNeedNotReadThoseOfTheOther) {
+  admit_with({{"gain", {"2"}}, {"speed", {"3"}}});
+  EXPECT_EQ(next().robot, 0u);
+  const CohortEvent event = next();
+  ASSERT_EQ(event.kind, cohort_event_start);
+  EXPECT_EQ(cohort_needed_real(event.start, "gain"), 2.0);
+  EXPECT_EQ(cohort_real(event.start, "speed", 1.0), 3.0);
+  EXPECT_EQ(take_frame(0).kind, cohort_event_observation);
+}
+
+TEST_F(CClientTest, AParameterThatALoopLeavesOutEndsItIfItReadsAnother) {
+  admit_with({{"gian", {"2"}}});
+  EXPECT_EQ(next().robot, 0u);
+  const CohortEvent event = next();
+  ASSERT_EQ(event.kind, cohort_event_start);
+  EXPECT_EQ(cohort_real(event.start, "gain", 1.0), 1.0);
+  const CohortEvent end = next();
+  EXPECT_EQ(end.kind, cohort_event_end);
+  EXPECT_EQ(end.end, cohort_end_failed);
+  EXPECT_NE(
+      error.find("robot 'r4' failed in start at tick 0: parameter 'gian': unknown parameter; the nearest are gain"),
+      std::string::npos)
+      << error;
   ASSERT_TRUE(eventually([&] { return server.heard_report().has_value(); }));
   EXPECT_EQ(server.heard_report()->kind, wire::ReportKind::failed);
 }

@@ -5,6 +5,7 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -34,6 +35,12 @@ class ClientLoopTest : public testing::Test {
                   .step_ns = 10'000'000,
                   .robots = {{.robot = 4, .name = "r4", .period = 5, .phase = 2, .delay = 1, .mode = wire::Mode::free},
                              {.robot = 0, .name = "r0"}}});
+  }
+  void admit_with(std::vector<wire::Parameter> parameters) {
+    server.admit({.epoch = 1,
+                  .step_ns = 10'000'000,
+                  .teams = {{.name = "team", .controller = "other", .parameters = std::move(parameters)}},
+                  .robots = {{.robot = 0, .name = "r0"}, {.robot = 4, .name = "r4"}}});
   }
   template <class Event>
   Event next() {
@@ -92,6 +99,33 @@ TEST_F(ClientLoopTest, AFrameIsAnsweredAsAWholeAndUnsetCommandsAreNeutral) {
   client->answer();  // changes nothing
   ASSERT_TRUE(eventually([&] { return !server.answers().empty(); }));
   EXPECT_EQ(server.answers()[0].values, (std::vector<double>{0, 0, 0, 0, 0.25, 0.25, 0, 0, 0.5, 0, 0.25, 0.25}));
+}
+
+TEST_F(ClientLoopTest, ALoopThatReadsNoParametersDrivesRobotsWhoseParametersAreForAnotherController) {
+  admit_with({{"gain", {"2"}}, {"speed", {"3"}}});
+  EXPECT_EQ(next<LeaseStart>().robots[0].start.parameters.all().size(), 2u);
+  EXPECT_EQ(take_frame(0).tick, 0u);
+}
+
+TEST_F(ClientLoopTest, ALoopThatReadsAllParametersOfOneRobotNeedNotReadThoseOfTheOther) {
+  admit_with({{"gain", {"2"}}, {"speed", {"3"}}});
+  const auto lease = next<LeaseStart>();
+  EXPECT_EQ(lease.robots[1].start.parameters.real("gain"), 2.0);
+  EXPECT_EQ(lease.robots[1].start.parameters.real("speed", 1.0), 3.0);
+  EXPECT_EQ(take_frame(0).tick, 0u);
+}
+
+TEST_F(ClientLoopTest, AParameterThatALoopLeavesOutEndsItIfItReadsAnother) {
+  admit_with({{"gian", {"2"}}});
+  EXPECT_EQ(next<LeaseStart>().robots[1].start.parameters.real("gain", 1.0), 1.0);
+  const auto ended = next<ClientEnded>();
+  EXPECT_EQ(ended.end, ClientEnd::failed);
+  EXPECT_NE(ended.why.find("robot 'r4' failed in start at tick 0: parameter 'gian': unknown parameter; the nearest are "
+                           "gain"),
+            std::string::npos)
+      << ended.why;
+  ASSERT_TRUE(eventually([&] { return server.heard_report().has_value(); }));
+  EXPECT_EQ(server.heard_report()->kind, wire::ReportKind::failed);
 }
 
 TEST_F(ClientLoopTest, OnlyAFrameOfFreeRobotsMayBeLeftUnanswered) {

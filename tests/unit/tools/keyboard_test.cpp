@@ -44,6 +44,52 @@ TEST(Keyboard, TheArrowsDriveTheTracksAndLettersTheOtherChannels) {
   EXPECT_EQ(keyboard.time(), std::chrono::milliseconds(30));
 }
 
+TEST(Keyboard, TheArrowsDriveWheelsOnBothSides) {
+  Start start = start_of_robot();
+  const std::vector<description::DriveChannel> wheels = {
+      {"treel/right/velocity", -0.2, -0.2}, {"turret/0/velocity", 1.0, -1.0}, {"arm/0/position", 0.5, 0.0}};
+  Keyboard keyboard;
+  const OwnedController controller = keyboard_controllers(keyboard, [&](const Start&) { return wheels; }).create();
+  controller->start(start);
+  keyboard.press("up");
+  EXPECT_EQ(command_of(*controller), (std::vector<double>{0, -0.2, 1.0, 0.5}));
+  keyboard.press("left");
+  EXPECT_EQ(command_of(*controller), (std::vector<double>{0, -0.1, -0.5, 0}));
+  keyboard.press("down");
+  EXPECT_EQ(command_of(*controller), (std::vector<double>{0, 0.2, -1.0, 0})) << "kept within the range of the channel";
+  EXPECT_EQ(keyboard.bindings()[4].settings[0].channel, "treel/left/velocity") << "letters have the other channels";
+}
+
+TEST(Keyboard, TheArrowsDriveATwistInCurves) {
+  Start start;
+  start.command_channels = {{"drive/0/linear", "m/s", 0, 1, -0.5, 0.5, 0.0},
+                            {"drive/0/angular", "rad/s", 1, 1, -2.0, 2.0, 0.0}};
+  Keyboard keyboard;
+  const OwnedController controller = keyboard_controllers(keyboard).create();
+  controller->start(start);
+  const auto command = [&] {
+    std::vector<double> values(2, 0.0);
+    Command set(values);
+    controller->step(Observation(3, std::chrono::milliseconds(30), {}), set);
+    return values;
+  };
+  keyboard.press("left");
+  EXPECT_EQ(command(), (std::vector<double>{0, 1.0}));
+  keyboard.press("up");
+  EXPECT_EQ(command(), (std::vector<double>{0.5, 0.0})) << "straight";
+  keyboard.press("right");
+  EXPECT_EQ(command(), (std::vector<double>{0.5, -1.0})) << "a curve";
+  keyboard.press("space");
+  EXPECT_EQ(command(), (std::vector<double>{0, 0}));
+}
+
+TEST(Keyboard, RobotsWithoutADriveHaveNoArrows) {
+  Start start;
+  start.command_channels = {{"lift/0/velocity", "rad/s", 0, 1, -1.0, 1.0, 0.0}};
+  EXPECT_TRUE(drive_without_model(start).empty());
+  EXPECT_EQ(key_bindings(start, {}).front().key, "r");
+}
+
 TEST(Keyboard, PlusAndMinusChangeTheShareWithinATenthAndTheWhole) {
   Keyboard keyboard;
   const OwnedController controller = keyboard_controllers(keyboard).create();
@@ -78,7 +124,7 @@ TEST(Keyboard, WrongBindingsAreExplained) {
     start.controller = keyboard_controller;
     start.parameters = Parameters(std::vector{std::move(parameter)});
     try {
-      key_bindings(start);
+      key_bindings(start, {});
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -94,7 +140,7 @@ TEST(Keyboard, ParametersOfAnotherControllerAreLeftToIt) {
   Start start = start_of_robot();
   start.controller = "braitenberg";
   start.parameters = Parameters(std::vector{Parameter{"treel/left/velocity.bias", {"0.2"}}});
-  EXPECT_EQ(key_bindings(start).front().key, "up");
+  EXPECT_EQ(key_bindings(start, drive_without_model(start)).front().key, "up");
   EXPECT_NO_THROW(start.parameters.check_all_were_asked_for());
 }
 

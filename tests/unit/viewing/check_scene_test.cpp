@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/support/images.hpp"
 
 namespace cohort::viewing {
@@ -42,6 +44,19 @@ TEST(CheckScene, RefusesIndicesOfNothing) {
   messages::Scene of_vertex = scene_of_two();
   of_vertex.meshes[0].triangles[2] = 3;
   EXPECT_THROW(check_scene(of_vertex), messages::CdrError);
+}
+
+TEST(CheckScene, RefusesDrivesOfNothing) {
+  messages::Scene scene = scene_of_two();
+  scene.models[0].command = {{.name = "a", .size = 2}};
+  scene.drives = {{0, 1, 0.5, -0.5}};
+  EXPECT_EQ(check_scene(scene), 4U);
+  scene.drives[0].value = 2;
+  EXPECT_THROW(check_scene(scene), messages::CdrError);
+  scene.drives = {{1, 0, 0.5, -0.5}};
+  EXPECT_THROW(check_scene(scene), messages::CdrError);
+  scene.drives = {{0, 0, std::numeric_limits<double>::quiet_NaN(), 0.0}};
+  EXPECT_THROW(check_scene(scene), messages::CdrError);
 }
 
 TEST(CheckScene, RefusesColoursOfNothing) {

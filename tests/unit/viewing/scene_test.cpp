@@ -57,6 +57,18 @@ TEST(SceneOfAWorld, TellsWhereRaysBegin) {
   EXPECT_NE(channel, sbot.observation.end()) << ring->channel;
 }
 
+TEST(SceneOfAWorld, TellsWhichValuesDriveARobot) {
+  const description::Experiment experiment = shipped("turtlebot3");
+  const Simulation simulation(experiment, 1);
+  const messages::Scene scene = SceneMaker(simulation, 1).scene();
+  ASSERT_EQ(scene.drives.size(), 2U);
+  const messages::SceneModel& model = scene.models[scene.drives[0].model];
+  EXPECT_EQ(model.command[scene.drives[0].value].name, "drive/0/linear");
+  EXPECT_EQ(scene.drives[0].ahead, 0.22);
+  EXPECT_EQ(model.command[scene.drives[1].value].name, "drive/0/angular");
+  EXPECT_EQ(scene.drives[1].turn, 2.84);
+}
+
 TEST(SceneOfAWorld, TellsWhereLinksRestAndWhatCommandsBeginWith) {
   const description::Experiment experiment = shipped("obstacle_avoidance");
   const Simulation simulation(experiment, 1);

@@ -1,9 +1,19 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <optional>
+#include <stdexcept>
 #include <thread>
 
 #include "client_sdk/src/attachment.hpp"
+#include "client_sdk/src/control/control_client.hpp"
+#include "client_sdk/src/control/experiment_query.hpp"
 #include "client_sdk/src/domains.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "tools/cohort/cli/terminal/key_reader.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
@@ -80,6 +90,46 @@ class Console {
   std::thread thread_;
 };
 
+// The models of the server's experiment. Requests and reads them on a thread of its own.
+class ModelsOfRun {
+ public:
+  explicit ModelsOfRun(const ControlOptions& options)
+      : read_(std::async(std::launch::async, [this, options] { return read(options); })) {}
+  ModelsOfRun(const ModelsOfRun&) = delete;
+  ModelsOfRun& operator=(const ModelsOfRun&) = delete;
+  ~ModelsOfRun() { leave_ = true; }
+
+  // An identity without the right to control gets no models, and a robot that was added may have another one. Their
+  // channels then say how they are driven.
+  std::vector<description::DriveChannel> drive_of(const Start& start) {
+    if (read_.wait_for(patience) != std::future_status::ready) return drive_without_model(start);
+    const auto model = std::ranges::find(read_.get(), start.model, &description::Model::name);
+    return model == read_.get().end() ? drive_without_model(start) : description::ground_drive(*model);
+  }
+
+ private:
+  description::Models read(const ControlOptions& options) const {
+    try {
+      ControlClient control(attach(options));
+      const messages::ExperimentFiles files = query_experiment([&](const wire::GetExperiment& question) {
+        const std::optional<wire::Reply> reply = control.ask(question, for_ever, leave_);
+        if (!reply || !reply->is_done()) throw std::runtime_error("the server did not send its experiment");
+        return *reply;
+      });
+      return parsing::read_experiment(std::make_shared<const description::KeptFiles>(messages::kept_files(files)),
+                                      files.seed, std::chrono::nanoseconds(files.duration_ns))
+          .world.models;
+    } catch (const std::exception&) {
+      return {};
+    }
+  }
+
+  static constexpr std::chrono::seconds patience{3};
+
+  std::atomic<bool> leave_ = false;
+  std::shared_future<description::Models> read_;
+};
+
 int teleop(const ClientSide& client, Log& log, const std::atomic<bool>& stop) {
   Keyboard keyboard;
   std::atomic<bool> leave = false;
@@ -94,7 +144,9 @@ int teleop(const ClientSide& client, Log& log, const std::atomic<bool>& stop) {
     log.write(level_of(severity), text);
   };
   const Console console(keyboard, log, stop, leave);
-  switch (run_client(keyboard_controllers(keyboard), options, leave)) {
+  ModelsOfRun models({options.server, options.domain, options.secure, options.name});
+  const FindDrive find_drive = [&](const Start& start) { return models.drive_of(start); };
+  switch (run_client(keyboard_controllers(keyboard, find_drive), options, leave)) {
     case ClientEnd::finished: return exit_ok;
     case ClientEnd::interrupted: return stop ? exit_interrupted : exit_ok;
     case ClientEnd::refused: return exit_usage;

@@ -51,28 +51,29 @@ std::vector<KeyBinding> bindings_of(const Start& start) {
   return bindings;
 }
 
-std::optional<std::string> channel_ending_in(const Start& start, std::string_view ending) {
-  for (const ChannelInfo& channel : start.command_channels)
-    if (channel.name.ends_with(ending)) return channel.name;
-  return std::nullopt;
+// Returns the settings of a share of full speed forward and of a share of full speed counter-clockwise.
+std::vector<KeyBinding::Setting> settings_of(const std::vector<description::DriveChannel>& drive, double ahead,
+                                             double turn) {
+  std::vector<KeyBinding::Setting> settings;
+  for (const auto& each : drive) settings.push_back({each.channel, ahead * each.ahead + turn * each.turn});
+  return settings;
 }
 
-std::vector<KeyBinding> usual_bindings(const Start& start) {
+std::vector<KeyBinding> usual_bindings(const Start& start, const std::vector<description::DriveChannel>& drive) {
   std::vector<KeyBinding> bindings;
-  const auto left = channel_ending_in(start, "/left/velocity");
-  const auto right = channel_ending_in(start, "/right/velocity");
-  const bool drives = left && right;
-  if (drives) {
-    const double speed = std::min(start.command(*left).upper, start.command(*right).upper);
-    const double turning = turning_share * speed;
-    bindings = {{"up", {{*left, speed}, {*right, speed}}},
-                {"down", {{*left, -speed}, {*right, -speed}}},
-                {"left", {{*left, -turning}, {*right, turning}}},
-                {"right", {{*left, turning}, {*right, -turning}}}};
+  if (!drive.empty()) {
+    // If turning has a channel of its own, a robot that turns keeps its speed, and drives a curve.
+    auto turning = drive;
+    if (std::ranges::none_of(drive, [](const auto& each) { return each.ahead != 0.0 && each.turn != 0.0; }))
+      std::erase_if(turning, [](const auto& each) { return each.turn == 0.0; });
+    bindings = {{"up", settings_of(drive, 1.0, 0.0)},
+                {"down", settings_of(drive, -1.0, 0.0)},
+                {"left", settings_of(turning, 0.0, turning_share)},
+                {"right", settings_of(turning, 0.0, -turning_share)}};
   }
   std::size_t pair = 0;
   for (const ChannelInfo& channel : start.command_channels) {
-    if (drives && (channel.name == *left || channel.name == *right)) continue;
+    if (std::ranges::find(drive, channel.name, &description::DriveChannel::channel) != drive.end()) continue;
     if (!std::isfinite(channel.lower) || !std::isfinite(channel.upper) || pair == letter_pairs.size()) continue;
     bindings.push_back({letter_pairs[pair].first, {{channel.name, channel.upper}}});
     bindings.push_back({letter_pairs[pair].second, {{channel.name, channel.lower}}});
@@ -83,11 +84,12 @@ std::vector<KeyBinding> usual_bindings(const Start& start) {
 
 class KeyboardController final : public Controller {
  public:
-  explicit KeyboardController(Keyboard* keyboard) : keyboard_(keyboard) {}
+  KeyboardController(Keyboard* keyboard, FindDrive find_drive)
+      : keyboard_(keyboard), find_drive_(std::move(find_drive)) {}
 
   void start(const Start& start) override {
     bindings_.clear();
-    std::vector<KeyBinding> bindings = key_bindings(start);
+    std::vector<KeyBinding> bindings = key_bindings(start, find_drive_(start));
     for (const KeyBinding& binding : bindings) {
       Resolved& resolved = bindings_.emplace_back(Resolved{binding.key, {}});
       for (const KeyBinding::Setting& setting : binding.settings) {
@@ -125,21 +127,42 @@ class KeyboardController final : public Controller {
   };
 
   Keyboard* keyboard_;
+  FindDrive find_drive_;
   std::vector<Resolved> bindings_;
 };
 
-OwnedController make_controller(Keyboard* keyboard) {
-  return {new KeyboardController(keyboard), [](Controller* controller) { delete controller; }};
+OwnedController make_controller(Keyboard* keyboard, const FindDrive& find_drive) {
+  return {new KeyboardController(keyboard, find_drive), [](Controller* controller) { delete controller; }};
 }
 
 }  // namespace
 
-std::vector<KeyBinding> key_bindings(const Start& start) {
+std::vector<description::DriveChannel> drive_without_model(const Start& start) {
+  const auto limit = [&](const std::string& name) -> std::optional<double> {
+    const auto channel = std::ranges::find(start.command_channels, name, &ChannelInfo::name);
+    if (channel == start.command_channels.end()) return std::nullopt;
+    return std::isfinite(channel->upper) ? channel->upper : 1.0;
+  };
+  for (const ChannelInfo& channel : start.command_channels) {
+    const std::string device = channel.name.substr(0, channel.name.find('/'));
+    const std::string linear = device + "/0/linear";
+    const std::string angular = device + "/0/angular";
+    if (limit(linear) && limit(angular)) return {{linear, *limit(linear), 0.0}, {angular, 0.0, *limit(angular)}};
+    const std::string left = device + "/left/velocity";
+    const std::string right = device + "/right/velocity";
+    if (!limit(left) || !limit(right)) continue;
+    const double speed = std::min(*limit(left), *limit(right));
+    return {{left, speed, -speed}, {right, speed, speed}};
+  }
+  return {};
+}
+
+std::vector<KeyBinding> key_bindings(const Start& start, const std::vector<description::DriveChannel>& drive) {
   const bool is_bound = start.controller == keyboard_controller && !start.parameters.all().empty();
   if (is_bound) return bindings_of(start);
   // The parameters belong to another controller: mark them as used.
   for (const Parameter& parameter : start.parameters.all()) start.parameters.has(parameter.name);
-  return usual_bindings(start);
+  return usual_bindings(start, drive);
 }
 
 void Keyboard::press(const std::string& key) {
@@ -180,10 +203,10 @@ std::chrono::nanoseconds Keyboard::time() const {
   return time_;
 }
 
-ControllerKind keyboard_controllers(Keyboard& keyboard) {
-  return {keyboard_controller, [&keyboard] { return make_controller(&keyboard); }};
+ControllerKind keyboard_controllers(Keyboard& keyboard, FindDrive find_drive) {
+  return {keyboard_controller, [&keyboard, find = std::move(find_drive)] { return make_controller(&keyboard, find); }};
 }
 
-OwnedController keyboard_controller_without_keys() { return make_controller(nullptr); }
+OwnedController keyboard_controller_without_keys() { return make_controller(nullptr, drive_without_model); }
 
 }  // namespace cohort::tool

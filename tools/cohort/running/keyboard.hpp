@@ -1,11 +1,13 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <vector>
 
 #include "client_sdk/hosting/controller_host.hpp"
+#include "server/description/ground_drive.hpp"
 
 namespace cohort::tool {
 
@@ -23,10 +25,13 @@ struct KeyBinding {
 };
 
 /// Returns the key bindings of a team: those of its parameters (`KEY: {CHANNEL: VALUE}`), or default ones if it has
-/// none or is not driven by keyboard. By default, the arrows drive two tracks or wheels (channels that end in
-/// `/left/velocity` and `/right/velocity`), and pairs of letters raise and lower each other channel. Throws
-/// ParameterError.
-std::vector<KeyBinding> key_bindings(const Start& start);
+/// none or is not driven by keyboard. By default, the arrows drive the channels of `drive`, and pairs of letters raise
+/// and lower each other channel. Throws ParameterError.
+std::vector<KeyBinding> key_bindings(const Start& start, const std::vector<description::DriveChannel>& drive);
+
+/// Returns the channels that drive a robot whose model is unknown: those of a twist (`NAME/0/linear` and
+/// `NAME/0/angular`) or of two tracks (`NAME/left/velocity` and `NAME/right/velocity`); otherwise none.
+std::vector<description::DriveChannel> drive_without_model(const Start& start);
 
 /// The keys that a person has pressed. Any thread may call it.
 class Keyboard {
@@ -54,8 +59,11 @@ class Keyboard {
   std::chrono::nanoseconds time_{0};
 };
 
+/// Returns the channels that drive a robot.
+using FindDrive = std::function<std::vector<description::DriveChannel>(const Start& start)>;
+
 /// Returns controllers that follow `keyboard`, which must outlive them.
-ControllerKind keyboard_controllers(Keyboard& keyboard);
+ControllerKind keyboard_controllers(Keyboard& keyboard, FindDrive find_drive = drive_without_model);
 /// Returns a controller whose keys are never pressed, to check an experiment with.
 OwnedController keyboard_controller_without_keys();
 

@@ -90,6 +90,12 @@ export interface SceneShapeTexture {
   shape: number;
   texture: number;
 }
+export interface SceneDrive {
+  model: number;
+  value: number;
+  ahead: number;
+  turn: number;
+}
 export interface Scene {
   revision: number;
   world: string;
@@ -103,6 +109,7 @@ export interface Scene {
   textures: SceneTexture[];
   mesh_textures: SceneMeshTexture[];
   shape_textures: SceneShapeTexture[];
+  drives: SceneDrive[];
 }
 export interface SceneFrame {
   revision: number;

@@ -5,7 +5,7 @@ import { none, type SceneChannel } from "../data/messages";
 import { element } from "../element";
 import type { ConsolePanel } from "../panels/console";
 import type { Viewer } from "../viewer";
-import { commandOf, neutralOf, padOf, readSteer, type Steer, sliderEnds, steerOfPad, wheelsOf } from "./steering";
+import { commandOf, type Drive, neutralOf, padOf, readSteer, type Steer, sliderEnds, steerOfPad } from "./steering";
 
 const interval = 50; // [ms] from one request to the next at the least
 const longestSilence = 200; // [ms]; the view lets a robot stand that it hears nothing of for half a second
@@ -13,6 +13,7 @@ const longestSilence = 200; // [ms]; the view lets a robot stand that it hears n
 interface Driven {
   name: string;
   channels: SceneChannel[];
+  drives: Drive[];
   base: number[];
 }
 
@@ -75,7 +76,8 @@ export class Driving {
     this.isClaiming = false;
     if (answer.done) {
       const { command } = scene.models[robot.model];
-      this.driven = { name: robot.name, channels: command, base: neutralOf(command) };
+      const drives = scene.drives.filter(({ model }) => model === robot.model);
+      this.driven = { name: robot.name, channels: command, drives, base: neutralOf(command) };
       this.sentAt = -Infinity;
       this.viewer.chosen.select(this.viewer.find(robot.name));
     }
@@ -136,6 +138,7 @@ export class Driving {
     const steers = [...this.held.values()].map((key) => this.steerOf(key)).concat(pad && steerOfPad(pad));
     const values = commandOf(
       driven.channels,
+      driven.drives,
       driven.base,
       steers.filter((each) => each !== undefined),
     );
@@ -164,7 +167,7 @@ export class Driving {
     const line = element("driven");
     line.hidden = !this.driven;
     if (!this.driven) return;
-    const by = wheelsOf(this.driven.channels) ? "arrows or w a s d" : "sliders";
+    const by = this.driven.drives.length > 0 ? "arrows or w a s d" : "sliders";
     const text = [
       `drives ${this.driven.name}`,
       pad ? `${by}, or the left stick of ${pad.id}` : by,
@@ -173,12 +176,12 @@ export class Driving {
     if (line.textContent !== text) line.textContent = text;
   }
 
-  // All values but those of the two tracks or wheels.
+  // All values but those that the arrows drive.
   private sliders(driven: Driven): HTMLElement[] {
-    const wheels = wheelsOf(driven.channels);
+    const byArrows = new Set(driven.drives.map(({ value }) => value));
     const owners = driven.channels.flatMap((channel) => Array.from({ length: channel.size }, () => channel));
     return valueNames(driven.channels).flatMap((name, at) =>
-      at === wheels?.left || at === wheels?.right ? [] : [this.slider(driven, name, at, owners[at])],
+      byArrows.has(at) ? [] : [this.slider(driven, name, at, owners[at])],
     );
   }
 

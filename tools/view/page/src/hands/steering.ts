@@ -1,9 +1,9 @@
-import { firstValue, valueNames } from "../data/channels";
-import type { SceneChannel } from "../data/messages";
+import { valueNames } from "../data/channels";
+import type { SceneChannel, SceneDrive } from "../data/messages";
 
 // Plain functions that turn held keys and a game pad into a robot's command.
 
-/** The effect of a held key: drives two tracks or wheels, as shares of full speed, or gives a channel a value. */
+/** The effect of a held key: drives over the ground, as shares of full speed, or gives a channel a value. */
 export type Steer = { ahead: number; turn: number } | { channel: string; value: number };
 
 const directions: Record<string, { ahead: number; turn: number }> = {
@@ -35,21 +35,8 @@ export function readSteer(line: string): Steer {
   return { channel, value: Number(value) };
 }
 
-/** Two tracks or wheels: where their velocities stand in the command, and the greatest that both have. */
-export interface Wheels {
-  left: number;
-  right: number;
-  speed: number;
-}
-
-export function wheelsOf(channels: readonly SceneChannel[]): Wheels | undefined {
-  const ending = (end: string): SceneChannel | undefined => channels.find(({ name }) => name.endsWith(end));
-  const left = ending("/left/velocity");
-  const right = ending("/right/velocity");
-  const [atLeft, atRight] = [left, right].map((each) => each && firstValue(channels, each.name));
-  if (!left || !right || atLeft === undefined || atRight === undefined) return undefined;
-  return { left: atLeft, right: atRight, speed: Math.min(left.upper, right.upper) };
-}
+/** A value of the command that drives over the ground, at full speed forward and counter-clockwise. */
+export type Drive = Pick<SceneDrive, "value" | "ahead" | "turn">;
 
 export const neutralOf = (channels: readonly SceneChannel[]): number[] =>
   channels.flatMap(({ size, neutral }) => Array.from({ length: size }, () => neutral));
@@ -61,6 +48,7 @@ export const sliderEnds = (unit: string, lower: number, upper: number): [number,
 /** The command of a robot: `base` where nothing else says anything. */
 export function commandOf(
   channels: readonly SceneChannel[],
+  drives: readonly Drive[],
   base: readonly number[],
   steers: readonly Steer[],
 ): number[] {
@@ -76,12 +64,13 @@ export function commandOf(
       if (at >= 0) values[at] = steer.value;
     }
   }
-  const wheels = wheelsOf(channels);
-  if (!wheels || (ahead === 0 && turn === 0)) return values;
-  const [left, right] = [ahead - turningShare * turn, ahead + turningShare * turn];
-  const most = Math.max(1, Math.abs(left), Math.abs(right)); // neither goes faster than it can, and the curve stays
-  values[wheels.left] = (wheels.speed * left) / most;
-  values[wheels.right] = (wheels.speed * right) / most;
+  if (ahead === 0 && turn === 0) return values;
+  const driven = drives.map((each) => ahead * each.ahead + turningShare * turn * each.turn);
+  const most = drives.map((each, i) => Math.abs(driven[i]) / Math.max(Math.abs(each.ahead), Math.abs(each.turn)));
+  const share = Math.max(1, ...most.filter(Number.isFinite)); // none goes faster than it can, and the curve stays
+  drives.forEach(({ value }, i) => {
+    values[value] = driven[i] / share;
+  });
   return values;
 }
 

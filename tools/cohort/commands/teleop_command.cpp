@@ -102,7 +102,7 @@ class ModelsOfRun {
   // An identity without the right to control gets no models, and a robot that was added may have another one. Their
   // channels then say how they are driven.
   std::vector<description::DriveChannel> drive_of(const Start& start) {
-    if (read_.wait_for(patience) != std::future_status::ready) return drive_without_model(start);
+    if (read_.wait_until(deadline_) != std::future_status::ready) return drive_without_model(start);
     const auto model = std::ranges::find(read_.get(), start.model, &description::Model::name);
     return model == read_.get().end() ? drive_without_model(start) : description::ground_drive(*model);
   }
@@ -124,8 +124,8 @@ class ModelsOfRun {
     }
   }
 
-  static constexpr std::chrono::seconds patience{3};
-
+  // For the server's answer: all robots together wait until then at most.
+  const std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::now() + std::chrono::seconds(3);
   std::atomic<bool> leave_ = false;
   std::shared_future<description::Models> read_;
 };

@@ -5,8 +5,8 @@
 
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Tests of what a URDF says about its parts: messages name the line and the link as written, also of links that are
-// merged over fixed joints, and visuals have the colours of named materials.
+// Tests of messages about parts of a URDF and of named materials. A message has the line and the link as written, also
+// if the link is merged over a fixed joint.
 namespace cohort::description {
 namespace {
 
@@ -30,6 +30,7 @@ class UrdfParts : public Description {
 };
 
 using UrdfMessages = UrdfParts;
+using UrdfMaterials = UrdfParts;
 
 void expect_message(const std::string& messages, const std::string& part) {
   EXPECT_NE(messages.find("r.urdf:" + part), std::string::npos) << "expected " << part << "\ngot\n" << messages;
@@ -104,6 +105,39 @@ TEST_F(UrdfMessages, NameLimitsAndExtensionsOfJoints) {
                  "23: robot/joint[j]/limit: expected a number for 'lower', not 'x'");
   expect_message(messages_of(joint + limit + "</joint>\n<gazebo reference=\"j\">\n<torque>\n</torque>\n</gazebo>\n"),
                  "26: model[r]/joint[j]/torque: ignored the unknown element <torque>");
+}
+
+std::string painted(const std::string& material) { return box("visual", "", material + "\n"); }
+Eigen::Vector3d color_of(const Visual& visual) { return visual.color.head<3>(); }
+
+TEST_F(UrdfMaterials, DefinedInALinkColourOthersThatNameThem) {
+  const std::string red = "<material name=\"red\"><color rgba=\"0.8 0 0 1\"/></material>";
+  const std::string named = "<material name=\"red\"/>";
+  for (const auto& [of_mid, of_tip] : {std::pair{red, named}, std::pair{named, red}}) {
+    const Model model = model_of(chain(painted(of_mid), painted(of_tip)));
+    ASSERT_EQ(model.links[0].visuals.size(), 3u);
+    for (const std::size_t i : {1u, 2u}) {
+      EXPECT_TRUE(model.links[0].visuals[i].has_color);
+      EXPECT_EQ(color_of(model.links[0].visuals[i]), Eigen::Vector3d(1, 0, 0));
+    }
+  }
+}
+
+TEST_F(UrdfMaterials, OfTheRobotComeFirstEvenAfterTheirUse) {
+  const Model model = model_of(
+      chain(painted("<material name=\"a\"><color rgba=\"0.8 0 0 1\"/></material>"), painted("<material name=\"a\"/>")) +
+      "<material name=\"a\"><color rgba=\"0 0 0.8 1\"/></material>\n");
+  ASSERT_EQ(model.links[0].visuals.size(), 3u);
+  EXPECT_EQ(color_of(model.links[0].visuals[1]), Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(color_of(model.links[0].visuals[2]), Eigen::Vector3d(0, 0, 1));
+}
+
+TEST_F(UrdfMaterials, WithoutNamesKeepTheirOwnColours) {
+  const Model model = model_of(chain(painted("<material><color rgba=\"0.8 0 0 1\"/></material>"),
+                                     painted("<material><color rgba=\"0 0.8 0 1\"/></material>")));
+  ASSERT_EQ(model.links[0].visuals.size(), 3u);
+  EXPECT_EQ(color_of(model.links[0].visuals[1]), Eigen::Vector3d(1, 0, 0));
+  EXPECT_EQ(color_of(model.links[0].visuals[2]), Eigen::Vector3d(0, 1, 0));
 }
 
 }  // namespace

@@ -26,6 +26,8 @@ struct XmlNode {
   std::vector<std::pair<std::string, std::string>> attributes;
   std::string text;  ///< all text directly inside, without white space at the ends
   std::vector<XmlNode> children;
+  /// For a part of a link that the URDF converter has moved or renamed: its path below the model in the URDF.
+  std::string written = {};
 
   /// Returns the child of this name; nullptr if there is none.
   const XmlNode* child(std::string_view child_name) const;

@@ -137,7 +137,7 @@ bool SourceReader::names_are_simple(const XmlNode& node, const std::string& path
   bool are_simple = true;
   for (const XmlNode& child : node.children) {
     if (child.name == "plugin" || child.name.find(':') != std::string::npos) continue;
-    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
+    const std::string child_path = path_below(path, child);
     if (const std::string* const name = child.attribute("name");
         name != nullptr && name->find("::") != std::string::npos) {
       problems_.push_back(
@@ -154,7 +154,7 @@ void SourceReader::warn_of_repeated(const XmlNode& node, const ElementSchema& sc
   for (const XmlNode& child : node.children) {
     const ElementSchema of_child = schema.child(child.name);
     if (of_child.is_free() || of_child.is_extension()) continue;
-    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
+    const std::string child_path = path_below(path, child);
     if (of_child.is_single() && node.child(child.name) != &child)
       warnings_.push_back({child.file->shown, child.line, child_path, "is given twice; only the first is used"});
     warn_of_repeated(child, of_child, child_path);

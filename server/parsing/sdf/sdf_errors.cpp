@@ -113,6 +113,17 @@ bool is_consequence(const sdf::Error& error, const std::string& path, const std:
   }
 }
 
+// Returns the path, with links and names as in the URDF, of the element at `steps` below a node.
+std::string written_path(const XmlNode& node, const std::string& path, const std::string& steps) {
+  for (const XmlNode& child : node.children) {
+    const std::string step = step_of(child);
+    if (steps == step) return path_below(path, child);
+    if (steps.starts_with(step + "/"))
+      return written_path(child, path_below(path, child), steps.substr(step.size() + 1));
+  }
+  return path + (path.empty() ? "" : "/") + steps;
+}
+
 struct Place {
   const XmlNode* node;
   std::string path;
@@ -124,7 +135,7 @@ std::optional<Place> find_named(const XmlNode& from, const std::string& path, st
                                 std::string_view name) {
   std::optional<Place> found;
   for (const XmlNode& child : from.children) {
-    const std::string child_path = path + (path.empty() ? "" : "/") + step_of(child);
+    const std::string child_path = path_below(path, child);
     const bool is_kind = child.name == kind || (child.name == "include" && kind == "model");
     if (is_kind && name_of(child) == name) found = Place{&child, child_path};
     if (auto deeper = find_named(child, child_path, kind, name)) found = std::move(deeper);
@@ -238,7 +249,7 @@ void replace_bad_values_below(XmlNode& node, const ElementSchema& schema, const 
   for (XmlNode& child : node.children) {
     const ElementSchema of_child = schema.child(child.name);
     if (of_child.is_free() || of_child.is_extension()) continue;
-    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
+    const std::string child_path = path_below(path, child);
     // A pose can be written in several ways, depending on its attributes.
     const bool is_as_usual = child.attribute("rotation_format") == nullptr && child.attribute("degrees") == nullptr;
     if (!child.text.empty() && is_as_usual && !of_child.can_have(child.text)) {
@@ -303,6 +314,7 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file)
       problem.file = node->file->shown;
       problem.line = node->line;
     }
+    problem.element = written_path(tree, "", problem.element);
     name_include(problem.element, file);
     problems.push_back(std::move(problem));
   }

@@ -75,8 +75,13 @@ Location SdfFiles::locate(const sdf::ElementPtr& element) const {
   const XmlNode* const node = node_of(element);
   location.file = node != nullptr ? node->file->shown : world_file_;
   location.line = node != nullptr ? node->line : 0;
-  for (sdf::ElementPtr step = element; step && step->GetName() != "sdf"; step = step->GetParent())
-    location.element = step_of(step) + (location.element.empty() ? "" : "/") + location.element;
+  for (sdf::ElementPtr step = element; step && step->GetName() != "sdf"; step = step->GetParent()) {
+    const XmlNode* const source = step->LineNumber() ? node_of(step) : nullptr;
+    const bool is_moved = source != nullptr && !source->written.empty();
+    location.element =
+        (is_moved ? source->written : step_of(step)) + (location.element.empty() ? "" : "/") + location.element;
+    if (is_moved) step = step->GetParent();  // the link, which `written` includes
+  }
   if (const SdfFile* const part = find(element->FilePath())) location.element.insert(0, part->within);
   return location;
 }

@@ -77,7 +77,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
   std::vector<XmlNode> children;
   children.reserve(node.children.size());
   for (XmlNode& child : node.children) {
-    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
+    const std::string child_path = path_below(path, child);
     if (child.name != "include" || (!is_world && node.name != "model")) {
       if (child.name == "world" || child.name == "model") usable = replace_includes(child, child_path, file) && usable;
       if (is_world && child.name == "model" && set_apart(child, named, place_after(children), file)) continue;

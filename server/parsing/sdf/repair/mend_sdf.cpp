@@ -47,7 +47,7 @@ void SdfMender::mend(XmlNode& node, const std::string& path) {
   if (node.name == "joint") mend_joint(node, path);
   if (node.name == "friction") mend_friction(node, path);
   if (node.name == "plugin" || node.name == "visual" || node.name == "sensor") return;
-  for (XmlNode& child : node.children) mend(child, (path.empty() ? "" : path + "/") + step_of(child));
+  for (XmlNode& child : node.children) mend(child, path_below(path, child));
 }
 
 std::string text_of_child(const XmlNode& node, std::string_view name) {
@@ -136,8 +136,7 @@ void SdfMender::give_link(XmlNode& model, const std::string& path) {
 bool SdfMender::knows_sensor(const XmlNode& sensor, const std::string& path) {
   const std::string type = value_of(sensor, "type");
   if (sdf::Sensor().SetType(type)) return true;
-  tell_of(sensor, path + "/" + step_of(sensor),
-          "the sensor type '" + type + "' is not supported; the sensor is ignored");
+  tell_of(sensor, path_below(path, sensor), "the sensor type '" + type + "' is not supported; the sensor is ignored");
   return false;
 }
 
@@ -158,7 +157,7 @@ void SdfMender::number_apart(XmlNode& link, std::string_view kind, const std::st
     if (part.name != kind || name.empty() || names.insert(name).second) continue;
     std::string other = name + "_1";
     for (int number = 2; !names.insert(other).second; ++number) other = name + "_" + std::to_string(number);
-    tell_of(part, path + "/" + step_of(part),
+    tell_of(part, path_below(path, part),
             "another " + part.name + " of the link has this name; this one is renamed to '" + other + "'");
     set_attribute(part, "name", other);
   }

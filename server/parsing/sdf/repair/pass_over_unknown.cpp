@@ -40,7 +40,7 @@ void UnknownInSdf::take_out_of(XmlNode& node, const ElementSchema& schema, const
   });
   std::erase_if(node.children, [&](XmlNode& child) {
     if (has_any_prefix(child.name)) return false;
-    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
+    const std::string child_path = path_below(path, child);
     if (!schema.knows_child(child.name)) {
       note(child, child_path,
            "ignored the unknown element <" + child.name + ">" + meant_by(child.name, schema.children()));

@@ -41,6 +41,14 @@ inline std::string path_step(const std::string& element, const std::string& name
 
 inline std::string step_of(const XmlNode& node) { return path_step(node.name, name_of(node)); }
 
+/// Returns the path of a child of the element at `path`, for messages. Parts of a URDF have the link and the name that
+/// the URDF gives them.
+inline std::string path_below(const std::string& path, const XmlNode& child) {
+  if (child.written.empty()) return (path.empty() ? "" : path + "/") + step_of(child);
+  const std::size_t link = path.rfind("link[");
+  return (link == std::string::npos ? "" : path.substr(0, link)) + child.written;
+}
+
 /// Adds the content of a model except its name and pose.
 inline void add_content(const XmlNode& node, std::string& content, bool is_top = true) {
   content += '<' + node.name;

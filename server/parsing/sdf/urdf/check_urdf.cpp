@@ -162,6 +162,11 @@ void Checker::check_link(const XmlNode& link, const std::string& path) {
     } else if (child.name == "inertial") {
       for (const char* const part : {"mass", "inertia"})
         if (child.child(part) == nullptr) problem(child, path + "/inertial", "missing: <" + std::string(part) + ">");
+      // The converter adds the masses of merged links.
+      const XmlNode* const mass = child.child("mass");
+      const std::string* const value = mass != nullptr ? mass->attribute("value") : nullptr;
+      if (value != nullptr && parse_real(*value).value_or(0.0) < 0.0)
+        problem(*mass, path + "/inertial/mass", "expected a mass > 0 kg, not " + *value);
     }
   }
 }

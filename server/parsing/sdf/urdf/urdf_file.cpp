@@ -3,17 +3,16 @@
 #include <console_bridge/console.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <sdf/SDFImpl.hh>
 #include <sdf/parser.hh>
 #include <set>
 #include <string>
-#include <string_view>
 
 #include "server/parsing/keys/extensions.hpp"
 #include "server/parsing/sdf/schema/libsdformat_scope.hpp"
 #include "server/parsing/sdf/urdf/mend_urdf.hpp"
+#include "server/parsing/sdf/urdf/urdf_sources.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -45,66 +44,6 @@ sdf::SDFPtr unchecked_sdf() {
   sdf->Root(root);
   return sdf;
 }
-
-// Returns the name of the URDF element to which an SDF element corresponds.
-std::string urdf_name(const std::string& sdf) {
-  constexpr std::pair<std::string_view, std::string_view> names[] = {
-      {"pose", "origin"},     {"uri", "mesh"}, {"scale", "mesh"},  {"size", "box"},    {"radius", "geometry"},
-      {"length", "cylinder"}, {"xyz", "axis"}, {"lower", "limit"}, {"upper", "limit"}, {"damping", "dynamics"}};
-  for (const auto& [in_sdf, in_urdf] : names)
-    if (in_sdf == sdf) return std::string(in_urdf);
-  return sdf;
-}
-
-const XmlNode* find_below(const XmlNode& node, const std::string& name) {
-  for (const XmlNode& child : node.children) {
-    if (child.name == name) return &child;
-    if (const XmlNode* const found = find_below(child, name)) return found;
-  }
-  return nullptr;
-}
-
-class LineFinder {
- public:
-  explicit LineFinder(const XmlNode& robot) {
-    for (const XmlNode& child : robot.children)
-      if (const std::string* const name = child.attribute("name");
-          name != nullptr && (child.name == "link" || child.name == "joint"))
-        named_.emplace(*name, &child);
-  }
-
-  XmlNode tree(const sdf::ElementPtr& element, const XmlNode& around) const {
-    const XmlNode* source = &around;
-    if (const XmlNode* const named = find(element))
-      source = named;
-    else if (const XmlNode* const below = find_below(around, urdf_name(element->GetName())))
-      source = below;
-    XmlNode node{element->GetName(), source->line, nullptr, {}, "", {}};
-    for (const sdf::ParamPtr& attribute : element->GetAttributes())
-      node.attributes.emplace_back(attribute->GetKey(), attribute->GetAsString());
-    if (element->GetValue()) node.text = element->GetValue()->GetAsString();
-    for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement())
-      node.children.push_back(tree(child, *source));
-    return node;
-  }
-
- private:
-  // `wheel_fixed_joint_lump__axle_collision_1` comes from the second collision of the link `axle`.
-  const XmlNode* find(const sdf::ElementPtr& element) const {
-    if (!element->GetAttributeSet("name")) return nullptr;
-    std::string name = element->GetAttribute("name")->GetAsString();
-    if (const auto exact = named_.find(name); exact != named_.end()) return exact->second;
-    constexpr std::string_view lump = "_fixed_joint_lump__";
-    if (const std::size_t at = name.find(lump); at != std::string::npos) name.erase(0, at + lump.size());
-    const std::size_t kind = name.rfind("_collision");
-    const auto link = named_.find(name.substr(0, kind));
-    if (kind == std::string::npos || link == named_.end()) return nullptr;
-    const XmlNode* const collision = link->second->child("collision");
-    return collision != nullptr ? collision : link->second;
-  }
-
-  std::map<std::string, const XmlNode*> named_;
-};
 
 // Returns the joint above a link; nullptr for the root.
 const XmlNode* joint_above(const XmlNode& robot, const std::string& link) {
@@ -153,6 +92,7 @@ std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& f
   check_urdf(robot, file, problems, warnings);
   if (problems.size() > before) return std::nullopt;
 
+  UrdfSources sources(robot);
   const ConsoleCapture console;
   sdf::ParserConfig tolerant = config;  // unknown elements are reported for the resulting SDF
   tolerant.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
@@ -171,7 +111,7 @@ std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& f
         {file, robot.line, "robot", "libsdformat cannot convert this URDF to SDF" + (why.empty() ? "" : ": " + why)});
     return std::nullopt;
   }
-  XmlNode tree = LineFinder(robot).tree(sdf->Root(), robot);
+  XmlNode tree = sources.tree(sdf->Root());
   tree.attributes = {{"version", sdf::SDF::Version()}, {"xmlns:cohort", "https://cohort-sim.org/sdf/1"}};
   for (const XmlNode& joint : robot.children)
     if (const XmlNode* const mimic = joint.name == "joint" ? joint.child("mimic") : nullptr)

@@ -29,6 +29,16 @@ bool can_be_shown(XmlNode& visual) {
          (origin == nullptr || is_right(*origin, form_of("collision", "origin")));
 }
 
+bool has_readable_color(const XmlNode& material) {
+  const XmlNode* const color = material.child("color");
+  return color == nullptr || !what_is_wrong(value_of(*color, "rgba"), {"rgba", 4});
+}
+
+// Returns whether a material has a name and content, so that others can refer to it.
+bool is_defined(const XmlNode& material) {
+  return !value_of(material, "name").empty() && !material.children.empty() && has_readable_color(material);
+}
+
 }  // namespace
 
 void mend_mesh(XmlNode& geometry) {
@@ -42,25 +52,31 @@ void mend_mesh(XmlNode& geometry) {
     set_attribute(*mesh, "scale", std::string(parts[0]) + " " + std::string(parts[1]) + " " + std::string(parts[2]));
 }
 
+// As in urdfdom, the definitions of <robot> come first, then those in links in document order.
 void UrdfVisuals::mend_materials(XmlNode& robot) {
   std::erase_if(robot.children, [&](const XmlNode& child) {
-    return child.name == "material" && (value_of(child, "name").empty() || child.children.empty() ||
-                                        !materials_.insert(value_of(child, "name")).second);
+    return child.name == "material" && (!is_defined(child) || !materials_.insert(value_of(child, "name")).second);
   });
+  std::vector<XmlNode> shared;
+  for (const XmlNode& link : robot.children)
+    for (const XmlNode& visual : link.children)
+      if (const XmlNode* const material = visual.child("material");
+          link.name == "link" && visual.name == "visual" && material != nullptr && is_defined(*material) &&
+          materials_.insert(value_of(*material, "name")).second)
+        shared.push_back(*material);
+  robot.children.insert(robot.children.end(), shared.begin(), shared.end());
 }
 
 void UrdfVisuals::mend_link(XmlNode& link) const {
   std::erase_if(link.children, [&](XmlNode& child) { return child.name == "visual" && !can_be_shown(child); });
-  const UrdfAttribute rgba{"rgba", 4};
   for (XmlNode& visual : link.children)
     if (visual.name == "visual")
       std::erase_if(visual.children, [&](XmlNode& material) {
         if (material.name != "material") return false;
-        if (const XmlNode* const color = material.child("color");
-            color != nullptr && what_is_wrong(value_of(*color, "rgba"), rgba))
-          return true;
         const bool has_own = !material.children.empty();
-        if (value_of(material, "name").empty() && has_own) set_attribute(material, "name", "unnamed");
+        if (has_own && !has_readable_color(material)) return true;
+        // A name, even the same for all, would make the first of these materials the one of all.
+        if (value_of(material, "name").empty() && has_own) set_attribute(material, "name", "");
         return !has_own && !materials_.contains(value_of(material, "name"));
       });
 }

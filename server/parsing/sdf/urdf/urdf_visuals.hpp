@@ -10,7 +10,8 @@ namespace cohort::parsing {
 /// The visual elements of a URDF, whose errors never prevent reading a file.
 class UrdfVisuals {
  public:
-  /// Removes the materials of a robot that would stop the converter, and remembers the others.
+  /// Removes the materials of a robot that would stop the converter. Materials that are defined in a link become
+  /// materials of the robot, so that visuals of all links can refer to them.
   void mend_materials(XmlNode& robot);
   /// Removes the visuals of a link that cannot be read.
   void mend_link(XmlNode& link) const;

@@ -134,12 +134,8 @@ TEST_F(Hands, DriveRobotsWithATwistWheelsOrTracksByArrows) {
                  included("turtlebot3", 0) + included("two_wheeler", 2) + written("skid_steer", skid_steer(), 4) +
                  written("on_belts", on_belts(), 6) + "</world></sdf>");
   write_file(scratch / "experiment.yaml",
-             "world: world.sdf
-duration: 600
-teams:
-"
-             "  - {name: people, robots: people/*, controller: keyboard, mode: free}
-");
+             "world: world.sdf\nduration: 600\nteams:\n"
+             "  - {name: people, robots: people/*, controller: keyboard, mode: free}\n");
   drives("drives_by_arrows");
 }
 

@@ -48,7 +48,7 @@ TEST(CheckScene, RefusesIndicesOfNothing) {
 
 TEST(CheckScene, RefusesDrivesOfNothing) {
   messages::Scene scene = scene_of_two();
-  scene.models[0].command = {{.name = "a", .size = 2}};
+  scene.models[0].command.emplace_back().size = 2;
   scene.drives = {{0, 1, 0.5, -0.5}};
   EXPECT_EQ(check_scene(scene), 4U);
   scene.drives[0].value = 2;

@@ -1,7 +1,8 @@
 """A node that drives a robot by timers of its own: every 0.1 s, by the odometry that came last.
 
-timed_node.py ROBOT [SPEED [END]]; ROBOT is its namespace. Every second of its clock it prints the time, how many
-messages came, and a hash of all that it was told and when. It ends after END seconds, with the exit code 3.
+timed_node.py ROBOT [SPEED [END [THREADS]]]; ROBOT is its namespace. Every second of its clock it prints the time, how
+many messages came, and a hash of all that it was told and when. It ends after END seconds, with the exit code 3. With
+THREADS, that many threads call its callbacks, any of them at the same time.
 """
 
 import hashlib
@@ -11,12 +12,15 @@ import rclpy
 import rclpy.qos
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
 
 
 def main() -> None:
     robot = sys.argv[1]
     speed = float(sys.argv[2]) if len(sys.argv) > 2 else 0.1
     ends_after = float(sys.argv[3]) if len(sys.argv) > 3 else float("inf")
+    threads = int(sys.argv[4]) if len(sys.argv) > 4 else 0
     rclpy.init()
     node = rclpy.create_node("timed")
     publisher = node.create_publisher(Twist, f"{robot}/cmd_vel", 10)
@@ -52,9 +56,11 @@ def main() -> None:
         if ticks >= 10 * ends_after:
             sys.exit(3)
 
-    node.create_subscription(Odometry, f"{robot}/odom", take, rclpy.qos.qos_profile_sensor_data)
-    node.create_timer(0.1, drive)
-    rclpy.spin(node)
+    group = ReentrantCallbackGroup() if threads else None
+    quality = rclpy.qos.qos_profile_sensor_data
+    node.create_subscription(Odometry, f"{robot}/odom", take, quality, callback_group=group)
+    node.create_timer(0.1, drive, callback_group=group)
+    rclpy.spin(node, MultiThreadedExecutor(threads) if threads else None)
 
 
 main()

@@ -15,9 +15,10 @@ struct TwoNodes {
   std::string told;  // output of the nodes
 };
 
-TwoNodes run_two(const Ros2Distribution& distribution, const std::string& threads, const std::string& speed = "0.1") {
+// `of_first`: arguments of the first node after its robot.
+TwoNodes run_two(const Ros2Distribution& distribution, const std::string& threads, const std::string& of_first = "0.1") {
   BridgedNodes::Options options{.experiment = "arduino", .seconds = "3", .threads = threads};
-  const std::string first = node(distribution, "/robot_0 " + speed);
+  const std::string first = node(distribution, "/robot_0 " + of_first);
   options.bridge = {"--run", first + " & " + node(distribution, "/robot_1") + " & wait"};
   BridgedNodes run(options);
   run.start();
@@ -49,6 +50,18 @@ TEST(NodesInVirtualTime, DriveByTheirTimersToTheSameStateAgainAndWithAnyThreads)
 TEST(NodesInVirtualTime, DecideTheState) {
   if (const std::string missing = missing_for_ros2(); !missing.empty()) GTEST_SKIP() << missing;
   EXPECT_NE(run_two(jazzy(), "1", "0.11").hash, run_two(jazzy(), "1").hash);
+}
+
+TEST(NodesInVirtualTime, OfManyThreadsDriveToTheSameStateAgainAndWithAnyThreads) {
+  if (const std::string missing = missing_for_ros2(); !missing.empty()) GTEST_SKIP() << missing;
+  const std::string four_threads = "0.1 inf 4";
+  const TwoNodes first = run_two(jazzy(), "1", four_threads);
+  EXPECT_EQ(std::ranges::count(first.told, '\n'), 4) << first.told;
+  for (const char* threads : {"1", "2"}) {
+    const TwoNodes again = run_two(jazzy(), threads, four_threads);
+    EXPECT_EQ(again.hash, first.hash);
+    EXPECT_EQ(again.told, first.told);
+  }
 }
 
 TEST(NodesInVirtualTime, ThatExitDoNotStopTheRun) {

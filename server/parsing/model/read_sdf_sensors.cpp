@@ -63,7 +63,6 @@ class SensorElement {
     int axis = 0;
     for (const char* const each : {"x", "y", "z"}) add_noise(find(parent, {each, "noise"}), quantity, axis++);
   }
-  void set_precision(const std::string& quantity, double precision);
   const Readout& readout() const { return readout_; }
 
  private:
@@ -137,12 +136,6 @@ void SensorElement::add_noise(const sdf::ElementPtr& noise, const std::string& q
   if (!is_exact(result)) readout_.noises.push_back(result);
 }
 
-void SensorElement::set_precision(const std::string& quantity, double precision) {
-  if (!(precision > 0.0)) return;
-  if (readout_.noises.empty()) readout_.noises.emplace_back().quantity = quantity;
-  readout_.noises.back().precision = precision;
-}
-
 // Returns a sensor with a pose on a link; each kind adds its own values.
 template <class Sensor>
 Sensor posed(const SensorElement& element) {
@@ -189,7 +182,6 @@ std::optional<Device> read_lidar(SensorElement& sensor) {
   if (lidar.max_range <= lidar.min_range)
     sensor.problem({kind, "range", "max"}, "expected a <range> with a <max> > <min>");
   sensor.add_noise({kind, "noise"}, "ranges");
-  sensor.set_precision("ranges", sensor.non_negative({kind, "range", "resolution"}, 0.0));
   return lidar;
 }
 

@@ -97,7 +97,6 @@ void write_sdf_sensor(XmlNode& model_element, const Model&, const Lidar& lidar) 
   add_value(range, "max", lidar.max_range);
   const Noise* const noise = noise_on(lidar.readout, "ranges", 0);
   if (noise == nullptr) return;
-  add_value(range, "resolution", noise->precision);
   XmlNode& child = add(element, "noise");
   add_value(child, "type", std::string("gaussian"));
   add_value(child, "mean", noise->mean);

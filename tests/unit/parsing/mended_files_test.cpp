@@ -44,6 +44,14 @@ TEST_F(MendedFiles, IgnoreUnknownSensors) {
                   {"sensor[air]: the sensor type 'air_speed' is not supported; the sensor is ignored"});
 }
 
+TEST_F(MendedFiles, KeepRaySensorsOfEitherName) {
+  for (const std::string file : {"ray_sensors.sdf", "ray_sensors.urdf"}) {
+    const World world = read_file(file);
+    ASSERT_EQ(world.models.at(0).devices.size(), 2u) << file;
+    for (const Device& device : world.models[0].devices) EXPECT_EQ(std::get<Lidar>(device).columns, 7u) << file;
+  }
+}
+
 TEST_F(MendedFiles, NumberCollisionsOfTheSameName) {
   const auto& collisions = read_file("collisions_of_one_name.sdf").models[0].links[0].collisions;
   ASSERT_EQ(collisions.size(), 3u);

@@ -135,7 +135,8 @@ void SdfMender::give_link(XmlNode& model, const std::string& path) {
 
 bool SdfMender::knows_sensor(const XmlNode& sensor, const std::string& path) {
   const std::string type = value_of(sensor, "type");
-  if (sdf::Sensor().SetType(type)) return true;
+  // The first three are older names.
+  if (type == "ray" || type == "gpu_ray" || type == "gps" || sdf::Sensor().SetType(type)) return true;
   tell_of(sensor, path_below(path, sensor), "the sensor type '" + type + "' is not supported; the sensor is ignored");
   return false;
 }

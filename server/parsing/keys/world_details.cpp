@@ -52,7 +52,8 @@ The density of a collision takes precedence over that of its link. See
 The density is in kg/m³, as in `<cohort:density>700</cohort:density>`. The mass, centre of mass and inertia of
 the link are computed from its collisions. Collisions without a density have no mass, and overlapping volumes
 count twice. Boxes, spheres, cylinders, capsules and ellipsoids use closed-form formulas. Meshes use integrals
-over the volume of their convex hull. The element replaces `<inertial>`; it is an error if a link has both.
+over the volume of their convex hull. The element replaces `<inertial>`. Beside it, `<inertial>` may have a `<mass>`
+only: the link then has this mass, and the inertia is scaled to it.
 )md"},
       {"terrain", "heightmap", R"md(
 A `<heightmap>` with this element needs no `<uri>`. Its `<size>` gives the sides of the rectangle and, as z, the

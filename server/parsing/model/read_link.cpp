@@ -147,10 +147,19 @@ std::optional<Inertial> read_inertial_from_density(const sdf::Link& sdf_link, co
       parts.push_back(moved(mass_properties(collision.shape, *density), collision.X_LC));
   }
   if (!has_density) return std::nullopt;
+  const sdf::ElementPtr mass = find(sdf_link.Element(), {"inertial", "mass"});
+  const auto is_given = [&](const char* part) { return is_written(find(sdf_link.Element(), {"inertial", part})); };
   if (const sdf::ElementPtr written = sdf_link.Element()->FindElement("inertial");
-      written && written->GetExplicitlySetInFile())
-    report.problem(written, "expected either <inertial> or <cohort:density>, not both");
-  const MassProperties whole = together(parts);
+      written && written->GetExplicitlySetInFile() && (!is_written(mass) || is_given("pose") || is_given("inertia")))
+    report.problem(written, "expected either <inertial> or <cohort:density>, not both, unless it has only a <mass>");
+  MassProperties whole = together(parts);
+  if (is_written(mass) && whole.mass > 0.0) {
+    const auto given = mass->Get<double>();
+    if (!(given > 0.0) || std::isinf(given))
+      report.problem(mass, "expected a mass > 0 kg, not " + mass->GetValue()->GetAsString());
+    whole.inertia *= given / whole.mass;
+    whole.mass = given;
+  }
   if (!(whole.mass > 0.0) && link.collisions.size() == sdf_link.CollisionCount())
     report.problem(sdf_link.Element(), "<cohort:density> requires a <collision> with a volume");
   if (!std::isfinite(whole.mass) || !whole.inertia.allFinite())

@@ -119,7 +119,9 @@ std::optional<XmlNode> SourceReader::read_xml(const std::string& text, SdfFile& 
   // libsdformat would read a newer file as if it had its own version.
   if (version_of(*version) > newest_version || version_of(*version) == std::pair{0, 0})
     return fail(root.line, "SDF version '" + *version + "' is not supported; expected a version up to 1.12");
-  if (version_of(*version) > version_of(sdf::SDF::Version())) make_older(outline.root, file.shown, warnings_);
+  make_older(outline.root, file.shown, warnings_);
+  if (version_of(*version) > version_of(sdf::SDF::Version()))
+    set_attribute(outline.root, "version", sdf::SDF::Version());
   if (file.is_foreign) mend_sdf(outline.root, file.shown, warnings_);
   return std::move(outline.root);
 }

@@ -351,6 +351,52 @@ TEST_F(ForeignFiles, ReadInertiaByDensityAndMimicJointsOfNewerVersions) {
   EXPECT_EQ(model.couplings[0].offset, -5.0);
 }
 
+// As in libsdformat 14, which reads every file by its newest specification.
+TEST_F(ForeignFiles, ReadNewElementsWhateverVersionIsDeclared) {
+  for (const std::string version : {"1.4", "1.6", "1.9", "1.12"}) {
+    const World world = read_foreign(
+        "<model name=\"m\"><link name=\"l\"><inertial auto=\"true\"><density>250</density></inertial>" +
+            std::string(
+                "<collision name=\"c\"><geometry><cone><radius>1</radius><length>2</length></cone></geometry>") +
+            "</collision></link>" + links("ab") + joint("i", "l", "a") +
+            joint("j", "l", "b", "<xyz>0 0 1</xyz><mimic joint=\"i\"><multiplier>3</multiplier></mimic>") + "</model>",
+        version);
+    const Model& model = world.models.at(0);
+    EXPECT_NEAR(model.links.at(0).inertial.mass, 250.0 * 2.0 / 3.0 * M_PI, 1e-9) << version;
+    ASSERT_EQ(model.couplings.size(), 1u) << version;
+    EXPECT_EQ(model.couplings[0].multiplier, 3.0) << version;
+  }
+}
+
+TEST_F(ForeignFiles, ScaleTheInertiaOfShapesToAGivenMass) {
+  const auto inertial_of = [&](const std::string& mass) {
+    return read_foreign("<model name=\"m\"><link name=\"l\"><inertial auto=\"true\">" + mass +
+                            "<density>700</density></inertial><collision name=\"c\"><density>300</density><geometry>"
+                            "<box><size>1 2 3</size></box></geometry></collision><collision name=\"d\"><geometry>"
+                            "<box><size>1 1 1</size></box></geometry></collision></link></model>",
+                        "1.11")
+        .models.at(0)
+        .links.at(0)
+        .inertial;
+  };
+  const Inertial by_density = inertial_of("");
+  const Inertial by_mass = inertial_of("<mass>6</mass>");
+  EXPECT_NEAR(by_density.mass, 2500.0, 1e-9);
+  EXPECT_EQ(by_mass.mass, 6.0);
+  EXPECT_TRUE(by_mass.inertia.isApprox(by_density.inertia * (6.0 / 2500.0), 1e-12));
+}
+
+TEST_F(ForeignFiles, PreferThePitchOfAScrewInMetres) {
+  for (const std::string older : {"", "<thread_pitch>-3</thread_pitch>"}) {
+    const World world = read_foreign("<model name=\"m\">" + links("ab") +
+                                         "<joint name=\"j\" type=\"screw\"><parent>a</parent><child>b</child><axis>"
+                                         "<xyz>0 0 1</xyz></axis>" +
+                                         older + "<screw_thread_pitch>0.02</screw_thread_pitch></joint></model>",
+                                     "1.10");
+    EXPECT_NEAR(world.models.at(0).joints.at(0).thread_pitch, 0.02, 1e-15) << older;
+  }
+}
+
 TEST_F(ForeignFiles, ConnectTwoModelsByAFixedJointInAWorld) {
   const World world = read_foreign(
       "<model name=\"m\">" + links("a") + "</model><model name=\"n\"><pose>0 0 3 0 0 0</pose>" + links("b") +

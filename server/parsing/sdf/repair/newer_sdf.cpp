@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <optional>
-#include <sdf/SDFImpl.hh>
 #include <string>
 #include <utility>
 
@@ -47,7 +46,7 @@ XmlNode density_from(const XmlNode& where, const std::string& text) {
   return element_at(where, prefixed("density"), text);
 }
 
-// `auto`: inertia from the shapes and their densities, as <cohort:density>.
+// `auto`: inertia from the shapes and their densities, as <cohort:density>. A mass beside it scales the inertia.
 void OlderSdf::change_link(XmlNode& link) {
   const XmlNode* const inertial = link.child("inertial");
   const bool is_auto =
@@ -67,12 +66,27 @@ void OlderSdf::change_link(XmlNode& link) {
   if (!is_auto) return;
   const XmlNode* const density = inertial->child("density");
   XmlNode ours = density_from(*inertial, density != nullptr ? density->text : density_of_water);
-  std::erase_if(link.children, [](const XmlNode& child) { return child.name == "inertial"; });
+  XmlNode& rest = *child_of(link, "inertial");
+  rest.attributes.clear();
+  std::erase_if(rest.children, [](const XmlNode& child) { return child.name != "mass"; });
+  if (rest.children.empty())
+    std::erase_if(link.children, [](const XmlNode& child) { return child.name == "inertial"; });
   link.children.push_back(std::move(ours));
+}
+
+// <screw_thread_pitch> is the way along the axis in a right-handed turn [m]; <thread_pitch>, which it replaces, is the
+// angle of a left-handed thread over the way [rad/m].
+void set_thread_pitch(XmlNode& joint) {
+  XmlNode* const pitch = child_of(joint, "screw_thread_pitch");
+  if (pitch == nullptr) return;
+  if (const auto metres = parse_real(pitch->text)) pitch->text = shortest_text(-2.0 * M_PI / *metres);
+  std::erase_if(joint.children, [](const XmlNode& child) { return child.name == "thread_pitch"; });
+  child_of(joint, "screw_thread_pitch")->name = "thread_pitch";
 }
 
 // The position in SDF is multiplier * (leader - reference) + offset.
 void OlderSdf::change_joint(XmlNode& joint) {
+  set_thread_pitch(joint);
   std::optional<XmlNode> follows;
   for (XmlNode& axis : joint.children) {
     const XmlNode* const mimic = axis.name == "axis" ? axis.child("mimic") : nullptr;
@@ -138,7 +152,6 @@ void OlderSdf::change_world(XmlNode& world, const std::string& path) {
 }  // namespace
 
 void make_older(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings) {
-  set_attribute(sdf, "version", sdf::SDF::Version());
   OlderSdf(file, warnings).change(sdf, "");
 }
 

@@ -8,8 +8,9 @@
 
 namespace cohort::parsing {
 
-/// Converts a file of SDF 1.10 to 1.12 to the newest version that libsdformat reads. Inertia by density, joints that
-/// follow others and joints in a world become `cohort:` elements. Other new features go to `warnings`.
+/// Converts elements that SDF has had since 1.10 to what libsdformat reads, whatever version the file declares. Inertia
+/// by density, joints that follow others and joints in a world become `cohort:` elements. Other new features go to
+/// `warnings`.
 void make_older(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings);
 
 }  // namespace cohort::parsing

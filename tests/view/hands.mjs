@@ -158,7 +158,11 @@ async function drivesByArrows(page) {
   for (const robot of ["people/turtlebot3", "people/two_wheeler", "people/skid_steer", "people/on_belts"]) {
     await run(page, `drive ${robot}`);
     assert.match(await page.locator("#driven").textContent(), /arrows or w a s d/, robot);
-    assert.doesNotMatch(await page.locator("#sliders").innerText(), /velocity|linear|angular/, "the arrows drive these");
+    assert.doesNotMatch(
+      await page.locator("#sliders").innerText(),
+      /velocity|linear|angular/,
+      "the arrows drive these",
+    );
     await page.locator("#canvas").focus();
     await goesAhead(page, robot, ...key(page, "ArrowUp"));
     const from = await untilAtRest(page, robot);

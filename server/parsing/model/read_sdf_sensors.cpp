@@ -23,7 +23,7 @@ class SensorElement {
     readout_.period = period();
   }
 
-  const sdf::ElementPtr element() const { return sensor_.Element(); }
+  sdf::ElementPtr element() const { return sensor_.Element(); }
   const SdfReport& report() const { return reading_.report; }
   const std::string& name() const { return name_; }
   void rename(std::string name) { name_ = std::move(name); }
@@ -343,6 +343,7 @@ std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, con
     std::size_t owner;
   };
   std::vector<Found> found;
+  found.reserve(places.size());
   for (const SensorPlace& place : places)
     found.push_back(
         {&place, place.is_on_joint ? place_of(model.joints, place.owner) : place_of(model.links, place.owner)});

@@ -29,7 +29,7 @@ struct Peer {
 };
 
 std::vector<Peer> peers() {
-  const std::string python = COHORT_CYCLONEDDS_PYTHON;
+  const std::string python(COHORT_CYCLONEDDS_PYTHON);  // empty: there is none
   std::vector<Peer> all = {{"fastdds", {}}, {"cyclonedds", {}}};
 #ifdef COHORT_FASTDDS_PEER
   all[0].command = {COHORT_FASTDDS_PEER};
@@ -56,15 +56,12 @@ class RosPeer : public testing::TestWithParam<Peer> {
     return start({"echo", "tested", "sensor_msgs::msg::dds_::LaserScan_", name_of(qos)});
   }
   RosReader read_echo(const EndpointQos& qos) {
-    return RosReader(*own_, topic_endpoint("/tested_again", ros::LaserScan::type, "", qos),
-                     [this](const Received& received) {
-                       const std::scoped_lock lock(mutex_);
-                       received_.emplace_back(received.bytes.begin(), received.bytes.end());
-                     });
+    return {*own_, topic_endpoint("/tested_again", ros::LaserScan::type, "", qos), [this](const Received& received) {
+              const std::scoped_lock lock(mutex_);
+              received_.emplace_back(received.bytes.begin(), received.bytes.end());
+            }};
   }
-  RosWriter write(const EndpointQos& qos) {
-    return RosWriter(*own_, topic_endpoint("/tested", ros::LaserScan::type, "", qos));
-  }
+  RosWriter write(const EndpointQos& qos) { return {*own_, topic_endpoint("/tested", ros::LaserScan::type, "", qos)}; }
   std::vector<messages::Bytes> received() const {
     const std::scoped_lock lock(mutex_);
     return received_;
@@ -150,8 +147,8 @@ TEST_P(RosPeer, ALateJoinerGetsTheKeptMessages) {
 TEST_P(RosPeer, EndpointsMatchIfTheOfferedQosSuffices) {
   struct Row {
     EndpointQos qos;
-    std::uint32_t readers;  // how many of the four kinds match our writer
-    std::uint32_t writers;  // how many of the four kinds match our reader
+    std::uint32_t readers = 0;  // how many of the four kinds match our writer
+    std::uint32_t writers = 0;  // how many of the four kinds match our reader
   };
   const std::array rows = {Row{{true, true, 10}, 4, 1}, Row{{true, false, 10}, 2, 2}, Row{{false, true, 10}, 2, 2},
                            Row{{false, false, 10}, 1, 4}};

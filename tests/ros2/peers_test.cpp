@@ -29,12 +29,12 @@ struct Peer {
 };
 
 std::vector<Peer> peers() {
-  const std::string python(COHORT_CYCLONEDDS_PYTHON);  // empty: there is none
+  const char* const python = COHORT_CYCLONEDDS_PYTHON;  // empty: there is none
   std::vector<Peer> all = {{"fastdds", {}}, {"cyclonedds", {}}};
 #ifdef COHORT_FASTDDS_PEER
   all[0].command = {COHORT_FASTDDS_PEER};
 #endif
-  if (!python.empty()) all[1].command = {python, COHORT_SOURCE_DIR "/tests/ros2/cyclonedds_peer.py"};
+  if (*python != '\0') all[1].command = {python, COHORT_SOURCE_DIR "/tests/ros2/cyclonedds_peer.py"};
   return all;
 }
 

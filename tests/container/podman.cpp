@@ -12,6 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Where no registry can be reached, an image made from Debian's packages (make_base) has this name.
+constexpr const char* base_image = "docker.io/library/debian:bookworm-slim";
+
 void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
@@ -75,7 +78,7 @@ void Podman::remove(const std::string& project) const {
 }
 
 std::optional<std::string> Podman::prepare(const fs::path& base) const {
-  const std::string name = "docker.io/library/debian:bookworm-slim";
+  const std::string name = base_image;
   if ((*this)({"image", "exists", name}).exit_code != 0) {
     const Ended imported = (*this)({"import", base / "bookworm-slim.tar", name});
     if (imported.exit_code != 0) return "podman keeps no images here: " + imported.out;
@@ -94,6 +97,7 @@ Ended Podman::build(const std::string& target, const std::string& tag) const {
   if (const char* language = std::getenv("LANG"); language != nullptr)
     append(arguments, {"--build-arg", fmt::format("LANG={}", language)});
   append(arguments, with_settings_of_npm(folder_));
+  append(arguments, {"--build-arg", std::string("BASE=") + base_image});
   append(arguments, {"--build-arg", "COHORT_COMMIT=of-the-test", "--target", target, "--tag", tag, COHORT_SOURCE_DIR});
   return (*this)(arguments);
 }

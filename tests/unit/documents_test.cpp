@@ -160,6 +160,18 @@ std::vector<std::string> versions_in(const VersionPlace& place) {
 }
 
 // CMakeLists.txt has the version, and pyproject.toml reads it there.
+TEST(Documents, EveryBaseImageIsNamedByItsDigest) {
+  const std::string file = test::read_file(COHORT_SOURCE_DIR "/docker/Dockerfile");
+  EXPECT_TRUE(std::regex_search(file, std::regex(R"(\nARG BASE=\S+@sha256:[0-9a-f]{64}\n)")));
+  const std::regex from(R"(\nFROM (\S+)(?: AS (\w+))?)");
+  std::set<std::string> stages = {"${BASE}"};
+  for (std::sregex_iterator match(file.begin(), file.end(), from), end; match != end; ++match) {
+    EXPECT_TRUE(stages.contains((*match)[1])) << (*match)[1] << " is neither ${BASE} nor a stage";
+    stages.insert((*match)[2]);
+  }
+  EXPECT_GT(stages.size(), 3u);
+}
+
 TEST(Documents, NameTheVersionOfTheProject) {
   const std::string image = R"(\bcohort(?:-sdk)?:(\d+\.\d+\.\d+))",
                     package = R"(\bcohort(?:-dev)?_(\d[\w.]*)_amd64\.deb)";

@@ -30,6 +30,7 @@ class SdfMender {
   void take_world_link(XmlNode& model, const std::string& path);
   void mend_masses(XmlNode& model, const std::string& path);
   void give_link(XmlNode& model, const std::string& path);
+  void name_apart(XmlNode& around, const std::string& path);
   void mend_link(XmlNode& link, const std::string& path);
   void number_apart(XmlNode& link, std::string_view kind, const std::string& path);
   void mend_joint(XmlNode& joint, const std::string& path);
@@ -43,6 +44,7 @@ class SdfMender {
 
 void SdfMender::mend(XmlNode& node, const std::string& path) {
   if (node.name == "model") mend_model(node, path);
+  if (node.name == "model" || node.name == "world") name_apart(node, path);
   if (node.name == "link") mend_link(node, path);
   if (node.name == "joint") mend_joint(node, path);
   if (node.name == "friction") mend_friction(node, path);
@@ -131,6 +133,24 @@ void SdfMender::give_link(XmlNode& model, const std::string& path) {
   std::erase_if(model.children, [](const XmlNode& child) { return child.name == "static"; });
   model.children.push_back(element_at(model, "static", "true"));
   model.children.push_back(std::move(link));
+}
+
+// Up to SDF 1.6, a joint or a frame could have the name of a link or a model.
+void SdfMender::name_apart(XmlNode& around, const std::string& path) {
+  std::set<std::string> names;
+  for (const XmlNode& child : around.children)
+    if (child.name == "link" || child.name == "model") names.insert(value_of(child, "name"));
+  for (const std::string_view kind : {"joint", "frame"})
+    for (XmlNode& part : around.children) {
+      const std::string name = value_of(part, "name");
+      if (part.name != kind || name.empty() || names.insert(name).second) continue;
+      std::string other = name + "_" + part.name;
+      for (int number = 0; !names.insert(other).second; ++number)
+        other = name + "_" + part.name + std::to_string(number);
+      tell_of(part, path_below(path, part),
+              "another element of the " + around.name + " has this name; this one is renamed to '" + other + "'");
+      set_attribute(part, "name", other);
+    }
 }
 
 bool SdfMender::knows_sensor(const XmlNode& sensor, const std::string& path) {

@@ -106,7 +106,7 @@ std::optional<XmlNode> SourceReader::read_xml(const std::string& text, SdfFile& 
     if (const XmlNode* const macro = find_macro(root, file.path)) return fail(macro->line, why_not_expanded(file.path));
   file.is_foreign = root.name == "robot" || !is_ours(root);
   if (root.name == "robot") {
-    auto sdf = sdf_of_urdf(std::move(outline.root), file.shown, config_, problems_, warnings_);
+    auto sdf = sdf_of_urdf(std::move(outline.root), file.shown, problems_, warnings_);
     if (sdf) mend_sdf(*sdf, file.shown, warnings_);
     return sdf;
   }

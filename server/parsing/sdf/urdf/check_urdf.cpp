@@ -10,31 +10,13 @@
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/urdf/urdf_file.hpp"
 #include "server/parsing/sdf/urdf/urdf_forms.hpp"
+#include "server/parsing/sdf/urdf/urdf_gazebo.hpp"
+#include "server/parsing/sdf/urdf/urdf_tree.hpp"
 
 namespace cohort::parsing {
 namespace {
 
-// Elements of <gazebo> that the converter of libsdformat reads as numbers.
-constexpr std::string_view gazebo_numbers[] = {"dampingFactor",
-                                               "maxVel",
-                                               "minDepth",
-                                               "mu1",
-                                               "mu2",
-                                               "kp",
-                                               "kd",
-                                               "maxContacts",
-                                               "laserRetro",
-                                               "springReference",
-                                               "stopCfm",
-                                               "stopErp",
-                                               "springStiffness",
-                                               "stopKp",
-                                               "stopKd",
-                                               "cfmDamping",
-                                               "fudgeFactor",
-                                               "initialJointPosition"};
-
-constexpr std::string_view joint_types[] = {"revolute", "continuous", "prismatic", "fixed"};
+constexpr std::string_view joint_types[] = {"revolute", "continuous", "prismatic", "fixed", "floating", "spherical"};
 
 class Checker {
  public:
@@ -70,12 +52,6 @@ class Checker {
 std::string step(const XmlNode& node) {
   const std::string* const name = node.attribute("name");
   return node.name + (name != nullptr ? "[" + *name + "]" : "");
-}
-
-std::string end_of(const XmlNode& joint, const char* end) {
-  const XmlNode* const node = joint.child(end);
-  const std::string* const link = node != nullptr ? node->attribute("link") : nullptr;
-  return link != nullptr ? *link : "";
 }
 
 void Checker::check(const XmlNode& robot) {
@@ -142,11 +118,8 @@ void Checker::check_attributes(const XmlNode& node, const UrdfForm& form, const 
 
 void Checker::check_gazebo(const XmlNode& gazebo) {
   for (const XmlNode& child : gazebo.children) {
-    if (std::find(std::begin(gazebo_numbers), std::end(gazebo_numbers), child.name) == std::end(gazebo_numbers))
-      continue;
-    const std::string* const attribute = child.attribute("value");
-    const UrdfAttribute number = {child.name, 1};
-    if (const auto wrong = what_is_wrong(attribute != nullptr ? *attribute : child.text, number))
+    if (!is_gazebo_number(child.name)) continue;
+    if (const auto wrong = what_is_wrong(gazebo_value(child), {child.name, 1}))
       problem(child, "robot/gazebo/" + child.name, *wrong);
   }
 }
@@ -162,7 +135,6 @@ void Checker::check_link(const XmlNode& link, const std::string& path) {
     } else if (child.name == "inertial") {
       for (const char* const part : {"mass", "inertia"})
         if (child.child(part) == nullptr) problem(child, path + "/inertial", "missing: <" + std::string(part) + ">");
-      // The converter adds the masses of merged links.
       const XmlNode* const mass = child.child("mass");
       const std::string* const value = mass != nullptr ? mass->attribute("value") : nullptr;
       if (value != nullptr && parse_real(*value).value_or(0.0) < 0.0)
@@ -188,20 +160,19 @@ void Checker::check_joint(const XmlNode& joint, const std::string& path) {
 }
 
 void Checker::check_end(const XmlNode& joint, const std::string& path, const char* end) {
-  const std::string link = end_of(joint, end);
+  const std::string link = urdf_end(joint, end);
   if (link.empty() || links_.contains(link)) return;
   std::vector<std::string> names;
   for (const auto& [name, node] : links_) names.push_back(name);
   problem(*joint.child(end), path + "/" + end, "the robot has no link '" + link + "'" + suggestion(link, names));
 }
 
-// The converter descends from the root, without end if the links form a loop.
 void Checker::check_tree(const XmlNode& robot) {
   std::map<std::string, std::string> parent;
   for (const auto& [name, joint] : joints_)
-    if (!parent.emplace(end_of(*joint, "child"), end_of(*joint, "parent")).second)
+    if (!parent.emplace(urdf_end(*joint, "child"), urdf_end(*joint, "parent")).second)
       problem(*joint, step(robot) + "/" + step(*joint),
-              "the link '" + end_of(*joint, "child") + "' is already the child of another joint");
+              "the link '" + urdf_end(*joint, "child") + "' is already the child of another joint");
   std::string roots;
   std::size_t count = 0;
   for (const auto& [name, node] : links_) {

@@ -2,17 +2,16 @@
 
 #include "server/parsing/files/xml_outline.hpp"
 #include "server/parsing/sdf/urdf/urdf_notes.hpp"
-#include "server/parsing/sdf/urdf/urdf_rest.hpp"
 
 namespace cohort::parsing {
 
 /// Renames joints that have the name of a link, which SDF does not allow.
 void name_joints_apart(XmlNode& robot, UrdfNotes& notes);
 
-/// Gives a joint a valid type and limits; missing limits mean no limits.
-void mend_joint(XmlNode& joint, UrdfRest& rest, UrdfNotes& notes);
+/// Gives a joint a known type and limits; missing limits mean no limits.
+void mend_joint(XmlNode& joint, UrdfNotes& notes);
 
-/// Removes floating joints, which makes their children free bodies. A root without mass is removed too.
-void let_go(XmlNode& robot, UrdfRest& rest);
+/// Removes a root without mass whose only joint is a floating one, so that its child is the root.
+void omit_empty_root(XmlNode& robot);
 
 }  // namespace cohort::parsing

@@ -11,6 +11,7 @@
 #include "server/parsing/sdf/urdf/urdf_file.hpp"
 #include "server/parsing/sdf/urdf/urdf_forms.hpp"
 #include "server/parsing/sdf/urdf/urdf_gazebo.hpp"
+#include "server/parsing/sdf/urdf/urdf_notes.hpp"
 #include "server/parsing/sdf/urdf/urdf_tree.hpp"
 
 namespace cohort::parsing {
@@ -49,28 +50,24 @@ class Checker {
   std::map<std::string, const XmlNode*> joints_;
 };
 
-std::string step(const XmlNode& node) {
-  const std::string* const name = node.attribute("name");
-  return node.name + (name != nullptr ? "[" + *name + "]" : "");
-}
-
 void Checker::check(const XmlNode& robot) {
   for (const XmlNode& child : robot.children) check_top(child);
-  if (links_.empty()) problem(robot, step(robot), "expected at least one <link>");
+  if (links_.empty()) {
+    const bool is_srdf = robot.child("group") != nullptr || robot.child("disable_collisions") != nullptr;
+    problem(robot, urdf_step(robot),
+            is_srdf ? "this is an SRDF, which describes groups of joints for MoveIt; expected a URDF, with <link>"
+                    : "expected at least one <link>");
+  }
   for (const auto& [name, joint] : joints_) {
-    const std::string path = step(robot) + "/" + step(*joint);
+    const std::string path = urdf_step(robot) + "/" + urdf_step(*joint);
     check_end(*joint, path, "parent");
     check_end(*joint, path, "child");
-    const XmlNode* const mimic = joint->child("mimic");
-    const std::string* const leader = mimic != nullptr ? mimic->attribute("joint") : nullptr;
-    if (leader != nullptr && !joints_.contains(*leader))
-      problem(*mimic, path + "/mimic", "the robot has no joint '" + *leader + "'");
   }
   if (problems_.empty()) check_tree(robot);
 }
 
 void Checker::check_top(const XmlNode& node) {
-  const std::string path = "robot/" + step(node);
+  const std::string path = "robot/" + urdf_step(node);
   if (node.name.starts_with("xacro:")) {
     problem(node, path, "this is a xacro file; expected the URDF that `xacro FILE` generates from it");
   } else if (node.name == "link" || node.name == "joint") {
@@ -91,15 +88,10 @@ void Checker::check_top(const XmlNode& node) {
 
 void Checker::check_form(const XmlNode& node, const std::string& path) {
   for (const XmlNode& child : node.children) {
-    if (child.name == "visual") continue;
-    const std::string child_path = path + "/" + step(child);
-    const UrdfForm* found = nullptr;
-    for (const UrdfForm& form : urdf_forms())
-      if (form.parent == node.name && form.name == child.name) found = &form;
-    if (found == nullptr) continue;
-    if (child.name != "collision" && node.child(child.name) != &child)
-      problem(child, child_path, "<" + child.name + "> is given twice");
-    check_attributes(child, *found, child_path);
+    const UrdfForm* const form = form_of(node.name, child.name);
+    if (form == nullptr || child.name == "visual") continue;
+    const std::string child_path = path + "/" + urdf_step(child);
+    check_attributes(child, *form, child_path);
     check_form(child, child_path);
   }
 }
@@ -126,21 +118,11 @@ void Checker::check_gazebo(const XmlNode& gazebo) {
 
 void Checker::check_link(const XmlNode& link, const std::string& path) {
   check_form(link, path);
-  for (const XmlNode& child : link.children) {
-    if (child.name == "collision") {
-      const XmlNode* const geometry = child.child("geometry");
-      if (geometry == nullptr || geometry->children.size() != 1)
-        problem(geometry != nullptr ? *geometry : child, path + "/collision/geometry",
-                "expected one of box, sphere, cylinder or mesh");
-    } else if (child.name == "inertial") {
-      for (const char* const part : {"mass", "inertia"})
-        if (child.child(part) == nullptr) problem(child, path + "/inertial", "missing: <" + std::string(part) + ">");
-      const XmlNode* const mass = child.child("mass");
-      const std::string* const value = mass != nullptr ? mass->attribute("value") : nullptr;
-      if (value != nullptr && parse_real(*value).value_or(0.0) < 0.0)
-        problem(*mass, path + "/inertial/mass", "expected a mass > 0 kg, not " + *value);
-    }
-  }
+  const XmlNode* const inertial = link.child("inertial");
+  const XmlNode* const mass = inertial != nullptr ? inertial->child("mass") : nullptr;
+  const std::string value = mass != nullptr ? value_of(*mass, "value") : "";
+  if (parse_real(value).value_or(0.0) < 0.0)
+    problem(*mass, path + "/inertial/mass", "expected a mass > 0 kg, not " + value);
 }
 
 void Checker::check_joint(const XmlNode& joint, const std::string& path) {
@@ -171,7 +153,7 @@ void Checker::check_tree(const XmlNode& robot) {
   std::map<std::string, std::string> parent;
   for (const auto& [name, joint] : joints_)
     if (!parent.emplace(urdf_end(*joint, "child"), urdf_end(*joint, "parent")).second)
-      problem(*joint, step(robot) + "/" + step(*joint),
+      problem(*joint, urdf_step(robot) + "/" + urdf_step(*joint),
               "the link '" + urdf_end(*joint, "child") + "' is already the child of another joint");
   std::string roots;
   std::size_t count = 0;
@@ -179,7 +161,8 @@ void Checker::check_tree(const XmlNode& robot) {
     if (parent.contains(name)) continue;
     roots += (count++ == 0 ? "'" : ", '") + name + "'";
   }
-  if (count > 1) problem(robot, step(robot), "expected one root link (a link without a parent joint), not " + roots);
+  if (count > 1)
+    problem(robot, urdf_step(robot), "expected one root link (a link without a parent joint), not " + roots);
   // Each ascent ends at a root or at a visited link; if it was visited in this ascent, there is a loop.
   std::set<std::string> met;
   for (const auto& [name, node] : links_) {
@@ -190,7 +173,8 @@ void Checker::check_tree(const XmlNode& robot) {
       link = parent[link];
     }
     if (now.contains(link))
-      problem(*links_[link], step(robot) + "/link[" + link + "]", "is in a loop of joints; expected a tree of links");
+      problem(*links_[link], urdf_step(robot) + "/link[" + link + "]",
+              "is in a loop of joints; expected a tree of links");
   }
 }
 

@@ -1,6 +1,6 @@
-#include "server/parsing/sdf/urdf/convert_urdf.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -8,6 +8,8 @@
 #include "server/core/text.hpp"
 #include "server/parsing/keys/extensions.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
+#include "server/parsing/sdf/urdf/mend_urdf.hpp"
+#include "server/parsing/sdf/urdf/urdf_file.hpp"
 #include "server/parsing/sdf/urdf/urdf_gazebo.hpp"
 #include "server/parsing/sdf/urdf/urdf_parts.hpp"
 #include "server/parsing/sdf/urdf/urdf_pose.hpp"
@@ -16,6 +18,8 @@
 namespace cohort::parsing {
 namespace {
 
+/// Makes <model> of SDF from a mended URDF without errors, as Gazebo makes it: links that fixed joints connect become
+/// one link. Every element has the line of its source in the URDF; parts of links have `written`.
 class UrdfConverter {
  public:
   UrdfConverter(const XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& warnings)
@@ -44,16 +48,6 @@ class UrdfConverter {
   const UrdfTree tree_;
   XmlNode model_;
 };
-
-// Returns the child, or the element itself if it has no such child, for its line.
-const XmlNode& child_or_self(const XmlNode& node, std::string_view child) {
-  const XmlNode* const found = node.child(child);
-  return found != nullptr ? *found : node;
-}
-
-XmlNode pose_at(const XmlNode& source, const Pose& pose) {
-  return element_at(child_or_self(source, "origin"), "pose", text_of_pose(pose));
-}
 
 // Returns the pose of a joint in the link above it.
 XmlNode pose_above(const UrdfLink& link) {
@@ -156,8 +150,8 @@ XmlNode UrdfConverter::joint_of(const UrdfLink& link) const {
 }
 
 XmlNode UrdfConverter::axis_of(const XmlNode& joint) const {
-  XmlNode axis = element_at(child_or_self(joint, "axis"), "axis");
   const XmlNode* const direction = joint.child("axis");
+  XmlNode axis = element_at(direction != nullptr ? *direction : joint, "axis");
   const std::string xyz = direction != nullptr ? value_of(*direction, "xyz") : "";
   axis.children.push_back(element_at(axis, "xyz", xyz.empty() ? "1 0 0" : xyz));
   const auto set = [&](const std::string& name, const XmlNode& source, std::string text) {
@@ -244,8 +238,16 @@ XmlNode UrdfConverter::adjusted(XmlNode element) const {
 
 }  // namespace
 
-XmlNode convert_urdf(const XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& warnings) {
-  return UrdfConverter(robot, file, warnings).convert();
+std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& file, std::vector<Problem>& problems,
+                                   std::vector<Problem>& warnings) {
+  const std::size_t before = problems.size();
+  mend_urdf(robot, file, problems, warnings);
+  check_urdf(robot, file, problems, warnings);
+  if (problems.size() > before) return std::nullopt;
+  XmlNode sdf = element_at(robot, "sdf");
+  sdf.attributes = {{"version", "1.9"}, {"xmlns:cohort", "https://cohort-sim.org/sdf/1"}};
+  sdf.children.push_back(UrdfConverter(robot, file, warnings).convert());
+  return sdf;
 }
 
 }  // namespace cohort::parsing

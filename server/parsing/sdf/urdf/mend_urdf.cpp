@@ -53,6 +53,7 @@ void UrdfMender::mend(XmlNode& robot) {
     take_unknown(child, "robot/" + urdf_step(child));
   }
   omit_empty_root(robot);
+  omit_lost_mimics(robot, notes_);
   notes_.tell();
 }
 
@@ -71,20 +72,25 @@ void UrdfMender::take_optional_environment(XmlNode& node, const std::string& pat
   for (XmlNode& child : node.children) take_optional_environment(child, path + "/" + urdf_step(child));
 }
 
-// Numbers with a comma between them, or a point after one, which other programs read up to that character.
+// Numbers with a comma between them, with other characters behind one, or more than three, of which other programs read
+// the part that is valid.
 void UrdfMender::mend_numbers(XmlNode& node, const UrdfForm& form, const std::string& path) {
   for (const UrdfAttribute& attribute : form.attributes) {
     const std::string value = value_of(node, attribute.name);
     if (attribute.numbers == 0 || value.empty() || !what_is_wrong(value, attribute)) continue;
     std::string spaced = value;
     std::ranges::replace(spaced, ',', ' ');
+    std::vector<std::string_view> parts = words(spaced);
+    if (attribute.numbers == 3 && parts.size() > 3 && spaced == value) parts.resize(3);
     std::string mended;
-    for (std::string_view word : words(spaced)) {
-      while (word.size() > 1 && word.ends_with('.')) word.remove_suffix(1);
-      mended += (mended.empty() ? "" : " ") + std::string(word);
+    for (std::string_view part : parts) {
+      while (!part.empty() && !parse_real(part)) part.remove_suffix(1);
+      mended += (mended.empty() ? "" : " ") + std::string(part);
     }
     if (what_is_wrong(mended, attribute)) continue;
-    notes_.warn(node, path, "expected numbers separated by spaces, not '" + value + "'; read as '" + mended + "'");
+    const std::string expected =
+        attribute.numbers == 1 ? "a number" : std::to_string(attribute.numbers) + " numbers separated by spaces";
+    notes_.warn(node, path, "expected " + expected + ", not '" + value + "'; read as '" + mended + "'");
     set_attribute(node, attribute.name, mended);
   }
 }
@@ -155,7 +161,7 @@ void UrdfMender::mend_inertial(XmlNode& inertial, const std::string& path) {
   if (inertia == nullptr) {
     inertia = &inertial.children.emplace_back(element_at(inertial, "inertia"));
     for (const char* const moment : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}) set_attribute(*inertia, moment, "0");
-    notes_.pass_over(inertial, path, "has no <inertia>; the inertia of a link without one is that of its collisions");
+    notes_.pass_over(inertial, path, "has no <inertia>; its moments of inertia are set to 0");
   }
   for (const char* const product : {"ixy", "ixz", "iyz"}) {
     if (inertia->attribute(product) != nullptr) continue;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "server/core/text.hpp"
 #include "server/parsing/sdf/urdf/urdf_tree.hpp"
 
 namespace cohort::parsing {
@@ -84,6 +85,23 @@ void omit_empty_root(XmlNode& robot) {
     return (node.name == "link" && gone.contains(value_of(node, "name"))) ||
            (node.name == "joint" && gone.contains(urdf_end(node, "parent")));
   });
+}
+
+void omit_lost_mimics(XmlNode& robot, UrdfNotes& notes) {
+  std::set<std::string> names;
+  for (const XmlNode& joint : robot.children)
+    if (joint.name == "joint") names.insert(value_of(joint, "name"));
+  for (XmlNode& joint : robot.children) {
+    if (joint.name != "joint") continue;
+    std::erase_if(joint.children, [&](const XmlNode& child) {
+      const std::string leader = value_of(child, "joint");
+      if (child.name != "mimic" || leader.empty() || names.contains(leader)) return false;
+      notes.warn(child, "robot/" + urdf_step(joint) + "/mimic",
+                 "the robot has no joint '" + leader + "'" + suggestion(leader, {names.begin(), names.end()}) +
+                     "; <mimic> is ignored");
+      return true;
+    });
+  }
 }
 
 }  // namespace cohort::parsing

@@ -14,4 +14,7 @@ void mend_joint(XmlNode& joint, UrdfNotes& notes);
 /// Removes a root without mass whose only joint is a floating one, so that its child is the root.
 void omit_empty_root(XmlNode& robot);
 
+/// Removes <mimic> that names a missing joint.
+void omit_lost_mimics(XmlNode& robot, UrdfNotes& notes);
+
 }  // namespace cohort::parsing

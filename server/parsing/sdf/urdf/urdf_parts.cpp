@@ -26,11 +26,6 @@ double number_of(const XmlNode& node, std::string_view attribute) {
   return parse_real(value_of(node, attribute)).value_or(0.0);
 }
 
-XmlNode pose_of(const XmlNode& part, const Pose& pose) {
-  const XmlNode* const origin = part.child("origin");
-  return element_at(origin != nullptr ? *origin : part, "pose", text_of_pose(pose));
-}
-
 Eigen::Matrix3d inertia_of(const XmlNode& inertial) {
   const XmlNode& node = *inertial.child("inertia");
   const double xy = number_of(node, "ixy"), xz = number_of(node, "ixz"), yz = number_of(node, "iyz");
@@ -50,7 +45,7 @@ XmlNode inertial_like(const XmlNode& source, const Pose& pose, const std::string
                       const std::vector<std::string>& texts) {
   const XmlNode& inertia = *source.child("inertia");
   XmlNode made = element_at(source, "inertial");
-  made.children = {pose_of(source, pose), element_at(*source.child("mass"), "mass", mass),
+  made.children = {pose_at(source, pose), element_at(*source.child("mass"), "mass", mass),
                    element_at(inertia, "inertia")};
   for (std::size_t i = 0; i < texts.size(); ++i)
     made.children.back().children.push_back(element_at(inertia, moments[i], texts[i]));
@@ -158,7 +153,7 @@ XmlNode part_of(const UrdfLink& link, const XmlNode& source, std::size_t index) 
   name += "_" + source.name + (index > 0 ? "_" + std::to_string(index) : "");
   XmlNode part = element_at(source, source.name);
   set_attribute(part, "name", name.starts_with(carrier) ? name : carrier + std::string(lump) + name);
-  part.children = {pose_of(source, link.in_carrier(urdf_origin(source))), geometry_of(*source.child("geometry"))};
+  part.children = {pose_at(source, link.in_carrier(urdf_origin(source))), geometry_of(*source.child("geometry"))};
   part.written = path_in_urdf(link, source);
   return part;
 }

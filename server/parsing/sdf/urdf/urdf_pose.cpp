@@ -68,6 +68,11 @@ std::optional<Pose> pose_of_text(const std::string& text) {
   return Pose{{numbers[0], numbers[1], numbers[2]}, turn_of({numbers[3], numbers[4], numbers[5]})};
 }
 
+XmlNode pose_at(const XmlNode& source, const Pose& pose) {
+  const XmlNode* const origin = source.child("origin");
+  return element_at(origin != nullptr ? *origin : source, "pose", text_of_pose(pose));
+}
+
 std::string text_of_pose(const Pose& pose) {
   const Eigen::Vector3d rpy = roll_pitch_yaw(pose.orientation);
   std::string text;

@@ -15,6 +15,9 @@ Pose urdf_origin(const XmlNode& node);
 /// nothing if the text is no pose.
 std::optional<Pose> pose_of_text(const std::string& text);
 
+/// Returns <pose> with the line of the <origin> of `source`.
+XmlNode pose_at(const XmlNode& source, const Pose& pose);
+
 /// Returns the text of a pose in SDF. It has 16 digits, like in Gazebo, so that a robot has the same bits there.
 std::string text_of_pose(const Pose& pose);
 

@@ -8,10 +8,10 @@
 #include <string_view>
 
 #include "server/core/text.hpp"
+#include "server/parsing/sdf/urdf/mend_urdf.hpp"
 #include "server/parsing/sdf/urdf/urdf_file.hpp"
 #include "server/parsing/sdf/urdf/urdf_forms.hpp"
 #include "server/parsing/sdf/urdf/urdf_gazebo.hpp"
-#include "server/parsing/sdf/urdf/urdf_notes.hpp"
 #include "server/parsing/sdf/urdf/urdf_tree.hpp"
 
 namespace cohort::parsing {

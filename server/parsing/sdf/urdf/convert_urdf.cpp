@@ -1,4 +1,3 @@
-
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -8,7 +7,6 @@
 #include "server/core/text.hpp"
 #include "server/parsing/keys/extensions.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
-#include "server/parsing/sdf/urdf/mend_urdf.hpp"
 #include "server/parsing/sdf/urdf/urdf_file.hpp"
 #include "server/parsing/sdf/urdf/urdf_gazebo.hpp"
 #include "server/parsing/sdf/urdf/urdf_parts.hpp"

@@ -8,10 +8,8 @@
 #include <utility>
 
 #include "server/core/text.hpp"
+#include "server/parsing/sdf/urdf/urdf_file.hpp"
 #include "server/parsing/sdf/urdf/urdf_forms.hpp"
-#include "server/parsing/sdf/urdf/urdf_joints.hpp"
-#include "server/parsing/sdf/urdf/urdf_notes.hpp"
-#include "server/parsing/sdf/urdf/urdf_surface.hpp"
 #include "server/parsing/sdf/urdf/urdf_visuals.hpp"
 
 namespace cohort::parsing {

@@ -14,6 +14,13 @@ namespace cohort::parsing {
 std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& file, std::vector<Problem>& problems,
                                    std::vector<Problem>& warnings);
 
+/// Repairs a URDF that does not follow the format but whose meaning is clear. Unknown elements are removed, missing
+/// limits mean no limits, and <contact> of Bullet becomes <surface> of SDF. A link with <inertial> has a mass that is
+/// not 0. Adds collisions with unsupported shapes to `problems`, and all changes that affect the motion of the robot to
+/// `warnings`.
+void mend_urdf(XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,
+               std::vector<Problem>& warnings);
+
 /// Checks a URDF <robot> against the format for errors that prevent its conversion: names, references,
 /// numbers, and that the links form one tree.
 void check_urdf(const XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,

@@ -1,5 +1,3 @@
-#include "server/parsing/sdf/urdf/urdf_joints.hpp"
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -7,6 +5,7 @@
 #include <utility>
 
 #include "server/core/text.hpp"
+#include "server/parsing/sdf/urdf/mend_urdf.hpp"
 #include "server/parsing/sdf/urdf/urdf_tree.hpp"
 
 namespace cohort::parsing {

@@ -1,5 +1,3 @@
-#include "server/parsing/sdf/urdf/urdf_surface.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "server/core/text.hpp"
+#include "server/parsing/sdf/urdf/mend_urdf.hpp"
 #include "server/parsing/sdf/urdf/urdf_gazebo.hpp"
 
 namespace cohort::parsing {

@@ -117,6 +117,26 @@ TEST_F(UrdfConversion, AttachesJointsOfGazeboBlocksToTheLinkThatCarriesAMergedOn
   EXPECT_EQ(texts_of(world.warnings), "");
 }
 
+TEST_F(UrdfConversion, IgnoresJointsOfGazeboBlocksWithTheNameOfAnotherJoint) {
+  const World world =
+      read_urdf(link_element("base", mass_element("1", "1")) + link_element("arm", mass_element("1", "1")) +
+                joint_element("j", "continuous", "base", "arm") +
+                "<gazebo><joint name=\"j\" type=\"fixed\"><parent>base</parent><child>arm</child></joint>"
+                "</gazebo>");
+  ASSERT_EQ(world.models.at(0).joints.size(), 1u);
+  EXPECT_EQ(world.models[0].joints[0].type, JointType::revolute);
+  EXPECT_NE(texts_of(world.warnings).find("gazebo/joint[j]: another joint has this name"), std::string::npos);
+}
+
+TEST_F(UrdfConversion, FindsCollisionsOfContactSensorsInMergedLinks) {
+  const std::string box = "<box size=\"1 1 1\"/>";
+  const World world = read_urdf(merged(collision_element(box) + collision_element(box, " name=\"c\"")) +
+                                "<gazebo reference=\"tip\"><sensor name=\"s\" type=\"contact\"><contact><collision>"
+                                "tip_fixed_joint_lump__c_collision_1</collision></contact></sensor></gazebo>");
+  ASSERT_EQ(world.models.at(0).devices.size(), 1u) << texts_of(world.warnings);
+  EXPECT_EQ(std::get<ContactSensor>(world.models[0].devices[0]).collision, 1u);
+}
+
 TEST_F(UrdfConversion, AcceptsCfmDampingAsAFlag) {
   const std::string robot = link_element("base", mass_element("1", "1")) + link_element("arm", mass_element("1", "1")) +
                             joint_element("j", "continuous", "base", "arm") + "<gazebo reference=\"j\">";

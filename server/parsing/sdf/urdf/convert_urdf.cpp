@@ -39,6 +39,8 @@ class UrdfConverter {
   /// Returns an element of SDF in a <gazebo> block for use in a link that others are merged with.
   XmlNode adjusted(XmlNode element) const;
   void hold_root();
+  /// Returns whether an element in a <gazebo> block is a joint with the name of another one, which is reported.
+  bool is_taken(const XmlNode& element);
 
   const XmlNode& robot_;
   const std::filesystem::path& file_;
@@ -79,7 +81,7 @@ XmlNode UrdfConverter::convert() {
   for (const XmlNode* const block : tree_.blocks("")) {
     set_gazebo_properties(*block, GazeboTarget::robot, model_);
     for (const XmlNode& child : block->children)
-      if (!is_gazebo_property(child.name)) model_.children.push_back(adjusted(child));
+      if (!is_gazebo_property(child.name) && !is_taken(child)) model_.children.push_back(adjusted(child));
   }
   if (const XmlNode* const origin = robot_.child("origin"))
     model_.children.push_back(element_at(*origin, "pose", text_of_pose(urdf_origin(robot_))));
@@ -90,6 +92,17 @@ XmlNode UrdfConverter::convert() {
     hold_root();
   }
   return std::move(model_);
+}
+
+bool UrdfConverter::is_taken(const XmlNode& element) {
+  const std::string name = value_of(element, "name");
+  const bool is_again = element.name == "joint" && std::ranges::any_of(model_.children, [&](const XmlNode& other) {
+                          return other.name == "joint" && value_of(other, "name") == name;
+                        });
+  if (is_again)
+    warnings_.push_back({file_, element.line, "robot/gazebo/" + path_step("joint", name),
+                         "another joint has this name; the joint in <gazebo> is ignored"});
+  return is_again;
 }
 
 // In URDF, as in Bullet, a root without mass is fixed to the world. One that has a plane is the ground.
@@ -210,10 +223,13 @@ void UrdfConverter::add_blocks(const UrdfLink& link, XmlNode& node) const {
       set_gazebo_properties(*block, GazeboTarget::link, node);
       for (const XmlNode& child : block->children) {
         if (is_gazebo_property(child.name)) continue;
-        XmlNode& added = node.children.emplace_back(adjusted(child));
-        if (owner == &link) continue;
-        move(added, *owner);
-        added.written = "link[" + owner->name + "]/" + path_step(child.name, value_of(child, "name"));
+        XmlNode added = adjusted(child);
+        if (owner != &link) {
+          move(added, *owner);
+          adjust_contact(*owner, node, added);
+          added.written = "link[" + owner->name + "]/" + path_step(child.name, value_of(child, "name"));
+        }
+        node.children.push_back(std::move(added));
       }
     }
 }

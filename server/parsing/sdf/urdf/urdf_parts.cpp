@@ -74,6 +74,13 @@ void merge_into(XmlNode& into, const XmlNode& from) {
   }
 }
 
+// Returns the name that Gazebo gives a collision or visual of a link, number `index` in the link that carries it.
+std::string name_of_part(const UrdfLink& link, const XmlNode& source, const std::string& carrier, std::size_t index) {
+  std::string name = value_of(source, "name").empty() ? link.name : value_of(source, "name");
+  name += "_" + source.name + (index > 0 ? "_" + std::to_string(index) : "");
+  return name.starts_with(carrier) ? name : carrier + std::string(lump) + name;
+}
+
 XmlNode geometry_of(const XmlNode& source) {
   XmlNode geometry = element_at(source, "geometry");
   const XmlNode& shape = source.children.front();
@@ -148,14 +155,27 @@ XmlNode inertial_of(const UrdfLink& link) {
 }
 
 XmlNode part_of(const UrdfLink& link, const XmlNode& source, std::size_t index) {
-  const std::string& carrier = link.carrier().name;
-  std::string name = value_of(source, "name").empty() ? link.name : value_of(source, "name");
-  name += "_" + source.name + (index > 0 ? "_" + std::to_string(index) : "");
   XmlNode part = element_at(source, source.name);
-  set_attribute(part, "name", name.starts_with(carrier) ? name : carrier + std::string(lump) + name);
+  set_attribute(part, "name", name_of_part(link, source, link.carrier().name, index));
   part.children = {pose_at(source, link.in_carrier(urdf_origin(source))), geometry_of(*source.child("geometry"))};
   part.written = path_in_urdf(link, source);
   return part;
+}
+
+void adjust_contact(const UrdfLink& link, const XmlNode& carrier, XmlNode& sensor) {
+  XmlNode* const contact = sensor.name == "sensor" ? child_of(sensor, "contact") : nullptr;
+  XmlNode* const collision = contact != nullptr ? child_of(*contact, "collision") : nullptr;
+  if (collision == nullptr) return;
+  std::vector<std::string> names;  // of the collisions of the link, without merging
+  for (const XmlNode& source : link.node->children)
+    if (source.name == "collision") names.push_back(name_of_part(link, source, link.name, names.size()));
+  std::size_t index = 0;
+  for (const XmlNode& part : carrier.children) {
+    if (part.name != "collision" || !part.written.starts_with("link[" + link.name + "]/")) continue;
+    if (names[index++] != collision->text) continue;
+    collision->text = value_of(part, "name");
+    return;
+  }
 }
 
 bool belongs_to(const UrdfLink& link, const XmlNode& part) {

@@ -21,6 +21,9 @@ XmlNode inertial_of(const UrdfLink& link);
 /// the carrier.
 XmlNode part_of(const UrdfLink& link, const XmlNode& source, std::size_t index);
 
+/// Changes the name of the collision in a contact sensor of a link to that in the element of its carrier.
+void adjust_contact(const UrdfLink& link, const XmlNode& carrier, XmlNode& sensor);
+
 /// Returns whether <gazebo> blocks of the link apply to a collision or visual of its carrier. As in Gazebo, its name
 /// decides.
 bool belongs_to(const UrdfLink& link, const XmlNode& part);

@@ -81,7 +81,7 @@ void Checker::check_top(const XmlNode& node) {
     warning(node, path, "<transmission> is not supported and is ignored; define motors with cohort: elements");
   } else if (node.name == "gazebo") {
     check_gazebo(node);
-  } else if (node.name != "material") {
+  } else if (node.name != "material" && node.name != "origin") {
     warning(node, path, "<" + node.name + "> is not supported and is ignored");
   }
 }

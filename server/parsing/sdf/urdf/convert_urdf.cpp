@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "server/core/text.hpp"
 #include "server/parsing/keys/extensions.hpp"
@@ -57,7 +58,7 @@ XmlNode pose_above(const UrdfLink& link) {
 }
 
 // Moves an element of a link that is merged with another one.
-void move(XmlNode& element, const UrdfLink& link) {
+void move_with(const UrdfLink& link, XmlNode& element) {
   std::string name = "pose";
   if (element.name.starts_with(prefixed(""))) {
     const Extension* const extension = find_extension(element.name.substr(prefixed("").size()), "link");
@@ -200,15 +201,17 @@ XmlNode UrdfConverter::link_of(const UrdfLink& link) const {
 }
 
 void UrdfConverter::add_collisions_and_visuals(const UrdfLink& link, XmlNode& node) const {
+  std::vector<const UrdfLink*> referred = link.parts();
+  std::erase_if(referred, [&](const UrdfLink* part) { return tree_.blocks(part->name).empty(); });
   for (const GazeboTarget target : {GazeboTarget::collision, GazeboTarget::visual}) {
     std::size_t count = 0;
     for (const UrdfLink* const owner : link.parts())
       for (const XmlNode& source : owner->node->children) {
         if (source.name != (target == GazeboTarget::collision ? "collision" : "visual")) continue;
         XmlNode& part = node.children.emplace_back(part_of(*owner, source, count++));
-        for (const UrdfLink* const referred : link.parts())
-          if (belongs_to(*referred, part))
-            for (const XmlNode* const block : tree_.blocks(referred->name)) set_gazebo_properties(*block, target, part);
+        for (const UrdfLink* const named : referred)
+          if (belongs_to(*named, part))
+            for (const XmlNode* const block : tree_.blocks(named->name)) set_gazebo_properties(*block, target, part);
         if (target == GazeboTarget::collision)
           add_surface(*owner, part);
         else
@@ -225,7 +228,7 @@ void UrdfConverter::add_blocks(const UrdfLink& link, XmlNode& node) const {
         if (is_gazebo_property(child.name)) continue;
         XmlNode added = adjusted(child);
         if (owner != &link) {
-          move(added, *owner);
+          move_with(*owner, added);
           adjust_contact(*owner, node, added);
           added.written = "link[" + owner->name + "]/" + path_step(child.name, value_of(child, "name"));
         }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <initializer_list>
-#include <iterator>
+#include <span>
 
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
@@ -11,54 +11,57 @@
 namespace cohort::parsing {
 namespace {
 
-enum class Kind { number, flag, inverted_flag, text };
+enum class GazeboKind { number, flag, inverted_flag, text };
 
 /// An element of <gazebo>, and the path of the element of SDF that it sets. Without a path it sets nothing.
-struct Property {
+struct GazeboProperty {
   std::string_view name;
   GazeboTarget target;
-  Kind kind;
+  GazeboKind kind;
   std::string_view path;
 };
 
-using enum GazeboTarget;
-
-constexpr Property properties[] = {
-    {"mu1", collision, Kind::number, "surface/friction/ode/mu"},
-    {"mu2", collision, Kind::number, "surface/friction/ode/mu2"},
-    {"fdir1", collision, Kind::text, "surface/friction/ode/fdir1"},
-    {"kp", collision, Kind::number, "surface/contact/ode/kp"},
-    {"kd", collision, Kind::number, "surface/contact/ode/kd"},
-    {"maxVel", collision, Kind::number, "surface/contact/ode/max_vel"},
-    {"minDepth", collision, Kind::number, "surface/contact/ode/min_depth"},
-    {"laserRetro", collision, Kind::number, "laser_retro"},
-    {"maxContacts", collision, Kind::number, "max_contacts"},
-    {"material", visual, Kind::text, "material/script/name"},
-    {"turnGravityOff", link, Kind::inverted_flag, "gravity"},
-    {"dampingFactor", link, Kind::number, "velocity_decay/linear"},
-    {"dampingFactor", link, Kind::number, "velocity_decay/angular"},
-    {"selfCollide", link, Kind::flag, "self_collide"},
-    {"stopCfm", joint, Kind::number, "physics/ode/limit/cfm"},
-    {"stopErp", joint, Kind::number, "physics/ode/limit/erp"},
-    {"springReference", joint, Kind::number, "axis/dynamics/spring_reference"},
-    {"springStiffness", joint, Kind::number, "axis/dynamics/spring_stiffness"},
-    {"provideFeedback", joint, Kind::flag, "physics/provide_feedback"},
-    {"provideFeedback", joint, Kind::flag, "physics/ode/provide_feedback"},
-    {"implicitSpringDamper", joint, Kind::flag, "physics/ode/implicit_spring_damper"},
-    {"implicitSpringDamper", joint, Kind::flag, "physics/ode/cfm_damping"},
-    {"cfmDamping", joint, Kind::flag, "physics/ode/implicit_spring_damper"},
-    {"cfmDamping", joint, Kind::flag, "physics/ode/cfm_damping"},
-    {"fudgeFactor", joint, Kind::number, "physics/ode/fudge_factor"},
-    {"static", robot, Kind::flag, "static"},
-    {"stopKp", joint, Kind::number, ""},
-    {"stopKd", joint, Kind::number, ""},
-    {"initialJointPosition", joint, Kind::number, ""},
-    {"preserveFixedJoint", joint, Kind::flag, ""},
-    {"disableFixedJointLumping", joint, Kind::flag, ""},
-    {"canonicalBody", robot, Kind::text, ""},
-    {"collision", link, Kind::text, ""},
-    {"visual", link, Kind::text, ""},
-};
+std::span<const GazeboProperty> gazebo_properties() {
+  using enum GazeboTarget;
+  using enum GazeboKind;
+  static constexpr GazeboProperty all[] = {
+      {"mu1", collision, number, "surface/friction/ode/mu"},
+      {"mu2", collision, number, "surface/friction/ode/mu2"},
+      {"fdir1", collision, text, "surface/friction/ode/fdir1"},
+      {"kp", collision, number, "surface/contact/ode/kp"},
+      {"kd", collision, number, "surface/contact/ode/kd"},
+      {"maxVel", collision, number, "surface/contact/ode/max_vel"},
+      {"minDepth", collision, number, "surface/contact/ode/min_depth"},
+      {"laserRetro", collision, number, "laser_retro"},
+      {"maxContacts", collision, number, "max_contacts"},
+      {"material", visual, text, "material/script/name"},
+      {"turnGravityOff", link, inverted_flag, "gravity"},
+      {"dampingFactor", link, number, "velocity_decay/linear"},
+      {"dampingFactor", link, number, "velocity_decay/angular"},
+      {"selfCollide", link, flag, "self_collide"},
+      {"stopCfm", joint, number, "physics/ode/limit/cfm"},
+      {"stopErp", joint, number, "physics/ode/limit/erp"},
+      {"springReference", joint, number, "axis/dynamics/spring_reference"},
+      {"springStiffness", joint, number, "axis/dynamics/spring_stiffness"},
+      {"provideFeedback", joint, flag, "physics/provide_feedback"},
+      {"provideFeedback", joint, flag, "physics/ode/provide_feedback"},
+      {"implicitSpringDamper", joint, flag, "physics/ode/implicit_spring_damper"},
+      {"implicitSpringDamper", joint, flag, "physics/ode/cfm_damping"},
+      {"cfmDamping", joint, flag, "physics/ode/implicit_spring_damper"},
+      {"cfmDamping", joint, flag, "physics/ode/cfm_damping"},
+      {"fudgeFactor", joint, number, "physics/ode/fudge_factor"},
+      {"static", robot, flag, "static"},
+      {"stopKp", joint, number, ""},
+      {"stopKd", joint, number, ""},
+      {"initialJointPosition", joint, number, ""},
+      {"preserveFixedJoint", joint, flag, ""},
+      {"disableFixedJointLumping", joint, flag, ""},
+      {"canonicalBody", robot, text, ""},
+      {"collision", link, text, ""},
+      {"visual", link, text, ""},
+  };
+  return all;
+}
 
 bool is_one_of(const XmlNode& element, std::initializer_list<std::string_view> values) {
   std::string value = gazebo_value(element);
@@ -66,9 +69,9 @@ bool is_one_of(const XmlNode& element, std::initializer_list<std::string_view> v
   return std::ranges::find(values, value) != values.end();
 }
 
-std::string sdf_value(const XmlNode& element, Kind kind) {
-  if (kind == Kind::flag) return is_true(element) ? "true" : "false";
-  if (kind == Kind::inverted_flag) return is_one_of(element, {"false", "no", "0"}) ? "true" : "false";
+std::string sdf_value(const XmlNode& element, GazeboKind kind) {
+  if (kind == GazeboKind::flag) return is_true(element) ? "true" : "false";
+  if (kind == GazeboKind::inverted_flag) return is_one_of(element, {"false", "no", "0"}) ? "true" : "false";
   return gazebo_value(element);
 }
 
@@ -94,18 +97,19 @@ std::string gazebo_value(const XmlNode& element) {
 bool is_true(const XmlNode& element) { return is_one_of(element, {"true", "yes", "1"}); }
 
 bool is_gazebo_number(std::string_view name) {
-  const auto found = std::ranges::find(properties, name, &Property::name);
-  return found != std::end(properties) && found->kind == Kind::number;
+  return std::ranges::any_of(gazebo_properties(), [&](const GazeboProperty& property) {
+    return property.name == name && property.kind == GazeboKind::number;
+  });
 }
 
 bool is_gazebo_property(std::string_view name) {
-  return std::ranges::find(properties, name, &Property::name) != std::end(properties);
+  return std::ranges::find(gazebo_properties(), name, &GazeboProperty::name) != gazebo_properties().end();
 }
 
 void set_gazebo_properties(const XmlNode& block, GazeboTarget target, XmlNode& element) {
-  if (target == collision || target == visual) add_content_for(block, element);
+  if (target == GazeboTarget::collision || target == GazeboTarget::visual) add_content_for(block, element);
   for (const XmlNode& child : block.children)
-    for (const Property& property : properties) {
+    for (const GazeboProperty& property : gazebo_properties()) {
       const std::string value = sdf_value(child, property.kind);
       if (property.name != child.name || property.target != target || property.path.empty() || value.empty()) continue;
       set_at(element, property.path, value, child);

@@ -15,8 +15,8 @@
 namespace cohort::parsing {
 namespace {
 
-constexpr std::string_view lump = "_fixed_joint_lump__";
-constexpr const char* moments[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
+constexpr std::string_view lump_mark = "_fixed_joint_lump__";
+constexpr const char* inertia_names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
 
 std::string path_in_urdf(const UrdfLink& link, const XmlNode& part) {
   return "link[" + link.name + "]/" + path_step(part.name, value_of(part, "name"));
@@ -48,7 +48,7 @@ XmlNode inertial_like(const XmlNode& source, const Pose& pose, const std::string
   made.children = {pose_at(source, pose), element_at(*source.child("mass"), "mass", mass),
                    element_at(inertia, "inertia")};
   for (std::size_t i = 0; i < texts.size(); ++i)
-    made.children.back().children.push_back(element_at(inertia, moments[i], texts[i]));
+    made.children.back().children.push_back(element_at(inertia, inertia_names[i], texts[i]));
   return made;
 }
 
@@ -78,7 +78,7 @@ void merge_into(XmlNode& into, const XmlNode& from) {
 std::string name_of_part(const UrdfLink& link, const XmlNode& source, const std::string& carrier, std::size_t index) {
   std::string name = value_of(source, "name").empty() ? link.name : value_of(source, "name");
   name += "_" + source.name + (index > 0 ? "_" + std::to_string(index) : "");
-  return name.starts_with(carrier) ? name : carrier + std::string(lump) + name;
+  return name.starts_with(carrier) ? name : carrier + std::string(lump_mark) + name;
 }
 
 XmlNode geometry_of(const XmlNode& source) {
@@ -141,7 +141,7 @@ XmlNode inertial_of(const UrdfLink& link) {
   std::vector<std::string> texts;
   Pose pose = X_LI;
   if (masses.size() == 1 && first == &link) {
-    for (const char* const moment : moments) texts.push_back(value_of(*source.child("inertia"), moment));
+    for (const char* const moment : inertia_names) texts.push_back(value_of(*source.child("inertia"), moment));
   } else {
     const MassProperties sum = together(masses);
     pose.position = X_LI * sum.centre;
@@ -166,7 +166,7 @@ void adjust_contact(const UrdfLink& link, const XmlNode& carrier, XmlNode& senso
   XmlNode* const contact = sensor.name == "sensor" ? child_of(sensor, "contact") : nullptr;
   XmlNode* const collision = contact != nullptr ? child_of(*contact, "collision") : nullptr;
   if (collision == nullptr) return;
-  std::vector<std::string> names;  // of the collisions of the link, without merging
+  std::vector<std::string> names;  // names of its collisions if it were not merged
   for (const XmlNode& source : link.node->children)
     if (source.name == "collision") names.push_back(name_of_part(link, source, link.name, names.size()));
   std::size_t index = 0;
@@ -180,8 +180,8 @@ void adjust_contact(const UrdfLink& link, const XmlNode& carrier, XmlNode& senso
 
 bool belongs_to(const UrdfLink& link, const XmlNode& part) {
   const std::string name = value_of(part, "name");
-  return link.is_merged ? name.find(std::string(lump) + link.name + "_" + part.name) != std::string::npos
-                        : name.find(lump) == std::string::npos;
+  return link.is_merged ? name.find(std::string(lump_mark) + link.name + "_" + part.name) != std::string::npos
+                        : name.find(lump_mark) == std::string::npos;
 }
 
 void add_surface(const UrdfLink& link, XmlNode& collision) {

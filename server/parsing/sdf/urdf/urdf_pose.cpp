@@ -24,7 +24,7 @@ Eigen::Quaterniond turn_of(const Eigen::Vector3d& rpy) {
 }
 
 Eigen::Vector3d roll_pitch_yaw(const Eigen::Quaterniond& q) {
-  const double sine = 2.0 * (q.w() * q.y() - q.x() * q.z());  // of the pitch
+  const double sine = 2.0 * (q.w() * q.y() - q.x() * q.z());  // sine of the pitch
   const double pitch = std::asin(std::clamp(sine, -1.0, 1.0));
   const double xx = q.x() * q.x(), yy = q.y() * q.y(), zz = q.z() * q.z(), ww = q.w() * q.w();
   constexpr double rounding = 1e-15;

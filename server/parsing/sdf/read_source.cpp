@@ -16,7 +16,6 @@
 #include "server/parsing/sdf/repair/pass_over_unknown.hpp"
 #include "server/parsing/sdf/repair/scoped_names.hpp"
 #include "server/parsing/sdf/repair/what_is_seen.hpp"
-#include "server/parsing/sdf/schema/libsdformat_scope.hpp"
 #include "server/parsing/sdf/schema/yaml_sdf.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 #include "server/parsing/sdf/urdf/urdf_file.hpp"
@@ -106,7 +105,7 @@ std::optional<XmlNode> SourceReader::read_xml(const std::string& text, SdfFile& 
     if (const XmlNode* const macro = find_macro(root, file.path)) return fail(macro->line, why_not_expanded(file.path));
   file.is_foreign = root.name == "robot" || !is_ours(root);
   if (root.name == "robot") {
-    auto sdf = sdf_of_urdf(std::move(outline.root), file.shown, LibsdformatScope().config(), problems_, warnings_);
+    auto sdf = sdf_of_urdf(std::move(outline.root), file.shown, problems_, warnings_);
     if (sdf) mend_sdf(*sdf, file.shown, warnings_);
     return sdf;
   }

@@ -1,7 +1,6 @@
 #include "server/parsing/files/model_search.hpp"
 
 #include <algorithm>
-#include <sdf/SDFImpl.hh>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -21,10 +20,10 @@ constexpr std::string_view package_scheme = "package://";
 constexpr std::string_view file_scheme = "file://";
 constexpr int parent_levels = 4;
 
-// Returns the file that a model.config names. Among several, it is the one of the newest version that libsdformat
-// reads, or else the oldest newer one; without versions, the first.
+// Returns the file that a model.config names. Among several, it is the one of the newest version to which files are
+// converted, or else the oldest newer one; without versions, the first.
 std::string best_file(const XmlNode& model) {
-  const std::pair<int, int> own = version_of(sdf::SDF::Version());
+  const std::pair<int, int> own = version_of(converted_version);
   std::pair<int, int> best{-1, 0};
   std::string file;
   for (const XmlNode& sdf : model.children) {

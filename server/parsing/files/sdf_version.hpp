@@ -10,6 +10,9 @@ namespace cohort::parsing {
 /// Returns "1.9" as {1, 9}; {0, 0} for anything else.
 std::pair<int, int> version_of(std::string_view text);
 
+/// The version to which files of other versions are converted.
+inline constexpr std::string_view converted_version = "1.9";
+
 /// The newest version that libsdformat reads; newer files are converted down to it.
 inline constexpr std::pair<int, int> newest_version{1, 12};
 

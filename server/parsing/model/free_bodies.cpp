@@ -12,11 +12,11 @@ namespace cohort::parsing {
 namespace {
 
 template <class Visit>
-bool any_word_below(const sdf::ElementPtr& element, const Visit& visit) {
+bool any_word_below(const Element* element, const Visit& visit) {
   const std::string text = text_of_parameter(element);
   for (const std::string_view word : words(text))
     if (visit(std::string(word))) return true;
-  for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement())
+  for (const Element* const child : element->children())
     if (any_word_below(child, visit)) return true;
   return false;
 }
@@ -93,8 +93,7 @@ std::optional<std::size_t> FreeBodies::body_of_name(const Model& model, const st
 
 // Returns the body of the first link or joint that the element names; if it names none, that of the model that contains
 // it.
-std::size_t FreeBodies::body_of_element(const Model& model, const sdf::ElementPtr& element,
-                                        const std::string& prefix) const {
+std::size_t FreeBodies::body_of_element(const Model& model, const Element* element, const std::string& prefix) const {
   std::optional<std::size_t> found;
   any_word_below(element, [&](const std::string& word) {
     found = body_of_name(model, prefix + word);
@@ -111,9 +110,9 @@ std::vector<std::vector<DeviceScope>> FreeBodies::scopes(const Model& model,
   if (count_ <= 1) return {scopes};
   std::vector<std::vector<DeviceScope>> of_bodies(count_);
   for (const DeviceScope& scope : scopes) {
-    std::map<std::size_t, std::set<sdf::ElementPtr>> devices;  // by body
-    for (sdf::ElementPtr child = scope.model_element->GetFirstElement(); child; child = child->GetNextElement())
-      if (has_prefix(child->GetName()) || child->GetName() == "plugin")
+    std::map<std::size_t, std::set<const Element*>> devices;  // by body
+    for (const Element* const child : scope.model_element->children())
+      if (has_prefix(child->name()) || child->name() == "plugin")
         devices[body_of_element(model, child, scope.prefix)].insert(child);
     if (devices.empty()) of_bodies.front().push_back(scope);
     for (const auto& [body, its_own] : devices) {

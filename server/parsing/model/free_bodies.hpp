@@ -29,7 +29,7 @@ class FreeBodies {
 
  private:
   std::optional<std::size_t> body_of_name(const Model& model, const std::string& name) const;
-  std::size_t body_of_element(const Model& model, const sdf::ElementPtr& element, const std::string& prefix) const;
+  std::size_t body_of_element(const Model& model, const Element* element, const std::string& prefix) const;
 
   std::vector<std::size_t> body_of_link_;
   std::size_t count_ = 0;

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <sdf/Element.hh>
 #include <string>
 #include <string_view>
 
@@ -22,7 +21,7 @@ class ImageFiles {
   explicit ImageFiles(const SdfFiles& files) : files_(files) {}
 
   /// Returns the image that the URI in `element` names.
-  ImagePtr image(const sdf::ElementPtr& element) { return read(files_.find_file(element)); }
+  ImagePtr image(const Element* element) { return read(files_.find_file(element)); }
 
   /// Returns the image that the file of a mesh names. A path is relative to this file. As in Gazebo, an image that is
   /// not there may be in `../materials/textures`; one whose folder does not exist may be beside the mesh.

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <optional>
-#include <sdf/JointAxis.hh>
 
 #include "server/core/text.hpp"
 #include "server/parsing/model/read_model.hpp"
@@ -10,7 +9,7 @@ namespace cohort::parsing {
 namespace {
 
 // Returns the joint; nothing, with a report, if no joint of this name has an axis.
-std::optional<std::size_t> find_joint(const Model& model, const std::string& name, const sdf::ElementPtr& where,
+std::optional<std::size_t> find_joint(const Model& model, const std::string& name, const Element* where,
                                       const SdfReport& report) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
@@ -30,7 +29,7 @@ std::optional<std::size_t> find_joint(const Model& model, const std::string& nam
   return std::nullopt;
 }
 
-std::optional<Coupling> read_mimic(const sdf::ElementPtr& element, const std::string& follower, const Model& model,
+std::optional<Coupling> read_mimic(const Element* element, const std::string& follower, const Model& model,
                                    const std::string& scope, const SdfReport& report) {
   const auto values = ExtensionValues::read(element, *find_extension("mimic", "joint"), report);
   if (!values) return std::nullopt;
@@ -60,53 +59,51 @@ std::optional<Turn> find_turn(const Model& model, std::size_t reference, std::si
   return std::nullopt;
 }
 
-std::optional<Coupling> read_gearbox(const sdf::Joint& sdf_joint, const Model& model, const std::string& scope,
-                                     const ModelReading& reading) {
-  const sdf::ElementPtr element = sdf_joint.Element();
+std::optional<Coupling> read_gearbox(const Element* element, const Frames& frames, const Model& model,
+                                     const std::string& scope, const ModelReading& reading) {
   const auto link_of = [&](const std::string& name) -> std::optional<std::size_t> {
     const auto found = std::ranges::find(model.links, scope + name, &Link::name);
     if (found != model.links.end()) return static_cast<std::size_t>(found - model.links.begin());
     reading.report.problem(element, "the model has no link '" + name + "'");
     return std::nullopt;
   };
-  const sdf::ElementPtr body = element->FindElement("gearbox_reference_body");
+  const Element* const body = element->child("gearbox_reference_body");
   if (!body) {
     reading.report.problem(element, "missing: <gearbox_reference_body>", "gearbox_reference_body");
     return std::nullopt;
   }
-  const auto reference = link_of(body->Get<std::string>());
-  const auto parent = link_of(sdf_joint.ParentLinkName());
-  const auto child = link_of(sdf_joint.ChildLinkName());
+  const auto reference = link_of(body->text());
+  const auto parent = link_of(element->child("parent")->text());
+  const auto child = link_of(element->child("child")->text());
   if (!reference || !parent || !child || !reading.frames_resolve) return std::nullopt;
   std::optional<Turn> turns[2];
   for (const unsigned place : {0u, 1u}) {
-    const sdf::JointAxis* axis = sdf_joint.Axis(place);
-    if (axis == nullptr) axis = sdf_joint.Axis(0);
-    ignition::math::Vector3d direction;
-    if (axis == nullptr || !axis->ResolveXyz(direction).empty()) {
+    const Element* axis = element->child(place == 0 ? "axis" : "axis2");
+    if (axis == nullptr) axis = element->child("axis");
+    const std::optional<Eigen::Vector3d> direction = axis != nullptr ? direction_of(*axis, frames) : std::nullopt;
+    if (!direction) {
       reading.report.problem(element, "missing: the direction of the axis, <axis><xyz>", "axis");
       return std::nullopt;
     }
-    const Pose X_LJ = resolved_pose(sdf_joint, reading, sdf_joint.ChildLinkName());
+    const Pose X_LJ = resolved_pose(*element, frames, reading, element->child("child")->text());
     const std::size_t link = place == 0 ? *parent : *child;
-    turns[place] = find_turn(model, *reference, link,
-                             model.links[*child].X_ML.orientation * (X_LJ.orientation * to_eigen(direction)));
+    turns[place] =
+        find_turn(model, *reference, link, model.links[*child].X_ML.orientation * (X_LJ.orientation * *direction));
     if (turns[place]) continue;
     reading.report.problem(element, "expected a revolute joint between '" + model.links[link].name +
                                         "' and the gearbox_reference_body '" + model.links[*reference].name + "'");
     return std::nullopt;
   }
-  const sdf::ElementPtr ratio = element->FindElement("gearbox_ratio");
-  const double by = ratio ? ratio->Get<double>() : 1.0;
+  const double by = element->real("gearbox_ratio");
   return Coupling{turns[1]->joint, turns[0]->joint, -by * turns[0]->sense * turns[1]->sense, 0.0};
 }
 
 }  // namespace
 
-std::vector<Coupling> read_couplings(const sdf::Model& sdf_model, const Model& model, const std::string& scope,
+std::vector<Coupling> read_couplings(const Frames& frames, const Model& model, const std::string& scope,
                                      const ModelReading& reading) {
   std::vector<Coupling> couplings;
-  const auto add = [&](const std::optional<Coupling>& coupling, const sdf::ElementPtr& where) {
+  const auto add = [&](const std::optional<Coupling>& coupling, const Element* where) {
     if (!coupling) return;
     const auto follows = [&](const Coupling& other) { return other.follower == coupling->follower; };
     if (coupling->follower == coupling->leader)
@@ -117,17 +114,14 @@ std::vector<Coupling> read_couplings(const sdf::Model& sdf_model, const Model& m
     else
       couplings.push_back(*coupling);
   };
-  for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i) {
-    const sdf::Joint& joint = *sdf_model.JointByIndex(i);
-    if (joint.Type() == sdf::JointType::GEARBOX) add(read_gearbox(joint, model, scope, reading), joint.Element());
-    const sdf::ElementPtr mimic = joint.Element()->FindElement("cohort:mimic");
-    if (mimic) add(read_mimic(mimic, scope + joint.Name(), model, scope, reading.report), mimic);
+  for (const Element* const joint : children_of(frames.owner(), "joint")) {
+    if (joint->attribute("type") == "gearbox") add(read_gearbox(joint, frames, model, scope, reading), joint);
+    const Element* const mimic = joint->child("cohort:mimic");
+    if (mimic) add(read_mimic(mimic, scope + name_of(*joint), model, scope, reading.report), mimic);
   }
-  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i) {
-    const sdf::Model& inner = *sdf_model.ModelByIndex(i);
-    for (const Coupling& coupling : read_couplings(inner, model, scope + inner.Name() + "::", reading))
+  for (const Element* const inner : children_of(frames.owner(), "model"))
+    for (const Coupling& coupling : read_couplings(*frames.of(*inner), model, scope + name_of(*inner) + "::", reading))
       couplings.push_back(coupling);
-  }
   return couplings;
 }
 

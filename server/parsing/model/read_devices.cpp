@@ -45,10 +45,10 @@ class References {
   }
   bool find(const ExtensionValues& values, const keys::Reference& key, std::shared_ptr<const Samples>& samples);
 
-  std::optional<std::size_t> find_index(Referent to, const std::string& name, const sdf::ElementPtr& where);
+  std::optional<std::size_t> find_index(Referent to, const std::string& name, const Element* where);
   template <class Named>
   std::optional<std::size_t> find_named(const char* kind, const std::vector<Named>& named, const std::string& name,
-                                        const sdf::ElementPtr& where) {
+                                        const Element* where) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < named.size(); ++i) {
       if (named[i].name == name) return i;
@@ -58,7 +58,7 @@ class References {
     return std::nullopt;
   }
   void report_missing(const char* kind, const std::vector<std::string>& names, const std::string& name,
-                      const sdf::ElementPtr& where) const {
+                      const Element* where) const {
     report_.problem(where, "the model has no " + std::string(kind) + " '" + name + "'" + suggestion(name, names));
   }
   std::string flaw_of_joint(Referent to, std::size_t index);
@@ -86,7 +86,7 @@ bool References::find(const ExtensionValues& values, const keys::Reference& key,
   return false;
 }
 
-std::optional<std::size_t> References::find_index(Referent to, const std::string& name, const sdf::ElementPtr& where) {
+std::optional<std::size_t> References::find_index(Referent to, const std::string& name, const Element* where) {
   if (to == Referent::drive) {
     if (const auto found = drives_.find(name); found != drives_.end()) return found->second;
     std::vector<std::string> names;
@@ -286,7 +286,7 @@ void check_color(const ExtensionValues& values, std::string_view key, const SdfR
 std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const std::vector<Counterpart>& of_plugins,
                                  const Model& model, const SdfReport& report, ShapeFiles& files) {
   struct Found {
-    sdf::ElementPtr element;
+    const Element* element;
     const Extension* extension;
     const std::string& prefix;
   };
@@ -297,8 +297,8 @@ std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const s
   // An encoder may precede the drive that it measures.
   std::map<std::string, std::size_t> drives;
   for (std::size_t i = 0; i < found.size(); ++i)
-    if (found[i].extension->name == "treel_drive" && found[i].element->HasAttribute("name"))
-      drives.emplace(found[i].prefix + found[i].element->GetAttribute("name")->GetAsString(), i);
+    if (found[i].extension->name == "treel_drive" && found[i].element->has_attribute("name"))
+      drives.emplace(found[i].prefix + found[i].element->attribute("name"), i);
 
   static const std::map<std::string_view, DeviceKind> kinds = device_kinds();
   References references(model, std::move(drives), report, files);

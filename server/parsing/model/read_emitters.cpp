@@ -1,6 +1,4 @@
 #include <cmath>
-#include <sdf/Light.hh>
-#include <sdf/Link.hh>
 
 #include "server/core/text.hpp"
 #include "server/parsing/model/read_model.hpp"
@@ -9,24 +7,25 @@
 namespace cohort::parsing {
 namespace {
 
-double number(const sdf::ElementPtr& element, double by_default, const SdfReport& report) {
+double number(const Element* element, double by_default, const SdfReport& report) {
   if (!is_written(element)) return by_default;
-  const std::string text = element->GetValue()->GetAsString();
+  const std::string text = element->text();
   if (const std::optional<double> value = parse_real(text); value && !std::isnan(*value)) return *value;
   report.problem(element, "'" + text + "' is not a number");
   return by_default;
 }
 
-Light read_light_values(const sdf::Light& sdf_light, const SdfReport& report) {
-  const sdf::ElementPtr element = sdf_light.Element();
+Light read_light_values(const Element* element, const SdfReport& report) {
   Light light;
-  if (sdf_light.Type() == sdf::LightType::SPOT) light.kind = Light::Kind::spot;
-  if (sdf_light.Type() == sdf::LightType::DIRECTIONAL) light.kind = Light::Kind::directional;
-  const ignition::math::Color color = sdf_light.Diffuse();
-  light.color = {static_cast<double>(color.R()), static_cast<double>(color.G()), static_cast<double>(color.B())};
+  const std::string type = element->attribute("type");
+  if (type == "spot") light.kind = Light::Kind::spot;
+  if (type == "directional") light.kind = Light::Kind::directional;
+  if (type != "spot" && type != "directional" && type != "point")
+    report.flaw(element, "expected the type point, directional or spot, not '" + type + "'", "the light is a point");
+  if (const Element* const color = element->child("diffuse")) light.color = color->color().head<3>();
   light.intensity = number(find(element, {"intensity"}), 1.0, report);
   // libsdformat clips the factors to ranges of its own.
-  const sdf::ElementPtr attenuation = find(element, {"attenuation"});
+  const Element* const attenuation = find(element, {"attenuation"});
   if (attenuation && (is_written(find(attenuation, {"range"})) || is_written(find(attenuation, {"constant"})) ||
                       is_written(find(attenuation, {"linear"})) || is_written(find(attenuation, {"quadratic"})))) {
     light.range = number(find(attenuation, {"range"}), 10.0, report);
@@ -41,8 +40,8 @@ Light read_light_values(const sdf::Light& sdf_light, const SdfReport& report) {
   }
   if (light.intensity < 0.0 || !std::isfinite(light.intensity))
     report.problem(find(element, {"intensity"}), "expected a finite intensity >= 0");
-  const sdf::ElementPtr direction = find(element, {"direction"});
-  const Eigen::Vector3d written = to_eigen(sdf_light.Direction());
+  const Element* const direction = find(element, {"direction"});
+  const Eigen::Vector3d written = element->vector("direction");
   if (const auto unit = written_unit_vector(direction))
     light.direction_E = *unit;
   else if (written.norm() > 0.0 && written.allFinite())
@@ -75,20 +74,19 @@ Emitter read_emitter(const ExtensionValues& values, const SdfReport& report) {
 
 }  // namespace
 
-Emitter read_light(const sdf::Light& sdf_light, const ModelReading& reading) {
+Emitter read_light(const Element& element, const Frames& frames, const ModelReading& reading) {
   Emitter emitter;
-  emitter.name = sdf_light.Name();
-  emitter.X_LE = resolved_pose(sdf_light, reading);
-  emitter.what = read_light_values(sdf_light, reading.report);
+  emitter.name = name_of(element);
+  emitter.X_LE = resolved_pose(element, frames, reading);
+  emitter.what = read_light_values(&element, reading.report);
   return emitter;
 }
 
-std::vector<Emitter> read_emitters(const sdf::Link& sdf_link, const ModelReading& reading) {
+std::vector<Emitter> read_emitters(const Element& element, const Frames& frames, const ModelReading& reading) {
   std::vector<Emitter> emitters;
-  for (std::uint64_t i = 0; i < sdf_link.LightCount(); ++i)
-    emitters.push_back(read_light(*sdf_link.LightByIndex(i), reading));
-  const sdf::ElementPtr link = sdf_link.Element();
-  for (sdf::ElementPtr child = link->GetFirstElement(); child; child = child->GetNextElement())
+  for (const Element* const light : children_of(element, "light"))
+    emitters.push_back(read_light(*light, frames, reading));
+  for (const Element* const child : element.children())
     keys::for_kinds_in(keys::emitters, [&]<class Kind>(std::type_identity<Kind>) {
       if (const auto values = read_as<Kind>(child, reading.report))
         emitters.push_back(read_emitter<Kind>(*values, reading.report));

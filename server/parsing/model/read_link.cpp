@@ -3,11 +3,6 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <sdf/Collision.hh>
-#include <sdf/Geometry.hh>
-#include <sdf/Heightmap.hh>
-#include <sdf/Material.hh>
-#include <sdf/Visual.hh>
 #include <stdexcept>
 #include <utility>
 
@@ -15,6 +10,7 @@
 #include "server/parsing/model/mass_properties.hpp"
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
+#include "server/parsing/sdf/schema/value_text.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -76,23 +72,22 @@ Inertial inertial_of_shapes(const Link& link) {
 }
 
 // NaN passes here and below, since check_numbers has reported it.
-Inertial read_written_inertial(const sdf::Link& sdf_link, const Link& link, const SdfReport& report) {
-  const sdf::ElementPtr element = sdf_link.Element();
-  const sdf::ElementPtr mass = find(element, {"inertial", "mass"});
-  const sdf::ElementPtr inertia = find(element, {"inertial", "inertia"});
-  if (mass && mass->Get<double>() == 0.0 && report.is_foreign(mass))
-    return inertial_of_shapes(link);  // already reported
+Inertial read_written_inertial(const Element* element, const Link& link, const SdfReport& report) {
+  const Element* const mass = find(element, {"inertial", "mass"});
+  const Element* const inertia = find(element, {"inertial", "inertia"});
+  if (mass && mass->real() == 0.0 && report.is_foreign(mass)) return inertial_of_shapes(link);  // already reported
   if (!mass) report.warning(element, "has no mass; SDF's default of 1 kg is used");
   if (!inertia) report.warning(element, "has no inertia; SDF's default of 1 kg m^2 about each axis is used");
 
   Inertial inertial;
-  inertial.X_LI = written_pose(sdf_link.Inertial().Pose(), find(element, {"inertial"}));
-  if (mass) inertial.mass = mass->Get<double>();
+  if (const Element* const pose = find(element, {"inertial", "pose"}))
+    inertial.X_LI = written_pose(pose->node()).value_or(Pose{});
+  if (mass) inertial.mass = mass->real();
   if (inertial.mass <= 0.0 || std::isinf(inertial.mass))
-    report.problem(mass, "expected a mass > 0 kg, not " + mass->GetValue()->GetAsString());
+    report.problem(mass, "expected a mass > 0 kg, not " + mass->text());
   if (!inertia) return inertial;
 
-  const auto component = [&](const char* name) { return inertia->Get<double>(name); };
+  const auto component = [&](const char* name) { return inertia->real(name); };
   const double xx = component("ixx"), yy = component("iyy"), zz = component("izz");
   const double xy = component("ixy"), xz = component("ixz"), yz = component("iyz");
   inertial.inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
@@ -125,71 +120,71 @@ Inertial read_written_inertial(const sdf::Link& sdf_link, const Link& link, cons
 }
 
 // Returns <cohort:density> of a link or a collision; nothing if it has none.
-std::optional<double> read_density(const sdf::ElementPtr& parent, const SdfReport& report) {
-  const sdf::ElementPtr element = parent->FindElement("cohort:density");
+std::optional<double> read_density(const Element* parent, const SdfReport& report) {
+  const Element* const element = parent->child("cohort:density");
   if (!element) return std::nullopt;
-  if (const sdf::ElementPtr again = element->GetNextElement("cohort:density"))
-    report.problem(again, "<cohort:density> is given twice");
-  const auto values = ExtensionValues::read(element, *find_extension("density", parent->GetName()), report);
+  if (const Element* const again = element->next_alike()) report.problem(again, "<cohort:density> is given twice");
+  const auto values = ExtensionValues::read(element, *find_extension("density", parent->name()), report);
   return values ? std::optional(values->real("density")) : std::nullopt;
 }
 
 // Returns nothing if neither the link nor any of its collisions has a density.
-std::optional<Inertial> read_inertial_from_density(const sdf::Link& sdf_link, const Link& link,
-                                                   const SdfReport& report) {
-  const std::optional<double> of_link = read_density(sdf_link.Element(), report);
+std::optional<Inertial> read_inertial_from_density(const Element* element, const Link& link, const SdfReport& report) {
+  const std::optional<double> of_link = read_density(element, report);
   bool has_density = of_link.has_value();
   std::vector<MassProperties> parts;
+  const std::vector<const Element*> collisions = children_of(*element, "collision");
   for (const Collision& collision : link.collisions) {
-    const auto own = read_density(sdf_link.CollisionByName(collision.name)->Element(), report);
+    const auto written =
+        std::ranges::find(collisions, collision.name, [](const Element* each) { return name_of(*each); });
+    const auto own = read_density(*written, report);
     has_density = has_density || own;
     if (const std::optional<double> density = own ? own : of_link)
       parts.push_back(moved(mass_properties(collision.shape, *density), collision.X_LC));
   }
   if (!has_density) return std::nullopt;
-  const sdf::ElementPtr mass = find(sdf_link.Element(), {"inertial", "mass"});
-  const auto is_given = [&](const char* part) { return is_written(find(sdf_link.Element(), {"inertial", part})); };
-  if (const sdf::ElementPtr written = sdf_link.Element()->FindElement("inertial");
-      written && written->GetExplicitlySetInFile() && (!is_written(mass) || is_given("pose") || is_given("inertia")))
+  const Element* const mass = find(element, {"inertial", "mass"});
+  const auto is_given = [&](const char* part) { return is_written(find(element, {"inertial", part})); };
+  if (const Element* const written = element->child("inertial");
+      written != nullptr && (!is_written(mass) || is_given("pose") || is_given("inertia")))
     report.problem(written, "expected either <inertial> or <cohort:density>, not both, unless it has only a <mass>");
   MassProperties whole = together(parts);
   if (is_written(mass) && whole.mass > 0.0) {
-    const auto given = mass->Get<double>();
-    if (!(given > 0.0) || std::isinf(given))
-      report.problem(mass, "expected a mass > 0 kg, not " + mass->GetValue()->GetAsString());
+    const auto given = mass->real();
+    if (!(given > 0.0) || std::isinf(given)) report.problem(mass, "expected a mass > 0 kg, not " + mass->text());
     whole.inertia *= given / whole.mass;
     whole.mass = given;
   }
-  if (!(whole.mass > 0.0) && link.collisions.size() == sdf_link.CollisionCount())
-    report.problem(sdf_link.Element(), "<cohort:density> requires a <collision> with a volume");
+  if (!(whole.mass > 0.0) && link.collisions.size() == collisions.size())
+    report.problem(element, "<cohort:density> requires a <collision> with a volume");
   if (!std::isfinite(whole.mass) || !whole.inertia.allFinite())
-    report.problem(sdf_link.Element(),
+    report.problem(element,
                    "the mass or inertia of the collisions is not finite: check their sizes and <cohort:density>");
   return Inertial{whole.mass, {whole.centre, Eigen::Quaterniond::Identity()}, whole.inertia};
 }
 
-double read_coefficient(const sdf::ElementPtr& element, double by_default, double greatest, const char* expected,
+double read_coefficient(const Element* element, double by_default, double greatest, const char* expected,
                         const SdfReport& report) {
   if (!element) return by_default;
-  const auto value = element->Get<double>();
+  const auto value = element->real();
   if (!(value < 0.0) && !(value > greatest)) return value;
   const double nearest = value < 0.0 ? 0.0 : greatest;
   return report.flaw(element, expected, "the nearest valid value is used instead") ? nearest : value;
 }
 
 // Reads a friction coefficient. A negative one means unlimited friction in ODE.
-double read_friction_coefficient(const sdf::ElementPtr& element, const SdfReport& report) {
+double read_friction_coefficient(const Element* element, const SdfReport& report) {
   constexpr double as_if_glued = 1e3;
   const char* const expected = "expected a coefficient >= 0";
-  if (element && element->Get<double>() < 0.0 && report.flaw(element, expected, "unlimited friction is used"))
+  if (element && element->real() < 0.0 && report.flaw(element, expected, "unlimited friction is used"))
     return as_if_glued;
   return read_coefficient(element, 1.0, std::numeric_limits<double>::max(), expected, report);
 }
 
-std::uint32_t read_material(const sdf::ElementPtr& collision, const ModelReading& reading) {
-  const sdf::ElementPtr element = collision->FindElement("cohort:material");
+std::uint32_t read_material(const Element* collision, const ModelReading& reading) {
+  const Element* const element = collision->child("cohort:material");
   if (!element) return 0;
-  if (const sdf::ElementPtr again = element->GetNextElement("cohort:material"))
+  if (const Element* const again = element->next_alike())
     reading.report.problem(again, "<cohort:material> is given twice");
   const auto values = ExtensionValues::read(element, *find_extension("material", "collision"), reading.report);
   if (!values) return 0;
@@ -200,35 +195,35 @@ std::uint32_t read_material(const sdf::ElementPtr& collision, const ModelReading
   return index;
 }
 
-bool read_grippable(const sdf::ElementPtr& collision, const SdfReport& report) {
-  const sdf::ElementPtr element = collision->FindElement("cohort:grippable");
+bool read_grippable(const Element* collision, const SdfReport& report) {
+  const Element* const element = collision->child("cohort:grippable");
   if (!element) return false;
   const auto values = ExtensionValues::read(element, *find_extension("grippable", "collision"), report);
   return values && values->flag("grippable");
 }
 
 // Reads the 16 bits of a bitmask; SDF ignores higher bits.
-std::uint16_t read_bitmask(const sdf::ElementPtr& element, std::uint16_t by_default) {
-  return is_written(element) ? static_cast<std::uint16_t>(element->Get<unsigned int>()) : by_default;
+std::uint16_t read_bitmask(const Element* element, std::uint16_t by_default) {
+  return is_written(element) ? static_cast<std::uint16_t>(element->count()) : by_default;
 }
 
 // Reads friction from <ode> or, without it, from <bullet>.
-void read_friction(const sdf::ElementPtr& friction, const SdfReport& report, Surface& surface) {
+void read_friction(const Element* friction, const SdfReport& report, Surface& surface) {
   const bool is_bullet = !find(friction, {"ode"}) && find(friction, {"bullet"});
-  const sdf::ElementPtr element = find(friction, {is_bullet ? "bullet" : "ode"});
+  const Element* const element = find(friction, {is_bullet ? "bullet" : "ode"});
   surface.friction = read_friction_coefficient(find(element, {is_bullet ? "friction" : "mu"}), report);
   surface.second_friction = read_friction_coefficient(find(element, {is_bullet ? "friction2" : "mu2"}), report);
-  const sdf::ElementPtr direction = find(element, {"fdir1"});
+  const Element* const direction = find(element, {"fdir1"});
   if (!is_written(direction)) return;
   const auto unit = written_unit_vector(direction);
-  surface.friction_direction = unit ? *unit : to_eigen(direction->Get<ignition::math::Vector3d>()).normalized();
+  surface.friction_direction = unit ? *unit : direction->vector().normalized();
 }
 
 // Reads softness from <ode> or, without it, from <bullet>.
-void read_softness(const sdf::ElementPtr& contact, const SdfReport& report, Surface& surface) {
-  const sdf::ElementPtr element = find(contact, {find(contact, {"ode"}) ? "ode" : "bullet"});
-  const sdf::ElementPtr stiffness = find(element, {"kp"});
-  if (is_written(stiffness)) surface.stiffness = stiffness->Get<double>();
+void read_softness(const Element* contact, const SdfReport& report, Surface& surface) {
+  const Element* const element = find(contact, {find(contact, {"ode"}) ? "ode" : "bullet"});
+  const Element* const stiffness = find(element, {"kp"});
+  if (is_written(stiffness)) surface.stiffness = stiffness->real();
   if (!(surface.stiffness > 0.0) && !std::isnan(surface.stiffness) &&
       report.flaw(stiffness, "expected a stiffness > 0 N/m", "the contact is rigid"))
     surface.stiffness = Surface{}.stiffness;
@@ -238,20 +233,20 @@ void read_softness(const sdf::ElementPtr& contact, const SdfReport& report, Surf
 
 // Reads the ratio of the torque against spinning to the normal force: 3 pi / 16 times the radius of the contact patch
 // times the coefficient ("Torsional friction", tutorial of Gazebo).
-double read_spinning_resistance(const sdf::ElementPtr& torsional, const SdfReport& report) {
+double read_spinning_resistance(const Element* torsional, const SdfReport& report) {
   const char* const expected = "expected a radius >= 0 m";
   const double most = std::numeric_limits<double>::max();
   const double coefficient =
       read_coefficient(find(torsional, {"coefficient"}), 1.0, most, "expected a coefficient >= 0", report);
   const double radius = read_coefficient(find(torsional, {"patch_radius"}), 0.0, most, expected, report);
   read_coefficient(find(torsional, {"surface_radius"}), 0.0, most, expected, report);
-  const sdf::ElementPtr by_patch = find(torsional, {"use_patch_radius"});
-  if (!is_written(by_patch) || by_patch->Get<bool>()) return 3.0 * std::numbers::pi / 16.0 * radius * coefficient;
+  const Element* const by_patch = find(torsional, {"use_patch_radius"});
+  if (!is_written(by_patch) || by_patch->flag()) return 3.0 * std::numbers::pi / 16.0 * radius * coefficient;
   report.warning(by_patch, "a contact patch that grows with depth is not supported; set <patch_radius>");
   return 0.0;
 }
 
-Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& reading) {
+Surface read_surface(const Element* collision, const ModelReading& reading) {
   const Surface by_default;
   const SdfReport& report = reading.report;
   const double most = std::numeric_limits<double>::max();
@@ -259,7 +254,7 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
   read_friction(find(collision, {"surface", "friction"}), report, surface);
   surface.restitution = read_coefficient(find(collision, {"surface", "bounce", "restitution_coefficient"}),
                                          by_default.restitution, 1.0, "expected a coefficient from 0 to 1", report);
-  const sdf::ElementPtr threshold = find(collision, {"surface", "bounce", "threshold"});
+  const Element* const threshold = find(collision, {"surface", "bounce", "threshold"});
   if (is_written(threshold))
     surface.bounce_threshold = read_coefficient(threshold, 0.0, most, "expected a velocity >= 0 m/s", report);
   surface.rolling_resistance =
@@ -275,29 +270,29 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
   return surface;
 }
 
-// Converts a colour component, which is a float in SDF, so that values of up to six digits stay as written.
-double read_part(float part) {
+// Rounds a colour component, which is a float in SDF, so that values of up to six digits stay as written.
+double read_part(double part) {
   constexpr double digits = 1e6;
-  return std::clamp(std::round(static_cast<double>(part) * digits) / digits, 0.0, 1.0);
+  return std::clamp(std::round(part * digits) / digits, 0.0, 1.0);
 }
 
-bool has_color(const sdf::Visual& visual) { return find(visual.Element(), {"material", "diffuse"}) != nullptr; }
+const Element* diffuse_of(const Element& visual) { return find(&visual, {"material", "diffuse"}); }
 
-Eigen::Vector3d read_color(const sdf::Visual& visual) {
-  if (!has_color(visual)) return default_color();
-  const ignition::math::Color color = visual.Material()->Diffuse();
-  const Eigen::Vector3d rounded(read_part(color.R()), read_part(color.G()), read_part(color.B()));
-  return rounded.allFinite() ? rounded : default_color();
+Eigen::Vector3d read_color(const Element& visual) {
+  const Element* const diffuse = diffuse_of(visual);
+  return diffuse != nullptr ? Eigen::Vector3d(diffuse->color().head<3>().unaryExpr(&read_part)) : default_color();
 }
 
-double read_opacity(const sdf::Visual& visual) {
-  const double opacity = visual.Material() == nullptr ? 1.0 : read_part(visual.Material()->Diffuse().A());
-  return std::clamp(opacity - read_part(visual.Transparency()), 0.0, 1.0);
+double read_opacity(const Element& visual) {
+  const Element* const diffuse = diffuse_of(visual);
+  const double opacity = diffuse != nullptr ? read_part(diffuse->color().w()) : 1.0;
+  return std::clamp(opacity - read_part(static_cast<double>(static_cast<float>(visual.real("transparency")))), 0.0,
+                    1.0);
 }
 
 // Returns the image of the albedo map; null if there is none, or it cannot be shown.
-std::shared_ptr<const Image> read_texture(const sdf::Visual& visual, const ModelReading& reading) {
-  const sdf::ElementPtr map = find(visual.Element(), {"material", "pbr", "metal", "albedo_map"});
+std::shared_ptr<const Image> read_texture(const Element& visual, const ModelReading& reading) {
+  const Element* const map = find(&visual, {"material", "pbr", "metal", "albedo_map"});
   if (!is_written(map)) return nullptr;
   try {
     return reading.shape_files.images().image(map);
@@ -307,43 +302,43 @@ std::shared_ptr<const Image> read_texture(const sdf::Visual& visual, const Model
   }
 }
 
-void read_visuals(const sdf::Link& sdf_link, const ModelReading& reading, Link& link) {
-  if (sdf_link.VisualCount() > 0) link.color = read_color(*sdf_link.VisualByIndex(0));
-  link.visuals.reserve(sdf_link.VisualCount());
-  for (std::uint64_t i = 0; i < sdf_link.VisualCount(); ++i) {
-    const sdf::Visual& visual = *sdf_link.VisualByIndex(i);
-    std::optional<Shape> shape = read_visual_shape(*visual.Geom(), reading);
+void read_visuals(const Element& element, const Frames& frames, const ModelReading& reading, Link& link) {
+  const std::vector<const Element*> visuals = children_of(element, "visual");
+  if (!visuals.empty()) link.color = read_color(*visuals.front());
+  link.visuals.reserve(visuals.size());
+  for (const Element* const visual : visuals) {
+    const Element* const geometry = visual->child("geometry");
+    std::optional<Shape> shape = geometry != nullptr ? read_visual_shape(*geometry, reading) : std::nullopt;
     if (!shape) continue;
     Eigen::Vector4d color;
-    color << read_color(visual), read_opacity(visual);
-    link.visuals.push_back({visual.Name(), resolved_pose(visual, reading), *std::move(shape), color, has_color(visual),
-                            read_texture(visual, reading)});
+    color << read_color(*visual), read_opacity(*visual);
+    link.visuals.push_back({name_of(*visual), resolved_pose(*visual, frames, reading), *std::move(shape), color,
+                            diffuse_of(*visual) != nullptr, read_texture(*visual, reading)});
   }
 }
 
 }  // namespace
 
-Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
+Link read_link(const Element& element, const Frames& frames, const ModelReading& reading) {
   Link link;
-  link.name = sdf_link.Name();
-  link.X_ML = resolved_pose(sdf_link, reading);
-  read_visuals(sdf_link, reading, link);
-  for (std::uint64_t i = 0; i < sdf_link.CollisionCount(); ++i) {
-    const sdf::Collision& sdf_collision = *sdf_link.CollisionByIndex(i);
-    const sdf::Geometry& geometry = *sdf_collision.Geom();
-    std::optional<Shape> shape = read_shape(geometry, reading);
-    const Surface surface = read_surface(sdf_collision.Element(), reading);
+  link.name = name_of(element);
+  link.X_ML = resolved_pose(element, frames, reading);
+  read_visuals(element, frames, reading, link);
+  for (const Element* const collision : children_of(element, "collision")) {
+    const Element* const geometry = collision->child("geometry");
+    std::optional<Shape> shape = read_shape(geometry != nullptr ? *geometry : *collision, reading);
+    const Surface surface = read_surface(collision, reading);
     if (!shape) continue;
-    Pose X_LC = resolved_pose(sdf_collision, reading);
-    if (const sdf::Heightmap* const map = geometry.HeightmapShape()) X_LC.position = X_LC * to_eigen(map->Position());
-    link.collisions.push_back({sdf_collision.Name(), X_LC, *std::move(shape), surface});
+    Pose X_LC = resolved_pose(*collision, frames, reading);
+    if (const Element* const map = find(geometry, {"heightmap"})) X_LC.position = X_LC * map->vector("pos");
+    link.collisions.push_back({name_of(*collision), X_LC, *std::move(shape), surface});
   }
   if (reading.is_static) return link;
-  const sdf::ElementPtr gravity = find(sdf_link.Element(), {"gravity"});
-  link.feels_gravity = !is_written(gravity) || gravity->Get<bool>();
-  link.is_kinematic = sdf_link.Element()->Get<bool>("kinematic", false).first;
-  const auto computed = read_inertial_from_density(sdf_link, link, reading.report);
-  link.inertial = computed ? *computed : read_written_inertial(sdf_link, link, reading.report);
+  const Element* const gravity = element.child("gravity");
+  link.feels_gravity = !is_written(gravity) || gravity->flag();
+  link.is_kinematic = element.flag("kinematic");
+  const auto computed = read_inertial_from_density(&element, link, reading.report);
+  link.inertial = computed ? *computed : read_written_inertial(&element, link, reading.report);
   return link;
 }
 

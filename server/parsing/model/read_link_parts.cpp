@@ -1,5 +1,3 @@
-#include <sdf/Link.hh>
-
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/model/read_values.hpp"
 
@@ -44,17 +42,16 @@ void add_link_parts(const std::vector<Counterpart>& of_plugins, Model& model, co
 }
 
 template <class Part>
-std::vector<Part> read_link_parts(const sdf::Link& sdf_link, const ModelReading& reading) {
+std::vector<Part> read_link_parts(const Element& element, const ModelReading& reading) {
   std::vector<Part> parts;
-  const sdf::ElementPtr link = sdf_link.Element();
-  for (sdf::ElementPtr child = link->GetFirstElement(); child; child = child->GetNextElement())
+  for (const Element* const child : element.children())
     if (const auto values = read_as<Part>(child, reading.report))
       parts.push_back(read_part<Part>(*values, reading.report));
   return parts;
 }
 
-template std::vector<GripRing> read_link_parts(const sdf::Link&, const ModelReading&);
-template std::vector<Fin> read_link_parts(const sdf::Link&, const ModelReading&);
-template std::vector<Drag> read_link_parts(const sdf::Link&, const ModelReading&);
+template std::vector<GripRing> read_link_parts(const Element&, const ModelReading&);
+template std::vector<Fin> read_link_parts(const Element&, const ModelReading&);
+template std::vector<Drag> read_link_parts(const Element&, const ModelReading&);
 
 }  // namespace cohort::parsing

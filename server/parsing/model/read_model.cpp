@@ -50,14 +50,15 @@ void set_loops_apart(Model& model) {
 }
 
 // Warns of properties of joints that close loops, which are ignored.
-void warn_of_loops(const sdf::Model& sdf_model, const Model& model, const SdfReport& report) {
+void warn_of_loops(const Element& element, const Model& model, const SdfReport& report) {
   for (const Joint& joint : model.loop_joints) {
     const JointAxis& axis = joint.axis;
     const bool is_free = axis.damping == 0.0 && axis.friction == 0.0 && axis.spring_stiffness == 0.0 &&
                          std::isinf(axis.lower) && std::isinf(axis.upper);
     if (is_free && joint.type != JointType::screw) continue;
-    const sdf::Joint* const sdf_joint = sdf_model.JointByName(joint.name);
-    report.warning(sdf_joint != nullptr ? sdf_joint->Element() : sdf_model.Element(),
+    const std::vector<const Element*> joints = children_of(element, "joint");
+    const auto written = std::ranges::find(joints, joint.name, [](const Element* each) { return name_of(*each); });
+    report.warning(written != joints.end() ? *written : &element,
                    "the joint '" + joint.name +
                        "' closes a loop: it constrains the links, but its limits, damping, friction, spring and thread "
                        "are ignored");
@@ -65,7 +66,7 @@ void warn_of_loops(const sdf::Model& sdf_model, const Model& model, const SdfRep
 }
 
 // Puts parents before children, and otherwise keeps the document order. Returns false if the links are not one tree.
-bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& report) {
+bool order_links(const Element& element, Model& model, const SdfReport& report) {
   const std::size_t count = model.links.size();
   std::vector<std::size_t> parent(count, count);  // `count` is none
   for (const Joint& joint : model.joints)
@@ -83,7 +84,7 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
   if (roots.size() > 1) {
     std::string names;
     for (const std::size_t root : roots) names += (names.empty() ? "'" : ", '") + model.links[root].name + "'";
-    report.problem(sdf_model.Element(),
+    report.problem(&element,
                    "the links " + names + " are all root links, but loop joints connect them; expected one root link");
     return false;
   }
@@ -113,7 +114,7 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
 }
 
 // Makes root links kinematic. A link on a joint moves with its parent, and the world holds links still.
-void take_kinematic_links(Model& model, const SdfReport& report, const sdf::ElementPtr& element) {
+void take_kinematic_links(Model& model, const SdfReport& report, const Element* element) {
   const auto is_child = [&](std::size_t link) {
     return std::ranges::any_of(model.joints, [&](const Joint& joint) { return joint.child == link; });
   };
@@ -127,9 +128,9 @@ void take_kinematic_links(Model& model, const SdfReport& report, const sdf::Elem
 }
 
 // Returns <enable_wind> of a model or a link; without it, the value of the parent element.
-bool feels_wind(const sdf::ElementPtr& element, bool outer) {
-  const sdf::ElementPtr written = element->FindElement("enable_wind");
-  return is_written(written) && written->GetExplicitlySetInFile() ? written->Get<bool>() : outer;
+bool feels_wind(const Element* element, bool outer) {
+  const Element* const written = element->child("enable_wind");
+  return is_written(written) ? written->flag() : outer;
 }
 
 // Collects the parts of a model and of its nested models, with scoped names.
@@ -138,8 +139,8 @@ class ModelFlattener {
   ModelFlattener(Model& model, const ModelReading& reading) : model_(model), reading_(reading) {}
 
   /// Links are added first, since joints of an outer model may name links of a nested one.
-  void add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN, bool outer_feels_wind);
-  void add_joints(const sdf::Model& sdf_model, const std::string& scope);
+  void add_links(const Frames& frames, const std::string& scope, const Pose& X_MN, bool outer_feels_wind);
+  void add_joints(const Frames& frames, const std::string& scope);
   void hold_links(const std::string& scope);
 
   const std::vector<DeviceScope>& scopes() const { return scopes_; }
@@ -150,16 +151,15 @@ class ModelFlattener {
  private:
   Model& model_;
   const ModelReading& reading_;
-  template <class Owner>
-  void note_sensors(const Owner& owner, bool is_joint, const std::string& scope) {
-    for (std::uint64_t i = 0; i < owner.SensorCount(); ++i)
-      if (is_sensor(owner.SensorByIndex(i)->Element()))
-        sensors_.push_back({owner.SensorByIndex(i), is_joint, scope + owner.Name(), scope});
+  void note_sensors(const Element& owner, const Frames& frames, const std::string& scope) {
+    for (const Element* const sensor : children_of(owner, "sensor"))
+      if (is_sensor(sensor))
+        sensors_.push_back({sensor, &frames, owner.name() == "joint", scope + name_of(owner), scope});
   }
 
   template <class Part>
-  void add_parts(const sdf::Link& sdf_link, const std::string& scope, std::vector<Part>& parts) {
-    for (Part& part : read_link_parts<Part>(sdf_link, reading_)) {
+  void add_parts(const Element& element, const std::string& scope, std::vector<Part>& parts) {
+    for (Part& part : read_link_parts<Part>(element, reading_)) {
       part.name = scope + part.name;
       part.link = model_.links.size();
       parts.push_back(std::move(part));
@@ -171,42 +171,43 @@ class ModelFlattener {
   std::size_t joint_count_ = 0;
 };
 
-void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN,
+void ModelFlattener::add_links(const Frames& frames, const std::string& scope, const Pose& X_MN,
                                bool outer_feels_wind) {
-  scopes_.push_back({sdf_model.Element(), scope});
-  const bool model_feels_wind = feels_wind(sdf_model.Element(), outer_feels_wind);
-  for (std::uint64_t i = 0; i < sdf_model.LinkCount(); ++i) {
-    Link link = read_link(*sdf_model.LinkByIndex(i), reading_);
+  const Element& element = frames.owner();
+  scopes_.push_back({&element, scope});
+  const bool model_feels_wind = feels_wind(&element, outer_feels_wind);
+  for (const Element* const written : children_of(element, "link")) {
+    Link link = read_link(*written, frames, reading_);
     link.name = scope + link.name;
     link.X_ML = X_MN * link.X_ML;
-    link.feels_wind = feels_wind(sdf_model.LinkByIndex(i)->Element(), model_feels_wind);
-    for (Emitter& emitter : read_emitters(*sdf_model.LinkByIndex(i), reading_)) {
+    link.feels_wind = feels_wind(written, model_feels_wind);
+    for (Emitter& emitter : read_emitters(*written, frames, reading_)) {
       emitter.name = scope + emitter.name;
       emitter.link = model_.links.size();
       model_.emitters.push_back(std::move(emitter));
     }
-    add_parts(*sdf_model.LinkByIndex(i), scope, model_.grip_rings);
-    add_parts(*sdf_model.LinkByIndex(i), scope, model_.fins);
-    add_parts(*sdf_model.LinkByIndex(i), scope, model_.drags);
+    add_parts(*written, scope, model_.grip_rings);
+    add_parts(*written, scope, model_.fins);
+    add_parts(*written, scope, model_.drags);
     model_.links.push_back(std::move(link));
-    note_sensors(*sdf_model.LinkByIndex(i), false, scope);
+    note_sensors(*written, frames, scope);
   }
-  for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i) note_sensors(*sdf_model.JointByIndex(i), true, scope);
-  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i) {
-    const sdf::Model& inner = *sdf_model.ModelByIndex(i);
-    warn_of_unsupported(inner.Element(), reading_.report);
-    add_links(inner, scope + inner.Name() + "::", X_MN * resolved_pose(inner, reading_), model_feels_wind);
+  for (const Element* const joint : children_of(element, "joint")) note_sensors(*joint, frames, scope);
+  for (const Element* const inner : children_of(element, "model")) {
+    warn_of_unsupported(inner, reading_.report);
+    add_links(*frames.of(*inner), scope + name_of(*inner) + "::", X_MN * resolved_pose(*inner, frames, reading_),
+              model_feels_wind);
   }
 }
 
-void ModelFlattener::add_joints(const sdf::Model& sdf_model, const std::string& scope) {
-  for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i)
-    joint_count_ += sdf_model.JointByIndex(i)->Type() == sdf::JointType::GEARBOX ? 0 : 1;
-  for (Joint& joint : read_joints(sdf_model, model_.links, scope, reading_)) model_.joints.push_back(std::move(joint));
-  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i) {
-    const sdf::Model& inner = *sdf_model.ModelByIndex(i);
-    add_joints(inner, scope + inner.Name() + "::");
-    if (inner.Static()) hold_links(scope + inner.Name() + "::");
+void ModelFlattener::add_joints(const Frames& frames, const std::string& scope) {
+  for (const Element* const joint : children_of(frames.owner(), "joint"))
+    joint_count_ += joint->attribute("type") == "gearbox" ? 0 : 1;
+  for (Joint& joint : read_joints(frames, model_.links, scope, reading_)) model_.joints.push_back(std::move(joint));
+  for (const Element* const inner : children_of(frames.owner(), "model")) {
+    const std::string inner_scope = scope + name_of(*inner) + "::";
+    add_joints(*frames.of(*inner), inner_scope);
+    if (inner->flag("static")) hold_links(inner_scope);
   }
 }
 
@@ -257,17 +258,17 @@ void add_devices(const std::vector<DeviceScope>& scopes, const std::vector<Senso
 
 }  // namespace
 
-std::vector<Model> read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
-  const sdf::ElementPtr element = sdf_model.Element();
+std::vector<Model> read_model(const Frames& frames, const ModelReading& reading) {
+  const Element* const element = &frames.owner();
   Model model;
-  model.name = sdf_model.Name();
+  model.name = name_of(*element);
   model.is_static = reading.is_static;
-  model.self_collide = sdf_model.SelfCollide();
-  model.may_sleep = sdf_model.AllowAutoDisable();
+  model.self_collide = element->flag("self_collide");
+  model.may_sleep = element->flag("allow_auto_disable");
   warn_of_unsupported(element, reading.report);
 
   ModelFlattener parts(model, reading);
-  parts.add_links(sdf_model, "", {}, false);
+  parts.add_links(frames, "", {}, false);
   if (model.links.empty() && reading.report.flaw(element, "expected at least one <link>", "the model has no effect")) {
     model.is_static = true;
     model.links.push_back({"link", {}, {}, {}});
@@ -276,19 +277,19 @@ std::vector<Model> read_model(const sdf::Model& sdf_model, const ModelReading& r
     warn_of_what_static_has(parts, reading.report);
     return {std::move(model)};
   }
-  parts.add_joints(sdf_model, "");
+  parts.add_joints(frames, "");
   // Devices name links and joints. If some of those are missing, every device would be reported.
   if (!reading.frames_resolve || model.joints.size() != parts.joint_count()) return {std::move(model)};
   set_loops_apart(model);
-  model.couplings = read_couplings(sdf_model, model, "", reading);
+  model.couplings = read_couplings(frames, model, "", reading);
   const FreeBodies bodies(model);
   const std::vector<std::vector<DeviceScope>> scopes = bodies.scopes(model, parts.scopes());
   std::vector<Model> read;
   for (std::size_t number = 0; number < std::max<std::size_t>(bodies.count(), 1); ++number) {
     Model& body = read.emplace_back(bodies.body(number, model));
-    if (!order_links(sdf_model, body, reading.report)) continue;
+    if (!order_links(*element, body, reading.report)) continue;
     if (number > 0) body.name += "/" + without_colons(body.links.front().name);
-    warn_of_loops(sdf_model, body, reading.report);
+    warn_of_loops(*element, body, reading.report);
     take_kinematic_links(body, reading.report, element);
     add_devices(scopes[number], bodies.sensors_of(number, model, parts.sensors()), reading, body);
   }

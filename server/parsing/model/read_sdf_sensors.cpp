@@ -8,6 +8,7 @@
 #include "server/core/text.hpp"
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/model/read_values.hpp"
+#include "server/parsing/sdf/schema/value_text.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -18,12 +19,17 @@ using Path = std::initializer_list<const char*>;
 class SensorElement {
  public:
   SensorElement(const SensorPlace& place, const Model& model, std::size_t owner, const ModelReading& reading)
-      : sensor_(*place.sensor), owner_(owner), name_(place.prefix + sensor_.Name()), model_(model), reading_(reading) {
+      : sensor_(place.sensor),
+        frames_(*place.frames),
+        owner_(owner),
+        name_(place.prefix + parsing::name_of(*place.sensor)),
+        model_(model),
+        reading_(reading) {
     check_numbers(element(), report());
     readout_.period = period();
   }
 
-  sdf::ElementPtr element() const { return sensor_.Element(); }
+  const Element* element() const { return sensor_; }
   const SdfReport& report() const { return reading_.report; }
   const std::string& name() const { return name_; }
   void rename(std::string name) { name_ = std::move(name); }
@@ -32,48 +38,51 @@ class SensorElement {
   const Link& link() const { return model_.links[owner_]; }
 
   Pose pose() const {
-    if (element()->GetParent()->GetName() != "joint") return resolved_pose(sensor_, reading_);
-    if (is_in_frame_of_parent(sensor_)) return written_pose(sensor_.RawPose(), element());
-    report().problem(find(element(), {"pose"}), "expected a pose in the frame of the joint");
+    const Element* const written = sensor_->child("pose");
+    if (sensor_->parent()->name() != "joint") return resolved_pose(*sensor_, frames_, reading_);
+    if (relative_to(*sensor_).empty())
+      return written != nullptr ? written_pose(written->node()).value_or(Pose{}) : Pose{};
+    report().problem(written, "expected a pose in the frame of the joint");
     return {};
   }
   /// Returns the element at a path; the sensor if there is none.
-  sdf::ElementPtr where(Path path) const {
-    const sdf::ElementPtr found = find(element(), path);
+  const Element* where(Path path) const {
+    const Element* const found = find(element(), path);
     return is_written(found) ? found : element();
   }
   double real(Path path, double by_default) const { return number(find(element(), path), by_default); }
   double non_negative(Path path, double by_default) const { return non_negative(find(element(), path), by_default); }
   std::size_t count(Path path, std::size_t by_default) const;
   std::string text(Path path, const std::string& by_default) const {
-    const sdf::ElementPtr found = find(element(), path);
-    return is_written(found) ? std::string(trimmed(found->GetValue()->GetAsString())) : by_default;
+    const Element* const found = find(element(), path);
+    return is_written(found) ? std::string(trimmed(found->text())) : by_default;
   }
   bool flag(Path path, bool by_default) const {
-    const sdf::ElementPtr found = find(element(), path);
-    return is_written(found) ? found->Get<bool>() : by_default;
+    const Element* const found = find(element(), path);
+    return is_written(found) ? found->flag() : by_default;
   }
   void problem(Path path, std::string message) const { report().problem(where(path), std::move(message)); }
 
   /// Adds the noise at `path` of a quantity, or of one value of it.
-  void add_noise(const sdf::ElementPtr& noise, const std::string& quantity, int value = -1);
+  void add_noise(const Element* noise, const std::string& quantity, int value = -1);
   void add_noise(Path path, const std::string& quantity) { add_noise(find(element(), path), quantity); }
   /// Adds the noises below `parent`, one for each axis.
-  void add_noises(const sdf::ElementPtr& parent, const std::string& quantity) {
+  void add_noises(const Element* parent, const std::string& quantity) {
     int axis = 0;
     for (const char* const each : {"x", "y", "z"}) add_noise(find(parent, {each, "noise"}), quantity, axis++);
   }
   const Readout& readout() const { return readout_; }
 
  private:
-  double number(const sdf::ElementPtr& found, double by_default) const;
-  double non_negative(const sdf::ElementPtr& found, double by_default) const;
+  double number(const Element* found, double by_default) const;
+  double non_negative(const Element* found, double by_default) const;
   std::chrono::nanoseconds period() const {
     const double rate = non_negative({"update_rate"}, 0.0);
     return rate > 0.0 ? to_time(1.0 / rate) : std::chrono::nanoseconds(0);
   }
 
-  const sdf::Sensor& sensor_;
+  const Element* sensor_;
+  const Frames& frames_;
   std::size_t owner_;
   std::string name_;
   const Model& model_;
@@ -81,39 +90,39 @@ class SensorElement {
   Readout readout_;
 };
 
-double SensorElement::number(const sdf::ElementPtr& found, double by_default) const {
+double SensorElement::number(const Element* found, double by_default) const {
   constexpr double reported = std::numeric_limits<double>::quiet_NaN();
   if (!is_written(found)) return by_default;
-  const double value = parse_real(found->GetValue()->GetAsString()).value_or(reported);
+  const double value = parse_real(found->text()).value_or(reported);
   if (std::isnan(value)) return reported;  // by check_numbers
   if (std::isfinite(value)) return value;
   report().problem(found, "expected a finite number");
   return reported;
 }
 
-double SensorElement::non_negative(const sdf::ElementPtr& found, double by_default) const {
+double SensorElement::non_negative(const Element* found, double by_default) const {
   const double value = number(found, by_default);
   if (value < 0.0) report().problem(found, "expected a number >= 0");
   return value;
 }
 
 std::size_t SensorElement::count(Path path, std::size_t by_default) const {
-  const sdf::ElementPtr found = find(element(), path);
+  const Element* const found = find(element(), path);
   if (!is_written(found)) return by_default;
-  const std::string written = found->GetValue()->GetAsString();
+  const std::string written = found->text();
   if (const auto value = parse_whole(written); value && *value > 0) return *value;
   if (parse_real(written)) report().problem(found, "expected a whole number >= 1");
   return by_default;
 }
 
-void SensorElement::add_noise(const sdf::ElementPtr& noise, const std::string& quantity, int value) {
+void SensorElement::add_noise(const Element* noise, const std::string& quantity, int value) {
   if (!noise) return;
   // The noise of a lidar has its type in an element.
   std::string type = "none";
-  if (const sdf::ElementPtr child = noise->FindElement("type"))
-    type = trimmed(child->GetValue()->GetAsString());
-  else if (noise->HasAttribute("type"))
-    type = trimmed(noise->GetAttribute("type")->GetAsString());
+  if (const Element* const child = noise->child("type"))
+    type = trimmed(child->text());
+  else if (noise->has_attribute("type"))
+    type = trimmed(noise->attribute("type"));
   if (type == "none") return;
   if (type != "gaussian" && type != "gaussian_quantized") {
     report().problem(noise, "expected the noise type none, gaussian or gaussian_quantized, not '" + type + "'");
@@ -122,17 +131,17 @@ void SensorElement::add_noise(const sdf::ElementPtr& noise, const std::string& q
   Noise result;
   result.quantity = quantity;
   result.element = value;
-  result.mean = number(noise->FindElement("mean"), 0.0);
-  result.deviation = non_negative(noise->FindElement("stddev"), 0.0);
-  result.bias = number(noise->FindElement("bias_mean"), 0.0);
-  result.bias_deviation = non_negative(noise->FindElement("bias_stddev"), 0.0);
-  const double density = non_negative(noise->FindElement("dynamic_bias_stddev"), 0.0);
-  const double time = non_negative(noise->FindElement("dynamic_bias_correlation_time"), 0.0);
+  result.mean = number(noise->child("mean"), 0.0);
+  result.deviation = non_negative(noise->child("stddev"), 0.0);
+  result.bias = number(noise->child("bias_mean"), 0.0);
+  result.bias_deviation = non_negative(noise->child("bias_stddev"), 0.0);
+  const double density = non_negative(noise->child("dynamic_bias_stddev"), 0.0);
+  const double time = non_negative(noise->child("dynamic_bias_correlation_time"), 0.0);
   if (density > 0.0 && time > 0.0) {
     result.drift_deviation = density * drift_from_density(time);
     result.drift_time = time;
   }
-  if (type == "gaussian_quantized") result.precision = non_negative(noise->FindElement("precision"), 0.0);
+  if (type == "gaussian_quantized") result.precision = non_negative(noise->child("precision"), 0.0);
   if (!is_exact(result)) readout_.noises.push_back(result);
 }
 
@@ -169,7 +178,7 @@ void read_angles(const SensorElement& sensor, const char* kind, const char* dire
 }
 
 std::optional<Device> read_lidar(SensorElement& sensor) {
-  const char* const kind = sensor.element()->FindElement("ray") ? "ray" : "lidar";
+  const char* const kind = sensor.element()->child("ray") ? "ray" : "lidar";
   auto lidar = posed<Lidar>(sensor);
   lidar.columns = read_rays(sensor, kind, "horizontal", 640);
   lidar.rows = read_rays(sensor, kind, "vertical", 1);
@@ -197,13 +206,13 @@ void read_reference(const SensorElement& sensor, Imu& imu) {
   }
   if (localization != "CUSTOM")
     return ignored({"imu", "orientation_reference_frame", "localization"}, "the localization '" + localization + "'");
-  const sdf::ElementPtr rpy = find(sensor.element(), {"imu", "orientation_reference_frame", "custom_rpy"});
+  const Element* const rpy = find(sensor.element(), {"imu", "orientation_reference_frame", "custom_rpy"});
   if (!rpy) return;
-  const auto frame = rpy->Get<std::string>("parent_frame");
+  const auto frame = rpy->attribute("parent_frame");
   if (!frame.empty() && frame != "world")
     return ignored({"imu", "orientation_reference_frame", "custom_rpy"}, "the parent_frame '" + frame + "'");
   imu.is_relative_to_world = frame == "world";
-  if (is_written(rpy)) imu.reference_rpy = to_eigen(rpy->Get<ignition::math::Vector3d>());
+  if (is_written(rpy)) imu.reference_rpy = rpy->vector();
 }
 
 std::optional<Device> read_imu(SensorElement& sensor) {
@@ -289,7 +298,7 @@ std::optional<Device> read_navsat(SensorElement& sensor) {
   const char* const element = find(sensor.element(), {"gps"}) ? "gps" : "navsat";
   for (const auto& [sensing, quantity] :
        {std::pair{"position_sensing", "position"}, std::pair{"velocity_sensing", "velocity"}}) {
-    const sdf::ElementPtr horizontal = find(sensor.element(), {element, sensing, "horizontal", "noise"});
+    const Element* const horizontal = find(sensor.element(), {element, sensing, "horizontal", "noise"});
     for (const int axis : {0, 1}) sensor.add_noise(horizontal, quantity, axis);
     sensor.add_noise(find(sensor.element(), {element, sensing, "vertical", "noise"}), quantity, 2);
   }
@@ -319,11 +328,11 @@ constexpr Kind kinds[] = {
     {"gps", "link", &read_navsat},
 };
 
-const Kind* kind_of(const sdf::ElementPtr& element) {
-  if (!element || !element->GetParent()) return nullptr;
-  const auto type = element->Get<std::string>("type");
+const Kind* kind_of(const Element* element) {
+  if (!element || !element->parent()) return nullptr;
+  const auto type = element->attribute("type");
   const auto found = std::ranges::find_if(
-      kinds, [&](const Kind& kind) { return kind.type == type && kind.parent == element->GetParent()->GetName(); });
+      kinds, [&](const Kind& kind) { return kind.type == type && kind.parent == element->parent()->name(); });
   return found == std::end(kinds) ? nullptr : found;
 }
 
@@ -334,7 +343,7 @@ std::size_t place_of(const std::vector<Named>& all, const std::string& name) {
 
 }  // namespace
 
-bool is_sensor(const sdf::ElementPtr& element) { return kind_of(element) != nullptr; }
+bool is_sensor(const Element* element) { return kind_of(element) != nullptr; }
 
 std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, const Model& model,
                                      const ModelReading& reading) {

@@ -1,14 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sdf/Box.hh>
-#include <sdf/Capsule.hh>
-#include <sdf/Cylinder.hh>
-#include <sdf/Ellipsoid.hh>
-#include <sdf/Heightmap.hh>
-#include <sdf/Mesh.hh>
-#include <sdf/Plane.hh>
-#include <sdf/Sphere.hh>
 #include <stdexcept>
 #include <utility>
 
@@ -26,7 +18,7 @@ constexpr const char* left_out = "the collision is left out";
 
 // Reports a collision that cannot be read. Without it, a moving model would pass through others, so this is an error
 // for moving models, also in files from other sources.
-void report_lost(const sdf::ElementPtr& element, const std::string& message, const ModelReading& reading) {
+void report_lost(const Element* element, const std::string& message, const ModelReading& reading) {
   if (reading.is_static)
     reading.report.flaw(element, message, left_out);
   else
@@ -34,23 +26,25 @@ void report_lost(const sdf::ElementPtr& element, const std::string& message, con
 }
 
 // Returns false if the shape is omitted. NaN passes, since check_numbers has reported it.
-bool check_size(const sdf::ElementPtr& geometry, std::initializer_list<const char*> path, double least,
-                const SdfReport& report) {
-  const sdf::ElementPtr element = find(geometry, path);
+bool check_size(const Element& shape, const char* size, double least, const SdfReport& report) {
+  const Element* const element = shape.child(size);
   const bool is_wrong = least <= 0.0 || std::isinf(least);
-  return !is_wrong || !report.flaw(element ? element : geometry, "expected a size > 0 m", left_out);
+  return !is_wrong || !report.flaw(element != nullptr ? element : &shape, "expected a size > 0 m", left_out);
 }
 
-std::optional<Shape> read_mesh_shape(const sdf::Mesh& mesh, const ModelReading& reading) {
-  const sdf::ElementPtr element = mesh.Element();
-  const Eigen::Vector3d scale = to_eigen(mesh.Scale());
+std::optional<Shape> read_mesh_shape(const Element& mesh, const ModelReading& reading) {
+  const Eigen::Vector3d scale = mesh.vector("scale");
   if ((scale.array() == 0.0).any()) {
-    reading.report.flaw(find(element, {"scale"}), "expected a scale that is not zero", left_out);
+    reading.report.flaw(mesh.child("scale"), "expected a scale that is not zero", left_out);
     return std::nullopt;
   }
   const bool convex = !reading.is_static;
-  const sdf::ElementPtr uri = find(element, {"uri"});
-  if (!uri || !scale.allFinite()) return std::nullopt;  // has been reported
+  const Element* const uri = mesh.child("uri");
+  if (!is_written(uri)) {
+    report_lost(&mesh, "missing: <uri>, the file of the mesh", reading);
+    return std::nullopt;
+  }
+  if (!scale.allFinite()) return std::nullopt;  // has been reported
   try {
     return Mesh{reading.shape_files.mesh(uri, scale, convex), convex};
   } catch (const ImporterFailed& error) {
@@ -61,10 +55,10 @@ std::optional<Shape> read_mesh_shape(const sdf::Mesh& mesh, const ModelReading& 
   }
 }
 
-std::optional<Shape> read_visual_mesh(const sdf::Mesh& mesh, const ModelReading& reading) {
-  const Eigen::Vector3d scale = to_eigen(mesh.Scale());
-  const sdf::ElementPtr uri = find(mesh.Element(), {"uri"});
-  if (!uri || !scale.allFinite() || (scale.array() == 0.0).any()) return std::nullopt;
+std::optional<Shape> read_visual_mesh(const Element& mesh, const ModelReading& reading) {
+  const Eigen::Vector3d scale = mesh.vector("scale");
+  const Element* const uri = mesh.child("uri");
+  if (!is_written(uri) || !scale.allFinite() || (scale.array() == 0.0).any()) return std::nullopt;
   try {
     Mesh shape{reading.shape_files.mesh(uri, scale, false), false};
     for (const std::string& warning : reading.shape_files.warnings_of(*shape.triangles))
@@ -77,12 +71,7 @@ std::optional<Shape> read_visual_mesh(const sdf::Mesh& mesh, const ModelReading&
   }
 }
 
-std::optional<Shape> shown(Shape shape, double least) {
-  return least > 0.0 && std::isfinite(least) ? std::optional(std::move(shape)) : std::nullopt;
-}
-
-std::optional<Shape> read_terrain(const sdf::ElementPtr& element, const Eigen::Vector3d& size,
-                                  const SdfReport& report) {
+std::optional<Shape> read_terrain(const Element* element, const Eigen::Vector3d& size, const SdfReport& report) {
   const auto values = ExtensionValues::read(element, *find_extension("terrain", "heightmap"), report);
   if (!values) return std::nullopt;
   try {
@@ -94,15 +83,14 @@ std::optional<Shape> read_terrain(const sdf::ElementPtr& element, const Eigen::V
   }
 }
 
-std::optional<Shape> read_heightmap(const sdf::Heightmap& map, const ModelReading& reading) {
-  const sdf::ElementPtr element = map.Element();
-  const Eigen::Vector3d size = to_eigen(map.Size());
-  if (!reading.is_static) report_lost(element, "a heightmap requires <static>true</static> in its model", reading);
-  if (!check_size(element, {"size"}, size.minCoeff(), reading.report)) return std::nullopt;
-  const sdf::ElementPtr terrain = find(element, {"cohort:terrain"});
+std::optional<Shape> read_heightmap(const Element& map, const ModelReading& reading) {
+  const Eigen::Vector3d size = map.vector("size");
+  if (!reading.is_static) report_lost(&map, "a heightmap requires <static>true</static> in its model", reading);
+  if (!check_size(map, "size", size.minCoeff(), reading.report)) return std::nullopt;
+  const Element* const terrain = map.child("cohort:terrain");
   if (terrain && size.minCoeff() > 0.0 && size.allFinite()) return read_terrain(terrain, size, reading.report);
-  const sdf::ElementPtr uri = find(element, {"uri"});
-  if (!uri || terrain || !(size.minCoeff() > 0.0)) return std::nullopt;  // has been reported
+  const Element* const uri = map.child("uri");
+  if (uri == nullptr || terrain || !(size.minCoeff() > 0.0)) return std::nullopt;  // has been reported
   try {
     return Heightmap{reading.shape_files.height_grid(uri, size)};
   } catch (const std::runtime_error& error) {
@@ -111,65 +99,73 @@ std::optional<Shape> read_heightmap(const sdf::Heightmap& map, const ModelReadin
   }
 }
 
-}  // namespace
-
-std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReading& reading) {
-  const sdf::ElementPtr element = geometry.Element();
-  const SdfReport& report = reading.report;
-  if (const sdf::Box* const box = geometry.BoxShape()) {
-    const Eigen::Vector3d size = to_eigen(box->Size());
-    if (!check_size(element, {"box", "size"}, size.minCoeff(), report)) return std::nullopt;
-    return Box{size};
-  }
-  if (const sdf::Sphere* const sphere = geometry.SphereShape()) {
-    if (!check_size(element, {"sphere", "radius"}, sphere->Radius(), report)) return std::nullopt;
-    return Sphere{sphere->Radius()};
-  }
-  if (const sdf::Cylinder* const cylinder = geometry.CylinderShape()) {
-    const bool has_radius = check_size(element, {"cylinder", "radius"}, cylinder->Radius(), report);
-    const bool has_length = check_size(element, {"cylinder", "length"}, cylinder->Length(), report);
-    if (!has_radius || !has_length) return std::nullopt;
-    return Cylinder{cylinder->Radius(), cylinder->Length()};
-  }
-  if (const sdf::Capsule* const capsule = geometry.CapsuleShape()) {
-    const bool has_radius = check_size(element, {"capsule", "radius"}, capsule->Radius(), report);
-    const bool has_length = check_size(element, {"capsule", "length"}, capsule->Length(), report);
-    if (!has_radius || !has_length) return std::nullopt;
-    return Capsule{capsule->Radius(), capsule->Length()};
-  }
-  if (const sdf::Ellipsoid* const ellipsoid = geometry.EllipsoidShape()) {
-    const Eigen::Vector3d radii = to_eigen(ellipsoid->Radii());
-    if (!check_size(element, {"ellipsoid", "radii"}, radii.minCoeff(), report)) return std::nullopt;
-    return Ellipsoid{radii};
-  }
-  if (const sdf::Plane* const plane = geometry.PlaneShape()) {
-    const Eigen::Vector3d normal = to_eigen(plane->Normal());
-    if (!reading.is_static) report_lost(element, "a plane requires <static>true</static> in its model", reading);
-    if (normal.isZero()) report.problem(element, "expected a normal that is not zero");
-    return Plane{written_unit_vector(find(element, {"plane", "normal"})).value_or(normal.normalized())};
-  }
-  if (const sdf::Mesh* const mesh = geometry.MeshShape()) return read_mesh_shape(*mesh, reading);
-  if (const sdf::Heightmap* const map = geometry.HeightmapShape()) return read_heightmap(*map, reading);
-  const sdf::ElementPtr kind = element->GetFirstElement();
-  report_lost(element,
-              (kind ? "<" + kind->GetName() + "> is not supported; expected " : "expected ") + std::string(geometries),
-              reading);
+std::optional<Shape> shape_of(std::string_view kind, const Element& element) {
+  if (kind == "box") return Box{element.vector("size")};
+  if (kind == "sphere") return Sphere{element.real("radius")};
+  if (kind == "cylinder") return Cylinder{element.real("radius"), element.real("length")};
+  if (kind == "capsule") return Capsule{element.real("radius"), element.real("length")};
+  if (kind == "ellipsoid") return Ellipsoid{element.vector("radii")};
   return std::nullopt;
 }
 
-std::optional<Shape> read_visual_shape(const sdf::Geometry& geometry, const ModelReading& reading) {
-  const sdf::ElementPtr element = geometry.Element();
-  if (const sdf::Box* const box = geometry.BoxShape()) return shown(Box{to_eigen(box->Size())}, box->Size().Min());
-  if (const sdf::Sphere* const sphere = geometry.SphereShape())
-    return shown(Sphere{sphere->Radius()}, sphere->Radius());
-  if (const sdf::Cylinder* const cylinder = geometry.CylinderShape())
-    return shown(Cylinder{cylinder->Radius(), cylinder->Length()}, std::min(cylinder->Radius(), cylinder->Length()));
-  if (const sdf::Capsule* const capsule = geometry.CapsuleShape())
-    return shown(Capsule{capsule->Radius(), capsule->Length()}, std::min(capsule->Radius(), capsule->Length()));
-  if (const sdf::Ellipsoid* const ellipsoid = geometry.EllipsoidShape())
-    return shown(Ellipsoid{to_eigen(ellipsoid->Radii())}, ellipsoid->Radii().Min());
-  if (const sdf::Mesh* const mesh = geometry.MeshShape()) return read_visual_mesh(*mesh, reading);
-  return std::nullopt;  // planes and height maps are shown as what they collide as
+// Returns whether all sizes of a simple shape are right; reports those that are not.
+bool check_sizes(const Element& shape, const SdfReport& report) {
+  bool are_right = true;
+  for (const char* const size : {"size", "radius", "length", "radii"})
+    if (shape.rule()->child(size) != nullptr) {
+      const bool is_vector = shape.rule()->child(size)->value.type == ValueType::vector3;
+      const double least = is_vector ? shape.vector(size).minCoeff() : shape.real(size);
+      are_right = check_size(shape, size, least, report) && are_right;
+    }
+  return are_right;
+}
+
+std::optional<Shape> read_plane(const Element& plane, const ModelReading& reading) {
+  if (!reading.is_static) report_lost(plane.parent(), "a plane requires <static>true</static> in its model", reading);
+  const Eigen::Vector3d normal = plane.vector("normal");
+  if (normal.isZero()) reading.report.problem(plane.parent(), "expected a normal that is not zero");
+  return Plane{written_unit_vector(plane.child("normal")).value_or(normal.normalized())};
+}
+
+// Returns the first shape in a <geometry>; nullptr if it has none that SDF knows.
+const Element* shape_in(const Element& geometry) {
+  for (const Element* const child : geometry.children())
+    if (child->rule() != nullptr && child->name() != "empty") return child;
+  return nullptr;
+}
+
+}  // namespace
+
+std::optional<Shape> read_shape(const Element& geometry, const ModelReading& reading) {
+  const Element* const shape = geometry.name() == "geometry" ? shape_in(geometry) : nullptr;
+  if (shape != nullptr) {
+    if (std::optional<Shape> simple = shape_of(shape->name(), *shape))
+      return check_sizes(*shape, reading.report) ? std::move(simple) : std::nullopt;
+    if (shape->name() == "plane") return read_plane(*shape, reading);
+    if (shape->name() == "mesh") return read_mesh_shape(*shape, reading);
+    if (shape->name() == "heightmap") return read_heightmap(*shape, reading);
+  }
+  const Element* const kind =
+      geometry.name() == "geometry" && !geometry.children().empty() ? geometry.children().front() : nullptr;
+  report_lost(
+      &geometry,
+      (kind != nullptr ? "<" + kind->name() + "> is not supported; expected " : "expected ") + std::string(geometries),
+      reading);
+  return std::nullopt;
+}
+
+std::optional<Shape> read_visual_shape(const Element& geometry, const ModelReading& reading) {
+  const Element* const shape = shape_in(geometry);
+  if (shape == nullptr) return std::nullopt;
+  if (shape->name() == "mesh") return read_visual_mesh(*shape, reading);
+  std::optional<Shape> simple = shape_of(shape->name(), *shape);  // others are shown as what they collide as
+  if (!simple) return std::nullopt;
+  const auto is_size = [](double size) { return size > 0.0 && std::isfinite(size); };
+  for (const char* const size : {"size", "radii"})
+    if (shape->rule()->child(size) != nullptr && !is_size(shape->vector(size).minCoeff())) return std::nullopt;
+  for (const char* const size : {"radius", "length"})
+    if (shape->rule()->child(size) != nullptr && !is_size(shape->real(size))) return std::nullopt;
+  return simple;
 }
 
 }  // namespace cohort::parsing

@@ -57,9 +57,9 @@ void read_values(const KeyValues& values, Struct& into) {
 
 /// Reads a child of a link; returns nothing if it is of another kind, or, with a report, if it is invalid.
 template <class Kind>
-std::optional<ExtensionValues> read_as(const sdf::ElementPtr& child, const SdfReport& report) {
+std::optional<ExtensionValues> read_as(const Element* child, const SdfReport& report) {
   const Extension& extension = keys::extension_of<Kind>;
-  if (child->GetName() != std::string(extension_prefix) + ":" + std::string(extension.name)) return std::nullopt;
+  if (child->name() != std::string(extension_prefix) + ":" + std::string(extension.name)) return std::nullopt;
   return ExtensionValues::read(child, extension, report);
 }
 

@@ -47,14 +47,13 @@ TriangleMesh hull_of(const TriangleMesh& mesh, const std::filesystem::path& file
 
 }  // namespace
 
-std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const sdf::ElementPtr& uri, const Eigen::Vector3d& scale,
-                                                     bool convex) {
+std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const Element* uri, const Eigen::Vector3d& scale, bool convex) {
   const std::filesystem::path file = files_.find_file(uri);
   ReadMesh& mesh = meshes_[{file, scale.x(), scale.y(), scale.z(), convex}];
   if (mesh.triangles) return mesh.triangles;
   ImportedMesh read = read_mesh(files_.input(), file, scale);
-  TriangleMesh triangles =
-      convex ? hull_of(read, file, files_.is_foreign(uri)) : TriangleMesh(std::move(static_cast<TriangleMesh&>(read)));
+  TriangleMesh triangles = convex ? hull_of(read, file, uri->node().file->is_foreign)
+                                  : TriangleMesh(std::move(static_cast<TriangleMesh&>(read)));
   triangles.file = file;
   triangles.scale = scale;
   if (!convex) mesh.warnings = add_images(read.images, triangles);
@@ -84,7 +83,7 @@ std::vector<std::string> ShapeFiles::add_images(std::vector<MeshImage>& images, 
   return warnings;
 }
 
-std::shared_ptr<const HeightGrid> ShapeFiles::height_grid(const sdf::ElementPtr& uri, const Eigen::Vector3d& size) {
+std::shared_ptr<const HeightGrid> ShapeFiles::height_grid(const Element* uri, const Eigen::Vector3d& size) {
   const std::filesystem::path file = files_.find_file(uri);
   std::shared_ptr<const HeightGrid>& grid = grids_[{file, size.x(), size.y(), size.z()}];
   if (grid) return grid;
@@ -95,7 +94,7 @@ std::shared_ptr<const HeightGrid> ShapeFiles::height_grid(const sdf::ElementPtr&
   return grid;
 }
 
-std::shared_ptr<const Samples> ShapeFiles::samples(const sdf::ElementPtr& uri) {
+std::shared_ptr<const Samples> ShapeFiles::samples(const Element* uri) {
   const std::filesystem::path file = files_.find_file(uri);
   std::shared_ptr<const Samples>& samples = samples_[file];
   if (!samples) samples = std::make_shared<const Samples>(read_samples(files_.input(), file));

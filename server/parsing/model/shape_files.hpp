@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <sdf/Element.hh>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -32,17 +31,17 @@ class ShapeFiles {
 
   /// Returns the mesh that `uri` names, or its convex hull; in a file from another source, a flat hull gets a thickness
   /// of 1 mm. Throws std::runtime_error with the problem.
-  std::shared_ptr<const TriangleMesh> mesh(const sdf::ElementPtr& uri, const Eigen::Vector3d& scale, bool convex);
+  std::shared_ptr<const TriangleMesh> mesh(const Element* uri, const Eigen::Vector3d& scale, bool convex);
 
   /// Returns warnings for textures of a mesh from the function above, if it is not a convex hull.
   const std::vector<std::string>& warnings_of(const TriangleMesh& mesh) const;
 
   /// Returns the height map of the image that `uri` names. Throws std::runtime_error with the problem.
-  std::shared_ptr<const HeightGrid> height_grid(const sdf::ElementPtr& uri, const Eigen::Vector3d& size);
+  std::shared_ptr<const HeightGrid> height_grid(const Element* uri, const Eigen::Vector3d& size);
 
   /// Returns the samples that `uri` names. Throws InputError with the problems of the file, or std::runtime_error if
   /// there is no such file.
-  std::shared_ptr<const Samples> samples(const sdf::ElementPtr& uri);
+  std::shared_ptr<const Samples> samples(const Element* uri);
 
  private:
   struct ReadMesh {

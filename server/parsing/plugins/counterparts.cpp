@@ -25,7 +25,7 @@ double mass_of(const Model& model) {
   return mass;
 }
 
-using JointParameters = std::vector<std::pair<const Joint*, sdf::ElementPtr>>;
+using JointParameters = std::vector<std::pair<const Joint*, const Element*>>;
 
 // Returns the smallest of these limits in <limit> of the joints, or else `fallback`.
 double least_limit(const JointParameters& joints, double JointAxis::*limit, double fallback) {
@@ -58,7 +58,7 @@ void take_wheels(ModelPlugin& plugin, ModelPlugin::Values& values) {
   const double angular = plugin.number_or(2.0 * spin * radius / separation, {"max_angular_velocity", "max_velocity"});
   // The limits backwards equal those forwards, so a minimum is read if it is the opposite of the maximum.
   const auto is_opposite = [&](const char* name, double greatest) {
-    const sdf::ElementPtr least = plugin.element()->FindElement(name);
+    const Element* const least = plugin.element()->child(name);
     return least && parse_real(text_of_parameter(least)) == -greatest;
   };
   if (is_opposite("min_velocity", linear)) plugin.all({"min_velocity"});
@@ -103,7 +103,7 @@ void ackermann_steering(ModelPlugin& plugin) {
 namespace {
 
 // Completes a motor that represents the controller of one joint.
-void finish_motor(ModelPlugin::Values values, const Joint& joint, const sdf::ElementPtr& parameter, double velocity,
+void finish_motor(ModelPlugin::Values values, const Joint& joint, const Element* parameter, double velocity,
                   double effort) {
   values.set("joint", text_of_parameter(parameter), parameter)
       .set("max_velocity", least_limit({{&joint, parameter}}, &JointAxis::max_velocity, velocity))
@@ -141,7 +141,7 @@ void joint_position_controller(ModelPlugin& plugin) {
 }
 
 void joint_state_publisher(ModelPlugin& plugin) {
-  const auto encode = [&](const std::string& name, const sdf::ElementPtr& where) {
+  const auto encode = [&](const std::string& name, const Element* where) {
     plugin.as<JointEncoder>().set("joint", name, where).finish(name);
   };
   if (plugin.first(joint_names)) {
@@ -160,7 +160,7 @@ struct Carrier {
   std::string link;
   Pose X_LC;
 };
-std::optional<Carrier> carrier_of(ModelPlugin& plugin, const Joint& joint, const sdf::ElementPtr& parameter) {
+std::optional<Carrier> carrier_of(ModelPlugin& plugin, const Joint& joint, const Element* parameter) {
   if (joint.parent == Joint::world) {
     plugin.report().problem(parameter, "expected a propeller joint whose parent is a link, not the world");
     return std::nullopt;
@@ -174,7 +174,7 @@ std::optional<Carrier> carrier_of(ModelPlugin& plugin, const Joint& joint, const
 void multicopter_motor_model(ModelPlugin& plugin) {
   need_joint(plugin);
   plugin.all({"linkName"});  // it is that of the joint
-  if (const sdf::ElementPtr type = plugin.first({"motorType"}); type && text_of_parameter(type) != "velocity")
+  if (const Element* const type = plugin.first({"motorType"}); type && text_of_parameter(type) != "velocity")
     plugin.report().warning(type, "is not supported: motors are commanded by velocity");
   for (const auto& [joint, parameter] : plugin.joints(joint_names))
     if (const auto carrier = carrier_of(plugin, *joint, parameter))
@@ -229,7 +229,7 @@ namespace {
 
 // Returns the link on which a plugin acts; nothing, with a report, if it names none.
 std::optional<std::string> link_of(ModelPlugin& plugin) {
-  const sdf::ElementPtr parameter = plugin.first({"link_name"});
+  const Element* const parameter = plugin.first({"link_name"});
   if (!parameter) {
     plugin.report().problem(plugin.element(), "missing: the link on which the plugin acts", "link_name");
     return std::nullopt;
@@ -314,7 +314,7 @@ void linear_battery(ModelPlugin& plugin) {
   const auto capacity = plugin.number({"capacity"});  // [A h]
   if (!voltage && !open_circuit) plugin.report().problem(plugin.element(), "missing: a voltage > 0", "voltage");
   if (!capacity) plugin.report().problem(plugin.element(), "missing: a capacity > 0 in A h", "capacity");
-  const sdf::ElementPtr charge = plugin.first({"initial_charge"});
+  const Element* const charge = plugin.first({"initial_charge"});
   const double charged = plugin.number_or(capacity.value_or(1.0), {"initial_charge"}, ExtensionValue::non_negative);
   const std::string name = plugin.text_or("battery", {"battery_name"});
   if (!capacity || (!voltage && !open_circuit)) return;
@@ -331,10 +331,10 @@ void buoyancy(Plugin& plugin, World& world) {
   constexpr double above_all = 1e6;         // [m]
   double density = plugin.number_or(1000.0, {"uniform_fluid_density"});
   double level = above_all;
-  if (const sdf::ElementPtr layers = plugin.first({"graded_buoyancy"})) {
+  if (const Element* const layers = plugin.first({"graded_buoyancy"})) {
     Plugin graded(layers, plugin.report());
     density = graded.number_or(1000.0, {"default_density"});
-    const std::vector<sdf::ElementPtr> changes = graded.all({"density_change"});
+    const std::vector<const Element*> changes = graded.all({"density_change"});
     if (!changes.empty()) {
       Plugin change(changes.front(), plugin.report());
       level = change.number_or(0.0, {"above_depth"}, ExtensionValue::real);

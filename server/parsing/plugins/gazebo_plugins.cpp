@@ -89,14 +89,12 @@ const PluginKind* find_plugin(std::string_view name) {
   return found == std::end(known_plugins) ? nullptr : found;
 }
 
-std::string attribute_of(const sdf::ElementPtr& plugin, const char* name) {
-  return plugin->HasAttribute(name) ? plugin->GetAttribute(name)->GetAsString() : std::string();
-}
+std::string attribute_of(const Element* plugin, const char* name) { return plugin->attribute(name); }
 
 template <class Visit>
-void for_plugins(const sdf::ElementPtr& element, const Visit& visit) {
-  for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement())
-    if (child->GetName() == "plugin")
+void for_plugins(const Element* element, const Visit& visit) {
+  for (const Element* const child : element->children())
+    if (child->name() == "plugin")
       if (const PluginKind* const kind = plugin_kind_of(child)) visit(child, *kind);
 }
 
@@ -106,14 +104,14 @@ bool names_what_is_driven(const Extension& extension, std::string_view key) {
 }
 
 // Returns the texts in `cohort:` actuators of a model, which include the names of joints and links.
-std::set<std::string> words_of_actuators(const sdf::ElementPtr& model_element) {
+std::set<std::string> words_of_actuators(const Element* model_element) {
   std::set<std::string> words;
-  for (sdf::ElementPtr child = model_element->GetFirstElement(); child; child = child->GetNextElement()) {
+  for (const Element* const child : model_element->children()) {
     const Extension* const extension =
-        has_prefix(child->GetName()) ? find_extension(without_prefix(child->GetName()), "model") : nullptr;
+        has_prefix(child->name()) ? find_extension(without_prefix(child->name()), "model") : nullptr;
     if (extension == nullptr || extension->topic != "actuators") continue;
-    for (sdf::ElementPtr key = child->GetFirstElement(); key; key = key->GetNextElement())
-      if (names_what_is_driven(*extension, without_prefix(key->GetName()))) words.insert(text_of_parameter(key));
+    for (const Element* const key : child->children())
+      if (names_what_is_driven(*extension, without_prefix(key->name()))) words.insert(text_of_parameter(key));
   }
   return words;
 }
@@ -132,7 +130,7 @@ bool drives_one_of(const Counterpart& counterpart, const std::set<std::string>& 
 
 std::span<const PluginKind> plugin_kinds() { return known_plugins; }
 
-const PluginKind* plugin_kind_of(const sdf::ElementPtr& plugin) {
+const PluginKind* plugin_kind_of(const Element* plugin) {
   const std::string name = attribute_of(plugin, "name");
   constexpr std::string_view before_class = "::systems::";
   const std::size_t place = name.find(before_class);
@@ -141,14 +139,14 @@ const PluginKind* plugin_kind_of(const sdf::ElementPtr& plugin) {
   return by_class != nullptr ? by_class : find_plugin(attribute_of(plugin, "filename"));
 }
 
-void warn_of_unknown_plugin(const sdf::ElementPtr& plugin, const SdfReport& report) {
+void warn_of_unknown_plugin(const Element* plugin, const SdfReport& report) {
   if (plugin_kind_of(plugin) == nullptr)
     report.warning_once(plugin,
                         "the plugin '" + attribute_of(plugin, "filename") + "' is not supported and is ignored");
 }
 
-void warn_of_static_belts(const sdf::ElementPtr& model_element, const SdfReport& report) {
-  for_plugins(model_element, [&](const sdf::ElementPtr& element, const PluginKind& kind) {
+void warn_of_static_belts(const Element* model_element, const SdfReport& report) {
+  for_plugins(model_element, [&](const Element* element, const PluginKind& kind) {
     if (kind.in_model == track_controller)
       report.warning(
           element,
@@ -156,12 +154,12 @@ void warn_of_static_belts(const sdf::ElementPtr& model_element, const SdfReport&
   });
 }
 
-std::vector<Counterpart> read_model_plugins(const sdf::ElementPtr& model_element, const std::string& prefix,
-                                            const std::set<sdf::ElementPtr>& elsewhere, const Model& model,
+std::vector<Counterpart> read_model_plugins(const Element* model_element, const std::string& prefix,
+                                            const std::set<const Element*>& elsewhere, const Model& model,
                                             std::set<std::string>& names, const SdfReport& report) {
   const std::set<std::string> driven = words_of_actuators(model_element);
   std::vector<Counterpart> counterparts;
-  for_plugins(model_element, [&](const sdf::ElementPtr& element, const PluginKind& kind) {
+  for_plugins(model_element, [&](const Element* element, const PluginKind& kind) {
     if (kind.in_model == nullptr || elsewhere.contains(element)) return;
     ModelPlugin plugin(element, prefix, model, names, report);
     const std::size_t before = report.count();
@@ -174,8 +172,8 @@ std::vector<Counterpart> read_model_plugins(const sdf::ElementPtr& model_element
   return counterparts;
 }
 
-void read_world_plugins(const sdf::ElementPtr& world_element, World& world, const SdfReport& report) {
-  for_plugins(world_element, [&](const sdf::ElementPtr& element, const PluginKind& kind) {
+void read_world_plugins(const Element* world_element, World& world, const SdfReport& report) {
+  for_plugins(world_element, [&](const Element* element, const PluginKind& kind) {
     if (kind.in_world == nullptr) return;
     Plugin plugin(element, report);
     const std::size_t before = report.count();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <sdf/Element.hh>
 #include <set>
 #include <span>
 #include <string>
@@ -23,22 +22,22 @@ std::span<const PluginKind> plugin_kinds();
 
 /// Returns the entry for a <plugin>; nullptr if there is none. It is found by the attribute `filename`, of any
 /// generation of Gazebo, or by the class in `name`.
-const PluginKind* plugin_kind_of(const sdf::ElementPtr& plugin);
+const PluginKind* plugin_kind_of(const Element* plugin);
 
 /// Warns of a <plugin> that is not in the list, once for each file.
-void warn_of_unknown_plugin(const sdf::ElementPtr& plugin, const SdfReport& report);
+void warn_of_unknown_plugin(const Element* plugin, const SdfReport& report);
 
 /// Warns of plugins of a static model that would make it a conveyor.
-void warn_of_static_belts(const sdf::ElementPtr& model_element, const SdfReport& report);
+void warn_of_static_belts(const Element* model_element, const SdfReport& report);
 
 /// Converts the plugins of a model or a nested model whose links and joints have been read. Objects that `cohort:`
 /// devices of `model_element` drive are not driven by plugins too. Plugins in `elsewhere` belong to another body.
 /// `names`: names that the plugins of the whole model have used.
-std::vector<Counterpart> read_model_plugins(const sdf::ElementPtr& model_element, const std::string& prefix,
-                                            const std::set<sdf::ElementPtr>& elsewhere, const Model& model,
+std::vector<Counterpart> read_model_plugins(const Element* model_element, const std::string& prefix,
+                                            const std::set<const Element*>& elsewhere, const Model& model,
                                             std::set<std::string>& names, const SdfReport& report);
 
 /// Applies the plugins of the world to air and water.
-void read_world_plugins(const sdf::ElementPtr& world_element, World& world, const SdfReport& report);
+void read_world_plugins(const Element* world_element, World& world, const SdfReport& report);
 
 }  // namespace cohort::parsing

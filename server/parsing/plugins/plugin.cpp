@@ -57,26 +57,24 @@ constexpr std::string_view of_no_consequence[] = {"ros",
 
 }  // namespace
 
-std::string text_of_parameter(const sdf::ElementPtr& parameter) {
-  return parameter->GetValue() ? std::string(trimmed(parameter->GetValue()->GetAsString())) : std::string();
-}
+std::string text_of_parameter(const Element* parameter) { return std::string(trimmed(parameter->text())); }
 
-std::vector<sdf::ElementPtr> Plugin::all(ParameterNames names) {
+std::vector<const Element*> Plugin::all(ParameterNames names) {
   asked_.insert(names.begin(), names.end());
-  std::vector<sdf::ElementPtr> found;
-  for (sdf::ElementPtr child = element_->GetFirstElement(); child; child = child->GetNextElement())
-    if (std::find(names.begin(), names.end(), child->GetName()) != names.end()) found.push_back(child);
+  std::vector<const Element*> found;
+  for (const Element* const child : element_->children())
+    if (std::find(names.begin(), names.end(), child->name()) != names.end()) found.push_back(child);
   return found;
 }
 
-sdf::ElementPtr Plugin::first(ParameterNames names) {
-  const std::vector<sdf::ElementPtr> found = all(names);
+const Element* Plugin::first(ParameterNames names) {
+  const std::vector<const Element*> found = all(names);
   return found.empty() ? nullptr : found.front();
 }
 
 template <class Value>
 std::optional<Value> Plugin::value(ParameterNames names, ExtensionValue kind) {
-  const sdf::ElementPtr parameter = first(names);
+  const Element* const parameter = first(names);
   if (!parameter) return std::nullopt;
   const ExtensionKey key{"", kind, "", "", ""};
   const std::string text = text_of_parameter(parameter);
@@ -92,16 +90,16 @@ std::optional<Eigen::Vector3d> Plugin::vector(ParameterNames names) {
 }
 
 std::string Plugin::text_or(const std::string& fallback, ParameterNames names) {
-  const sdf::ElementPtr parameter = first(names);
+  const Element* const parameter = first(names);
   return parameter ? text_of_parameter(parameter) : fallback;
 }
 
 void Plugin::warn_of_unread() const {
   std::string unread;
-  for (sdf::ElementPtr child = element_->GetFirstElement(); child; child = child->GetNextElement()) {
-    const std::string name = "<" + child->GetName() + ">";
-    if (asked_.contains(child->GetName()) || unread.find(name) != std::string::npos ||
-        std::ranges::find(of_no_consequence, child->GetName()) != std::end(of_no_consequence))
+  for (const Element* const child : element_->children()) {
+    const std::string name = "<" + child->name() + ">";
+    if (asked_.contains(child->name()) || unread.find(name) != std::string::npos ||
+        std::ranges::find(of_no_consequence, child->name()) != std::end(of_no_consequence))
       continue;
     unread += (unread.empty() ? "" : ", ") + name;
   }
@@ -110,9 +108,9 @@ void Plugin::warn_of_unread() const {
 
 ModelPlugin::Values& ModelPlugin::Values::take(std::string_view key, ParameterNames names,
                                                const std::string& fallback) {
-  const std::vector<sdf::ElementPtr> found = plugin_.all(names);
+  const std::vector<const Element*> found = plugin_.all(names);
   const auto& of = *std::ranges::find(extension_.keys, key, &ExtensionKey::name);
-  for (const sdf::ElementPtr& parameter : found) {
+  for (const Element* parameter : found) {
     values_.push_back({of.name, text_of_parameter(parameter), parameter});
     if (!of.repeats) break;
   }
@@ -122,13 +120,12 @@ ModelPlugin::Values& ModelPlugin::Values::take(std::string_view key, ParameterNa
   return *this;
 }
 
-ModelPlugin::Values& ModelPlugin::Values::set(std::string_view key, const std::string& text,
-                                              const sdf::ElementPtr& where) {
+ModelPlugin::Values& ModelPlugin::Values::set(std::string_view key, const std::string& text, const Element* where) {
   values_.push_back({key, text, where ? where : plugin_.element()});
   return *this;
 }
 
-ModelPlugin::Values& ModelPlugin::Values::set(std::string_view key, double value, const sdf::ElementPtr& where) {
+ModelPlugin::Values& ModelPlugin::Values::set(std::string_view key, double value, const Element* where) {
   return set(key, shortest_text(value), where);
 }
 
@@ -150,7 +147,7 @@ void ModelPlugin::Values::finish(std::string name, const std::string& link) {
   }
 }
 
-const Joint* ModelPlugin::joint(const sdf::ElementPtr& parameter) const {
+const Joint* ModelPlugin::joint(const Element* parameter) const {
   const std::string name = text_of_parameter(parameter);
   std::vector<std::string> names;
   for (const Joint& each : model_.joints) {
@@ -161,9 +158,9 @@ const Joint* ModelPlugin::joint(const sdf::ElementPtr& parameter) const {
   return nullptr;
 }
 
-std::vector<std::pair<const Joint*, sdf::ElementPtr>> ModelPlugin::joints(ParameterNames names) {
-  std::vector<std::pair<const Joint*, sdf::ElementPtr>> found;
-  for (const sdf::ElementPtr& parameter : all(names))
+std::vector<std::pair<const Joint*, const Element*>> ModelPlugin::joints(ParameterNames names) {
+  std::vector<std::pair<const Joint*, const Element*>> found;
+  for (const Element* parameter : all(names))
     if (const Joint* const each = joint(parameter)) found.emplace_back(each, parameter);
   return found;
 }

@@ -2,7 +2,6 @@
 
 #include <initializer_list>
 #include <optional>
-#include <sdf/Element.hh>
 #include <set>
 #include <string>
 #include <string_view>
@@ -20,15 +19,15 @@ using ParameterNames = std::initializer_list<const char*>;
 /// A <plugin> of Gazebo. It records which of its parameters were read.
 class Plugin {
  public:
-  Plugin(const sdf::ElementPtr& element, const SdfReport& report) : element_(element), report_(report) {}
+  Plugin(const Element* element, const SdfReport& report) : element_(element), report_(report) {}
 
-  const sdf::ElementPtr& element() const { return element_; }
+  const Element* element() const { return element_; }
   const SdfReport& report() const { return report_; }
 
   /// Returns the parameters with one of these names, in document order.
-  std::vector<sdf::ElementPtr> all(ParameterNames names);
+  std::vector<const Element*> all(ParameterNames names);
   /// Returns the first of them; nullptr if there is none.
-  sdf::ElementPtr first(ParameterNames names);
+  const Element* first(ParameterNames names);
   /// Returns the value of the first of them; reports an invalid value.
   std::optional<double> number(ParameterNames names, ExtensionValue kind = ExtensionValue::positive);
   double number_or(double fallback, ParameterNames names, ExtensionValue kind = ExtensionValue::positive) {
@@ -44,13 +43,13 @@ class Plugin {
   template <class Value>
   std::optional<Value> value(ParameterNames names, ExtensionValue kind);
 
-  sdf::ElementPtr element_;
+  const Element* element_;
   const SdfReport& report_;
   std::set<std::string, std::less<>> asked_;
 };
 
 /// Returns the value of a parameter; empty if it has none.
-std::string text_of_parameter(const sdf::ElementPtr& parameter);
+std::string text_of_parameter(const Element* parameter);
 
 /// The equivalent of a plugin of a model: a `cohort:` element.
 struct Counterpart {
@@ -63,8 +62,8 @@ struct Counterpart {
 class ModelPlugin : public Plugin {
  public:
   /// `prefix` is the prefix of all names in the model, which may be nested. `names` are those that plugins have used.
-  ModelPlugin(const sdf::ElementPtr& element, const std::string& prefix, const Model& model,
-              std::set<std::string>& names, const SdfReport& report)
+  ModelPlugin(const Element* element, const std::string& prefix, const Model& model, std::set<std::string>& names,
+              const SdfReport& report)
       : Plugin(element, report), prefix_(prefix), model_(model), names_(names) {}
 
   /// Values of keys, for one counterpart.
@@ -74,8 +73,8 @@ class ModelPlugin : public Plugin {
     /// Sets the key from the parameters with one of these names, or else to `fallback`; reports a required key if both
     /// are missing.
     Values& take(std::string_view key, ParameterNames names, const std::string& fallback = "");
-    Values& set(std::string_view key, const std::string& text, const sdf::ElementPtr& where = nullptr);
-    Values& set(std::string_view key, double value, const sdf::ElementPtr& where = nullptr);
+    Values& set(std::string_view key, const std::string& text, const Element* where = nullptr);
+    Values& set(std::string_view key, double value, const Element* where = nullptr);
     Values& set(std::string_view key, const Pose& X);
     /// Adds a device of this name, or a similar one if another device of a plugin has it, in `link`, or else in the
     /// model.
@@ -90,9 +89,9 @@ class ModelPlugin : public Plugin {
   Values as();
 
   /// Returns the joint that the parameter names; nullptr, with a report, if the model has none.
-  const Joint* joint(const sdf::ElementPtr& parameter) const;
+  const Joint* joint(const Element* parameter) const;
   /// Returns every joint that the parameters of these names name, with the parameter.
-  std::vector<std::pair<const Joint*, sdf::ElementPtr>> joints(ParameterNames names);
+  std::vector<std::pair<const Joint*, const Element*>> joints(ParameterNames names);
   const Model& model() const { return model_; }
   /// Returns whether a joint belongs to this model, and not to a nested or an outer one.
   bool has_joint(const Joint& joint) const {

@@ -21,36 +21,35 @@ constexpr ParameterNames of_topics = {"velocity_topic",
 
 template <class Visit>
 void for_siblings(const ModelPlugin& plugin, std::string_view name, const Visit& visit) {
-  const sdf::ElementPtr model = plugin.element()->GetParent();
-  for (sdf::ElementPtr child = model->GetFirstElement(); child; child = child->GetNextElement()) {
-    const PluginKind* const kind = child->GetName() == "plugin" ? plugin_kind_of(child) : nullptr;
+  const Element* const model = plugin.element()->parent();
+  for (const Element* const child : model->children()) {
+    const PluginKind* const kind = child->name() == "plugin" ? plugin_kind_of(child) : nullptr;
     if (kind != nullptr && kind->name == name) visit(child);
   }
 }
 
 // Returns the link of a plugin, or of a track in one; empty if it names none.
-std::string link_said_by(const sdf::ElementPtr& element) {
-  const sdf::ElementPtr link = element->FindElement("link");
+std::string link_said_by(const Element* element) {
+  const Element* const link = element->child("link");
   return link ? text_of_parameter(link) : std::string();
 }
 
-bool is_track_of(const sdf::ElementPtr& vehicle, const std::string& link) {
-  for (sdf::ElementPtr child = vehicle->GetFirstElement(); child; child = child->GetNextElement())
-    if ((child->GetName() == "left_track" || child->GetName() == "right_track") && link_said_by(child) == link)
-      return true;
+bool is_track_of(const Element* vehicle, const std::string& link) {
+  for (const Element* const child : vehicle->children())
+    if ((child->name() == "left_track" || child->name() == "right_track") && link_said_by(child) == link) return true;
   return false;
 }
 
 // Returns the maximum velocity in both directions; a minimum is also read if it is the opposite.
 std::optional<double> greatest_velocity(Plugin& plugin) {
   const auto most = plugin.number({"max_velocity"});
-  const sdf::ElementPtr least = plugin.element()->FindElement("min_velocity");
+  const Element* const least = plugin.element()->child("min_velocity");
   if (most && least && parse_real(text_of_parameter(least)) == -*most) plugin.all({"min_velocity"});
   return most;
 }
 
 double limit_or(double fallback, ModelPlugin& plugin, const char* name) {
-  const sdf::ElementPtr element = plugin.first({name});
+  const Element* const element = plugin.first({name});
   if (!element) return fallback;
   Plugin limits(element, plugin.report());
   const double limit = greatest_velocity(limits).value_or(fallback);
@@ -60,17 +59,17 @@ double limit_or(double fallback, ModelPlugin& plugin, const char* name) {
 
 // Reads the tracks of one side; returns the smallest maximum velocity of their controllers.
 double take_tracks(ModelPlugin& plugin, ModelPlugin::Values& values, const char* side, std::string_view key) {
-  const std::vector<sdf::ElementPtr> tracks = plugin.all({side});
+  const std::vector<const Element*> tracks = plugin.all({side});
   if (tracks.empty()) plugin.report().problem(plugin.element(), "missing: a track", side);
   double least = infinity;
-  for (const sdf::ElementPtr& track : tracks) {
+  for (const Element* track : tracks) {
     const std::string link = link_said_by(track);
     if (link.empty()) {
       plugin.report().problem(track, "missing: the link of the track", "link");
       continue;
     }
-    values.set(key, link, track->FindElement("link"));
-    for_siblings(plugin, "TrackController", [&](const sdf::ElementPtr& controller) {
+    values.set(key, link, track->child("link"));
+    for_siblings(plugin, "TrackController", [&](const Element* controller) {
       if (link_said_by(controller) != link) return;
       Plugin limits(controller, plugin.report());
       least = std::min(least, greatest_velocity(limits).value_or(infinity));
@@ -104,7 +103,7 @@ void track_controller(ModelPlugin& plugin) {
   const std::string link = link_said_by(plugin.element());
   bool is_of_vehicle = false;  // which drives it, within its limits
   for_siblings(plugin, "TrackedVehicle",
-               [&](const sdf::ElementPtr& vehicle) { is_of_vehicle = is_of_vehicle || is_track_of(vehicle, link); });
+               [&](const Element* vehicle) { is_of_vehicle = is_of_vehicle || is_track_of(vehicle, link); });
   if (is_of_vehicle) {
     plugin.all({"link"});
     return;

@@ -8,16 +8,14 @@
 namespace cohort::parsing {
 namespace {
 
-const ExtensionKey* find_key(const Extension& extension, const sdf::ElementPtr& element) {
-  if (!has_prefix(element->GetName())) return nullptr;
+const ExtensionKey* find_key(const Extension& extension, const Element* element) {
+  if (!has_prefix(element->name())) return nullptr;
   for (const ExtensionKey& key : extension.keys)
-    if (key.name == without_prefix(element->GetName())) return &key;
+    if (key.name == without_prefix(element->name())) return &key;
   return nullptr;
 }
 
-std::string value_text(const sdf::ElementPtr& element) {
-  return element->GetValue() ? std::string(trimmed(element->GetValue()->GetAsString())) : std::string();
-}
+std::string value_text(const Element* element) { return std::string(trimmed(element->text())); }
 
 // Returns the names that an element in this parent can have, with their prefix.
 std::vector<std::string> names_in(std::string_view parent) {
@@ -32,23 +30,23 @@ bool is_extension(std::string_view name) {
   return std::any_of(all.begin(), all.end(), [&](const Extension& extension) { return extension.name == name; });
 }
 
-void report_misplaced(const sdf::ElementPtr& element, std::string_view parent, const SdfReport& report) {
+void report_misplaced(const Element* element, std::string_view parent, const SdfReport& report) {
   for (const Extension& extension : extensions())
-    if (has_prefix(element->GetName()) && extension.name == without_prefix(element->GetName())) {
+    if (has_prefix(element->name()) && extension.name == without_prefix(element->name())) {
       const std::string home =
           is_extension(extension.parent) ? prefixed(extension.parent) : std::string(extension.parent);
-      report.problem(element, "<" + element->GetName() + "> must be in <" + home + ">");
+      report.problem(element, "<" + element->name() + "> must be in <" + home + ">");
       return;
     }
-  report.problem(element, "unknown element" + suggestion(element->GetName(), names_in(parent)));
+  report.problem(element, "unknown element" + suggestion(element->name(), names_in(parent)));
 }
 
-void report_extensions_below(const sdf::ElementPtr& element, const SdfReport& report) {
-  for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (has_prefix(child->GetName())) {
-      if (find_extension(without_prefix(child->GetName()), element->GetName()) == nullptr)
-        report_misplaced(child, element->GetName(), report);
-    } else if (child->GetName() != "plugin") {
+void report_extensions_below(const Element* element, const SdfReport& report) {
+  for (const Element* const child : element->children()) {
+    if (has_prefix(child->name())) {
+      if (find_extension(without_prefix(child->name()), element->name()) == nullptr)
+        report_misplaced(child, element->name(), report);
+    } else if (child->name() != "plugin") {
       report_extensions_below(child, report);
     }
   }
@@ -56,7 +54,7 @@ void report_extensions_below(const sdf::ElementPtr& element, const SdfReport& re
 
 }  // namespace
 
-std::optional<ExtensionValues> ExtensionValues::read(const sdf::ElementPtr& element, const Extension& extension,
+std::optional<ExtensionValues> ExtensionValues::read(const Element* element, const Extension& extension,
                                                      const SdfReport& report) {
   ExtensionValues values;
   values.element_ = element;
@@ -68,7 +66,7 @@ std::optional<ExtensionValues> ExtensionValues::read(const sdf::ElementPtr& elem
   return values;
 }
 
-std::optional<ExtensionValues> ExtensionValues::from_foreign(const sdf::ElementPtr& element, const std::string& name,
+std::optional<ExtensionValues> ExtensionValues::from_foreign(const Element* element, const std::string& name,
                                                              const Extension& extension,
                                                              const std::vector<ForeignValue>& values,
                                                              const SdfReport& report) {
@@ -103,25 +101,24 @@ void ExtensionValues::put_in_scope(const std::string& prefix, const Extension& e
     if (key.value == ExtensionValue::name) prefix_texts(key.name, prefix);
 }
 
-sdf::ElementPtr ExtensionValues::where(std::string_view key, std::size_t place) const {
+const Element* ExtensionValues::where(std::string_view key, std::size_t place) const {
   for (const ForeignValue& value : foreign_)
     if (value.key == key && place-- == 0) return value.where;
   if (!foreign_.empty()) return element_;
-  sdf::ElementPtr child = element_->FindElement(prefixed(key));
-  while (child && place-- > 0) child = child->GetNextElement(prefixed(key));
+  const Element* child = element_->child(prefixed(key));
+  while (child != nullptr && place-- > 0) child = child->next_alike();
   return child ? child : element_;
 }
 
 bool ExtensionValues::read_name(const Extension& extension, const SdfReport& report) {
   bool valid = true;
-  for (const sdf::ParamPtr& attribute : element_->GetAttributes()) {
-    const std::string& key = attribute->GetKey();
+  for (const auto& [key, text] : element_->node().attributes) {
     if (key.find(':') != std::string::npos || (extension.has_name && key == "name")) continue;
     report.problem(element_, "unknown attribute '" + key + "'");
     valid = false;
   }
   if (!extension.has_name) return valid;
-  if (element_->HasAttribute("name")) name_ = trimmed(element_->GetAttribute("name")->GetAsString());
+  if (element_->has_attribute("name")) name_ = trimmed(element_->attribute("name"));
   // A slash separates the parts of the names of channels and instances.
   if (name_.empty() || name_.find('/') != std::string::npos) {
     report.problem(element_, "expected an attribute name=\"NAME\", with a NAME without '/'");
@@ -135,21 +132,21 @@ bool ExtensionValues::read_children(const Extension& extension, const SdfReport&
   std::vector<std::string> known;
   for (const ExtensionKey& each : extension.keys) known.push_back(prefixed(each.name));
   std::set<std::string> misspelt;
-  for (sdf::ElementPtr child = element_->GetFirstElement(); child; child = child->GetNextElement()) {
+  for (const Element* const child : element_->children()) {
     const ExtensionKey* const key = find_key(extension, child);
     if (key == nullptr) {
-      report.problem(child, "unknown element" + suggestion(child->GetName(), known));
-      if (const auto meant = nearest(child->GetName(), known)) misspelt.insert(*meant);
+      report.problem(child, "unknown element" + suggestion(child->name(), known));
+      if (const auto meant = nearest(child->name(), known)) misspelt.insert(*meant);
       valid = false;
-    } else if (!key->repeats && child != element_->FindElement(child->GetName())) {
-      report.problem(child, "<" + child->GetName() + "> is given twice");
+    } else if (!key->repeats && child != element_->child(child->name())) {
+      report.problem(child, "<" + child->name() + "> is given twice");
       valid = false;
     } else if (key->value != ExtensionValue::group) {
       valid = read_value(child, *key, report) && valid;
     }
   }
   for (const ExtensionKey& key : extension.keys) {
-    if (element_->HasElement(prefixed(key.name))) continue;
+    if (element_->child(prefixed(key.name)) != nullptr) continue;
     if (misspelt.contains(prefixed(key.name))) continue;  // one mistake, one message
     if (key.required()) {
       report.problem(element_, "missing: " + std::string(key.doc), prefixed(key.name));
@@ -161,9 +158,10 @@ bool ExtensionValues::read_children(const Extension& extension, const SdfReport&
   return valid;
 }
 
-bool ExtensionValues::read_value(const sdf::ElementPtr& element, const ExtensionKey& key, const SdfReport& report) {
-  if (const sdf::ElementPtr stray = element->GetFirstElement()) {
-    report.problem(stray, "unexpected element; <" + element->GetName() + "> must contain " + expected(key));
+bool ExtensionValues::read_value(const Element* element, const ExtensionKey& key, const SdfReport& report) {
+  if (!element->children().empty()) {
+    const Element* const stray = element->children().front();
+    report.problem(stray, "unexpected element; <" + element->name() + "> must contain " + expected(key));
     return false;
   }
   const std::string text = value_text(element);
@@ -176,17 +174,16 @@ bool ExtensionValues::read_value(const sdf::ElementPtr& element, const Extension
   return true;
 }
 
-std::vector<std::pair<sdf::ElementPtr, const Extension*>> extensions_in(const sdf::ElementPtr& element,
-                                                                        const SdfReport& report) {
-  std::vector<std::pair<sdf::ElementPtr, const Extension*>> found;
-  for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (!has_prefix(child->GetName())) {
-      if (child->GetName() != "model") report_extensions_below(child, report);
-    } else if (const Extension* const extension =
-                   find_extension(without_prefix(child->GetName()), element->GetName())) {
+std::vector<std::pair<const Element*, const Extension*>> extensions_in(const Element* element,
+                                                                       const SdfReport& report) {
+  std::vector<std::pair<const Element*, const Extension*>> found;
+  for (const Element* const child : element->children()) {
+    if (!has_prefix(child->name())) {
+      if (child->name() != "model") report_extensions_below(child, report);
+    } else if (const Extension* const extension = find_extension(without_prefix(child->name()), element->name())) {
       found.emplace_back(child, extension);
     } else {
-      report_misplaced(child, element->GetName(), report);
+      report_misplaced(child, element->name(), report);
     }
   }
   return found;

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <sdf/Element.hh>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,7 +17,7 @@ namespace cohort::parsing {
 struct ForeignValue {
   std::string_view key;
   std::string text;
-  sdf::ElementPtr where;  ///< position of the value
+  const Element* where;  ///< position of the value
 };
 
 /// A `cohort:` element with all that its table entry requires. An absent key without a fallback has no value; an
@@ -26,16 +25,16 @@ struct ForeignValue {
 class ExtensionValues : public KeyValues {
  public:
   /// Reads an element; returns nothing, with a report, if it is invalid.
-  static std::optional<ExtensionValues> read(const sdf::ElementPtr& element, const Extension& extension,
+  static std::optional<ExtensionValues> read(const Element* element, const Extension& extension,
                                              const SdfReport& report);
 
   /// Makes the same from an element of another simulator with known `values`. Returns nothing if a required key has no
   /// value; the caller must have reported it.
-  static std::optional<ExtensionValues> from_foreign(const sdf::ElementPtr& element, const std::string& name,
+  static std::optional<ExtensionValues> from_foreign(const Element* element, const std::string& name,
                                                      const Extension& extension,
                                                      const std::vector<ForeignValue>& values, const SdfReport& report);
 
-  const sdf::ElementPtr& element() const { return element_; }
+  const Element* element() const { return element_; }
   /// Returns the attribute `name`.
   const std::string& name() const { return name_; }
 
@@ -44,22 +43,21 @@ class ExtensionValues : public KeyValues {
 
   /// Returns the element for problems with a value: the child element of this key, the `place`-th one if it repeats, or
   /// the element itself if the key is absent.
-  sdf::ElementPtr where(std::string_view key, std::size_t place = 0) const;
+  const Element* where(std::string_view key, std::size_t place = 0) const;
 
  private:
   ExtensionValues() = default;
   bool read_name(const Extension& extension, const SdfReport& report);
   bool read_children(const Extension& extension, const SdfReport& report);
-  bool read_value(const sdf::ElementPtr& element, const ExtensionKey& key, const SdfReport& report);
+  bool read_value(const Element* element, const ExtensionKey& key, const SdfReport& report);
 
-  sdf::ElementPtr element_;
+  const Element* element_;
   std::string name_;
   std::vector<ForeignValue> foreign_;
 };
 
 /// Returns the extensions among the children of `element`, in document order, each with its entry. Reports unknown
 /// `cohort:` children, and those below other children where they are not allowed.
-std::vector<std::pair<sdf::ElementPtr, const Extension*>> extensions_in(const sdf::ElementPtr& element,
-                                                                        const SdfReport& report);
+std::vector<std::pair<const Element*, const Extension*>> extensions_in(const Element* element, const SdfReport& report);
 
 }  // namespace cohort::parsing

@@ -18,6 +18,7 @@ std::optional<std::string> flaw_of_part(const XmlNode& part, const XmlNode& incl
       {"name", {}},
       {"static", {}},
       {"placement_frame", {}},
+      {"namespace", {}},
       {"pose", {"relative_to", "degrees", "rotation_format"}},
       {"plugin", {"name", "filename"}}};
   const auto known = attributes_of.find(part.name);

@@ -1,43 +1,23 @@
 #include "server/parsing/sdf/included_model.hpp"
 
 #include <cmath>
-#include <locale>
-#include <sdf/Frame.hh>
-#include <sdf/Joint.hh>
-#include <sdf/Link.hh>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/schema/sdf_angles.hpp"
-#include "server/parsing/sdf/schema/sdf_schema.hpp"
+#include "server/parsing/sdf/schema/value_text.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
 namespace cohort::parsing {
 namespace {
 
-template <class Posed>
-std::optional<ignition::math::Pose3d> pose_in_model(const Posed* posed) {
-  ignition::math::Pose3d X;
-  if (posed == nullptr || !posed->SemanticPose().Resolve(X, "__model__").empty()) return std::nullopt;
-  return X;
-}
-
-std::optional<ignition::math::Pose3d> pose_of_frame(const sdf::Model& model, const std::string& name) {
-  if (auto X = pose_in_model(model.FrameByName(name))) return X;
-  if (auto X = pose_in_model(model.LinkByName(name))) return X;
-  if (auto X = pose_in_model(model.JointByName(name))) return X;
-  return pose_in_model(model.ModelByName(name));
-}
-
-std::string pose_text(const ignition::math::Pose3d& X) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(17);
-  text << X.Pos().X() << ' ' << X.Pos().Y() << ' ' << X.Pos().Z() << ' ' << X.Rot().X() << ' ' << X.Rot().Y() << ' '
-       << X.Rot().Z() << ' ' << X.Rot().W();
-  return text.str();
+std::string pose_text(const Pose& X) {
+  std::string text;
+  for (const double number : X.position) text += shortest_text(number) + " ";
+  for (const double number : X.orientation.coeffs()) text += shortest_text(number) + " ";  // x y z w
+  text.pop_back();
+  return text;
 }
 
 // Makes all references to the frame of the merged model refer to `proxy`.
@@ -78,21 +58,14 @@ bool refers_to_frame(const std::string& attribute) {
   return attribute == "relative_to" || attribute == "attached_to" || attribute == "expressed_in";
 }
 
-std::optional<ignition::math::Pose3d> pose_in_world(const XmlNode* pose) {
-  if (pose == nullptr) return ignition::math::Pose3d::Zero;
-  const sdf::ElementPtr element =
-      sdf_definition()->GetElementDescription("model")->GetElementDescription("pose")->Clone();
-  for (const auto& [name, value] : pose->attributes) {
-    const sdf::ParamPtr attribute = element->GetAttribute(name);
-    if (!attribute || refers_to_frame(name) || !attribute->SetFromString(value)) return std::nullopt;
-  }
-  if (pose->text.empty()) return ignition::math::Pose3d::Zero;
+std::optional<Pose> pose_in_world(const XmlNode* pose) {
+  if (pose == nullptr) return Pose{};
+  for (const auto& [name, value] : pose->attributes)
+    if (name != "degrees" && name != "rotation_format") return std::nullopt;
   if (flaw_of_angles(*pose)) return std::nullopt;
   for (const std::string_view part : words(pose->text))
     if (const auto number = parse_real(part); !number || !std::isfinite(*number)) return std::nullopt;
-  ignition::math::Pose3d X;
-  if (!element->GetValue()->SetFromString(pose->text) || !element->GetValue()->Get(X)) return std::nullopt;
-  return X;
+  return written_pose(*pose);
 }
 
 XmlNode as_included(const XmlNode& model, const XmlNode& include) {
@@ -125,7 +98,7 @@ XmlNode frames_of(const XmlNode& model) {
   return frames;
 }
 
-std::vector<XmlNode> merged(const XmlNode& model, const sdf::Model& sdf_model, const XmlNode& include) {
+std::vector<XmlNode> merged(const XmlNode& model, const Frames& frames, const XmlNode& include) {
   const XmlNode changed = as_included(model, include);
   const std::string name = *changed.attribute("name");
   const std::string proxy = "_merged__" + name + "__model__";
@@ -138,9 +111,9 @@ std::vector<XmlNode> merged(const XmlNode& model, const sdf::Model& sdf_model, c
   };
   const XmlNode* const own = changed.child("pose");
   XmlNode pose = own != nullptr ? *own : XmlNode{"pose", include.line, include.file, {}, "", {}};
-  const std::string link = sdf_model.CanonicalLinkAndRelativeName().second;
+  const std::string link = frames.link_of("__model__").value_or("");
   const std::string* const placement = changed.attribute("placement_frame");
-  const auto X_MP = placement != nullptr ? pose_of_frame(sdf_model, *placement) : std::nullopt;
+  const auto X_MP = placement != nullptr ? frames.pose_of(*placement) : std::nullopt;
   if (X_MP) {
     const std::string placed = "_merged__" + name + "__placement__";
     add_frame(placed, "", std::move(pose));
@@ -148,7 +121,7 @@ std::vector<XmlNode> merged(const XmlNode& model, const sdf::Model& sdf_model, c
             include.line,
             include.file,
             {{"relative_to", placed}, {"rotation_format", "quat_xyzw"}},
-            pose_text(X_MP->Inverse()),
+            pose_text(X_MP->inverse()),
             {}};
   }
   add_frame(proxy, link, std::move(pose));

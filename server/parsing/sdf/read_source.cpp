@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <sdf/SDFImpl.hh>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -59,7 +58,7 @@ bool SourceReader::convert(SdfFile& file) {
   const bool may_be_scoped = version_of(file.version) < std::pair{1, 8};
   if (may_be_scoped || file.is_foreign) join_scoped_names(file.tree, file.shown, may_be_scoped ? nullptr : &warnings_);
   if (!names_are_simple(file.tree, "")) return false;
-  if (file.version != sdf::SDF::Version()) convert_older(file.tree);
+  if (file.version != converted_version) convert_older(file.tree);
   return true;
 }
 
@@ -106,7 +105,7 @@ std::optional<XmlNode> SourceReader::read_xml(const std::string& text, SdfFile& 
     if (const XmlNode* const macro = find_macro(root, file.path)) return fail(macro->line, why_not_expanded(file.path));
   file.is_foreign = root.name == "robot" || !is_ours(root);
   if (root.name == "robot") {
-    auto sdf = sdf_of_urdf(std::move(outline.root), file.shown, config_, problems_, warnings_);
+    auto sdf = sdf_of_urdf(std::move(outline.root), file.shown, problems_, warnings_);
     if (sdf) mend_sdf(*sdf, file.shown, warnings_);
     return sdf;
   }
@@ -114,14 +113,13 @@ std::optional<XmlNode> SourceReader::read_xml(const std::string& text, SdfFile& 
   if (root.name == "gazebo" && file.is_foreign) outline.root.name = "sdf";  // its name up to SDF 1.2
   const std::string* const version = root.attribute("version");
   if (root.name != "sdf" || version == nullptr)
-    return fail(root.line,
-                "expected <sdf version=\"" + sdf::SDF::Version() + "\"> as the root element, not <" + root.name + ">");
-  // libsdformat would read a newer file as if it had its own version.
+    return fail(root.line, "expected <sdf version=\"" + std::string(converted_version) +
+                               "\"> as the root element, not <" + root.name + ">");
   if (version_of(*version) > newest_version || version_of(*version) == std::pair{0, 0})
     return fail(root.line, "SDF version '" + *version + "' is not supported; expected a version up to 1.12");
   make_older(outline.root, file.shown, warnings_);
-  if (version_of(*version) > version_of(sdf::SDF::Version()))
-    set_attribute(outline.root, "version", sdf::SDF::Version());
+  if (version_of(*version) > version_of(converted_version))
+    set_attribute(outline.root, "version", std::string(converted_version));
   if (file.is_foreign) mend_sdf(outline.root, file.shown, warnings_);
   return std::move(outline.root);
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <sdf/ParserConfig.hh>
 #include <string>
 #include <vector>
 
@@ -12,14 +11,13 @@
 
 namespace cohort::parsing {
 
-/// Reads files in SDF of any version, URDF or YAML as trees of SDF in the version of libsdformat. All changes to a file
+/// Reads files in SDF of any version, URDF or YAML as trees of SDF in the newest version. All changes to a file
 /// except its includes are made here, in its tree.
 class SourceReader {
  public:
   /// Adds problems of a file to `problems`, and ignored features to `warnings`.
-  SourceReader(InputFiles& input, const sdf::ParserConfig& config, std::vector<Problem>& problems,
-               std::vector<Problem>& warnings)
-      : input_(input), config_(config), problems_(problems), warnings_(warnings) {}
+  SourceReader(InputFiles& input, std::vector<Problem>& problems, std::vector<Problem>& warnings)
+      : input_(input), problems_(problems), warnings_(warnings) {}
 
   /// Sets `tree`, `version` and `is_foreign` of a file from its `path`. Returns false after a problem. `is_included`:
   /// whether another file includes it.
@@ -41,7 +39,6 @@ class SourceReader {
   void warn_of_repeated(const XmlNode& node, const ElementSchema& schema, const std::string& path);
 
   InputFiles& input_;
-  const sdf::ParserConfig& config_;
   std::vector<Problem>& problems_;
   std::vector<Problem>& warnings_;
 };

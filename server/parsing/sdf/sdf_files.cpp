@@ -1,21 +1,17 @@
 #include "server/parsing/sdf/sdf_files.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
-#include <stdexcept>
 #include <utility>
 
-#include "server/parsing/sdf/load_elements.hpp"
+#include "server/parsing/sdf/check_tree.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
 namespace cohort::parsing {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string step_of(const sdf::ElementPtr& element) {
-  const bool has_name = element->GetAttributeSet("name");
-  return path_step(element->GetName(), has_name ? element->GetAttribute("name")->GetAsString() : "");
-}
 
 std::size_t size_of(const XmlNode& node) {
   std::size_t size = 1;
@@ -33,7 +29,7 @@ SdfFiles::SdfFiles(InputFiles& input, const fs::path& world_file, const std::vec
       search_(input, world_file, last_model_folders),
       problems_(problems),
       warnings_(warnings),
-      reader_(input, libsdformat_.config(), problems, warnings) {}
+      reader_(input, problems, warnings) {}
 
 SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
   const fs::path absolute = input_.absolute(path);
@@ -53,51 +49,39 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
 }
 
 void SdfFiles::load(SdfFile& file) {
-  const std::vector<Problem> found = load_elements(file, builder_, libsdformat_.config());
-  if (!file.loaded && found.empty() && problems_.empty())
-    problems_.push_back({file.shown, 0, "", "libsdformat cannot read this file"});
-  problems_.insert(problems_.end(), found.begin(), found.end());
-}
-
-const SdfFile* SdfFiles::find(const std::string& path) const {
-  const auto found = files_.find(fs::path(path).lexically_normal());
-  return found == files_.end() ? nullptr : found->second.get();
-}
-
-fs::path SdfFiles::find_file(const sdf::ElementPtr& element) const {
-  const XmlNode* const node = node_of(element);
-  return search_.find_file(element->Get<std::string>(),
-                           node != nullptr ? node->file->path.parent_path() : world_folder_);
-}
-
-Location SdfFiles::locate(const sdf::ElementPtr& element) const {
-  Location location;
-  const XmlNode* const node = node_of(element);
-  location.file = node != nullptr ? node->file->shown : world_file_;
-  location.line = node != nullptr ? node->line : 0;
-  for (sdf::ElementPtr step = element; step && step->GetName() != "sdf"; step = step->GetParent()) {
-    const XmlNode* const source = step->LineNumber() ? node_of(step) : nullptr;
-    const bool is_moved = source != nullptr && !source->written.empty();
-    location.element =
-        (is_moved ? source->written : step_of(step)) + (location.element.empty() ? "" : "/") + location.element;
-    if (is_moved) step = step->GetParent();  // the link, which `written` includes
+  const std::size_t before = problems_.size();
+  std::ranges::move(check_tree(file.tree), std::back_inserter(problems_));
+  file.elements = std::make_unique<ElementTree>(file.tree);
+  if (const Element* const world = file.first("world")) file.frames = std::make_unique<Frames>(*world);
+  if (const Element* const model = file.model()) file.model_frames = std::make_unique<Frames>(*model);
+  for (const Frames* const frames : {file.frames.get(), file.model_frames.get()}) {
+    if (frames == nullptr || !file.complete) continue;  // missing names follow from missing includes
+    for (auto& [element, message] : frames->flaws()) {
+      if (problems_.size() - before >= most_problems) break;
+      Location where = locate(element);
+      problems_.push_back({std::move(where.file), where.line, std::move(where.element), std::move(message)});
+    }
   }
-  if (const SdfFile* const part = find(element->FilePath())) location.element.insert(0, part->within);
+  file.sound = file.complete && problems_.size() == before;
+}
+
+fs::path SdfFiles::find_file(const Element* element) const {
+  return search_.find_file(element->text(), element->node().file->path.parent_path());
+}
+
+Location SdfFiles::locate(const Element* element) {
+  const XmlNode& node = element->node();
+  Location location{node.file->shown, node.line, ""};
+  for (const Element* step = element; step != nullptr; step = step->parent()) {
+    const XmlNode& source = step->node();
+    const std::string own = !source.written.empty() ? source.written : source.name != "sdf" ? step_of(source) : "";
+    if (own.empty()) continue;
+    location.element = own + (location.element.empty() ? "" : "/") + location.element;
+    // What a URDF or a world calls otherwise has its whole path, below the model, in `written`.
+    if (!source.written.empty() && source.name != "sdf") step = step->parent();
+    if (step == nullptr) break;
+  }
   return location;
-}
-
-bool SdfFiles::is_foreign(const sdf::ElementPtr& element) const {
-  const XmlNode* const node = node_of(element);
-  return node != nullptr && node->file->is_foreign;
-}
-
-const XmlNode* SdfFiles::node_of(const sdf::ElementPtr& element) const {
-  const SdfFile* const file = find(element->FilePath());
-  if (file == nullptr) return nullptr;
-  // Elements that libsdformat has added for default values have no line.
-  sdf::ElementPtr written = element;
-  while (!written->LineNumber() && written->GetParent()) written = written->GetParent();
-  return file->node_at(written->LineNumber().value_or(0));
 }
 
 }  // namespace cohort::parsing

@@ -4,7 +4,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <sdf/Element.hh>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,9 +13,8 @@
 #include "server/parsing/files/input_file.hpp"
 #include "server/parsing/files/model_search.hpp"
 #include "server/parsing/files/xml_outline.hpp"
+#include "server/parsing/sdf/element.hpp"
 #include "server/parsing/sdf/read_source.hpp"
-#include "server/parsing/sdf/schema/build_elements.hpp"
-#include "server/parsing/sdf/schema/libsdformat_scope.hpp"
 #include "server/parsing/sdf/sdf_file.hpp"
 
 namespace cohort::parsing {
@@ -44,35 +42,31 @@ class SdfFiles {
     return open(found.file, found.file);
   }
 
-  /// Makes the elements of an independent model. They need far more memory than its tree, so models are loaded one
-  /// after the other and released when their descriptions are made.
+  /// Makes the elements of an independent model. Models are loaded one after the other and released when their
+  /// descriptions are made, since elements need more memory than descriptions.
   const SdfFile& load_part(const SdfFile& part);
   void let_go(const SdfFile& part);
 
   /// Returns the file that the URI in `element` names, such as a mesh; a path is relative to the file of the element.
   /// Throws std::runtime_error if there is none.
-  std::filesystem::path find_file(const sdf::ElementPtr& element) const;
+  std::filesystem::path find_file(const Element* element) const;
   /// Does the same for a URI in another file, such as a mesh; a path is relative to `folder`.
   std::filesystem::path find_file(const std::string& uri, const std::filesystem::path& folder) const {
     return search_.find_file(uri, folder);
   }
 
-  Location locate(const sdf::ElementPtr& element) const;
-  /// Returns whether the element is in a file that was not written for Cohort.
-  bool is_foreign(const sdf::ElementPtr& element) const;
+  static Location locate(const Element* element);
   InputFiles& input() const { return input_; }
 
  private:
   SdfFile& open(const std::filesystem::path& path, const std::filesystem::path& shown);
   /// Makes elements from the tree of a file; reports problems.
   void load(SdfFile& file);
-  const SdfFile* find(const std::string& path) const;
-  const XmlNode* node_of(const sdf::ElementPtr& element) const;
 
   // Defined in sdf_includes.cpp.
   struct Found;
   struct Named;
-  /// Replaces each include. Returns false if libsdformat would fail on the rest.
+  /// Replaces each include. Returns false if the rest cannot be used.
   bool replace_includes(XmlNode& node, const std::string& path, SdfFile& file);
   /// Returns the replacement of an include; nothing if there is none.
   std::optional<Found> follow(const XmlNode& include, const std::string& path, SdfFile& file);
@@ -86,7 +80,6 @@ class SdfFiles {
   /// Returns false if other elements refer to the model.
   bool set_apart(XmlNode& model, const Named& named, std::size_t place, SdfFile& file);
 
-  LibsdformatScope libsdformat_;
   InputFiles& input_;
   std::filesystem::path world_file_;
   std::filesystem::path world_folder_;
@@ -96,7 +89,6 @@ class SdfFiles {
   std::map<std::filesystem::path, std::unique_ptr<SdfFile>> files_;  // by absolute path
   std::vector<std::filesystem::path> opening_;                       // from the world inwards
   SourceReader reader_;
-  ElementBuilder builder_;
 };
 
 }  // namespace cohort::parsing

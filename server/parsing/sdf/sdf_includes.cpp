@@ -11,7 +11,7 @@
 namespace cohort::parsing {
 namespace {
 
-// An element takes about 3 kB, and its tree is copied into each model that includes it.
+// The tree of a model is copied into each model that includes it.
 constexpr std::size_t most_elements = 50'000;
 
 bool is_true(const XmlNode* flag) { return flag != nullptr && (flag->text == "true" || flag->text == "1"); }
@@ -120,7 +120,7 @@ void SdfFiles::replace_in_model(const XmlNode& include, const Found& found, bool
     children.push_back(as_included(found.model, include));
     return;
   }
-  for (XmlNode& part : merged(found.model, *found.file.root.Model(), include)) children.push_back(std::move(part));
+  for (XmlNode& part : merged(found.model, *found.file.model_frames, include)) children.push_back(std::move(part));
 }
 
 bool SdfFiles::fits(const XmlNode& include, const std::string& path, const SdfFile& included, SdfFile& file) {
@@ -140,13 +140,11 @@ bool SdfFiles::set_apart(XmlNode& model, const Named& named, std::size_t place, 
     return false;
   const auto X_WM = pose_in_world(model.child("pose"));
   if (!X_WM) return false;
-  const XmlNode* const pose = model.child("pose");
-  const bool is_quaternion = pose != nullptr && value_of(*pose, "rotation_format") == "quat_xyzw";
   std::string content;
   add_content(model, content);
   const auto [alike, is_new] = file.parts.emplace(std::move(content), nullptr);
   if (!is_new) {
-    file.includes.push_back({name, alike->second, false, place, X_WM, true, is_quaternion});
+    file.includes.push_back({name, alike->second, false, place, X_WM, true});
     return true;
   }
   const std::filesystem::path path = file.path / ("model " + std::to_string(file.includes.size()));
@@ -157,28 +155,26 @@ bool SdfFiles::set_apart(XmlNode& model, const Named& named, std::size_t place, 
   part->version = file.version;
   part->is_foreign = file.is_foreign;
   part->complete = file.complete;
-  part->within = "world/";
   part->tree = element_at(file.tree, "sdf");
   part->tree.attributes = file.tree.attributes;
+  part->tree.written = "world";
   part->tree.children.push_back(std::move(model));
   alike->second = part.get();
-  file.includes.push_back({name, part.get(), false, place, X_WM, true, is_quaternion});
+  file.includes.push_back({name, part.get(), false, place, X_WM, true});
   return true;
 }
 
 const SdfFile& SdfFiles::load_part(const SdfFile& part) {
   SdfFile& own = *files_.at(part.path);
-  const std::size_t before = problems_.size();
   load(own);
-  for (std::size_t i = before; i < problems_.size(); ++i)
-    if (!problems_[i].element.empty()) problems_[i].element.insert(0, own.within);
   return own;
 }
 
 void SdfFiles::let_go(const SdfFile& part) {
   SdfFile& own = *files_.at(part.path);
-  own.root = sdf::Root();
-  own.nodes = {};
+  own.frames.reset();
+  own.model_frames.reset();
+  own.elements.reset();
   own.tree = {};
 }
 
@@ -193,6 +189,9 @@ std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const st
   if (const XmlNode* const parameters = include.child("experimental:params"))
     warnings_.push_back({file.shown, parameters->line, path + "/experimental:params",
                          "parameters of an include are not supported and are ignored"});
+  if (const XmlNode* const name_space = include.child("namespace"))
+    warnings_.push_back({file.shown, name_space->line, path + "/namespace",
+                         "<namespace> is not supported and is ignored; topics have the name of the robot"});
   const XmlNode* const uri = include.child("uri");
   if (uri == nullptr) return problem(include, "expected <uri>model://NAME</uri>");
   FoundModel found;
@@ -209,7 +208,7 @@ std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const st
     return std::nullopt;
   }
   const XmlNode* const model = included.tree.child("model");
-  if (included.root.Model() == nullptr || model == nullptr) {
+  if (included.model() == nullptr || model == nullptr) {
     for (const char* const nothing : {"light", "actor"})  // without effect here, as in a world
       if (included.tree.child(nothing) != nullptr) return std::nullopt;
     return problem(*uri, "'" + included.shown.string() + "' has no <model>");
@@ -237,8 +236,8 @@ bool SdfFiles::replace_in_world(const XmlNode& include, const std::string& path,
   }
   if (!named.frames.contains(found.name)) file.includes.back().X_WM = pose_in_world(pose);
   if (file.includes.back().X_WM) return true;
-  // In libsdformat, a frame needs a hundredth of the memory of a model.
   XmlNode frame{"frame", include.line, include.file, {{"name", found.name}}, "", {}};
+  frame.written = "world/include[" + found.name + "]";
   if (pose != nullptr) frame.children.push_back(*pose);
   children.push_back(std::move(frame));
   return true;

@@ -1,8 +1,10 @@
 #include "server/parsing/world/physics_settings.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "server/parsing/keys/choices.hpp"
+#include "server/parsing/sdf/schema/value_text.hpp"
 #include "server/parsing/yaml/yaml_values.hpp"
 
 namespace cohort::parsing {
@@ -19,32 +21,33 @@ PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values) {
   return settings;
 }
 
-std::optional<std::chrono::nanoseconds> read_step(const sdf::Physics* physics, const SdfReport& report) {
-  if (physics == nullptr || !physics->Element()) return std::nullopt;
-  const sdf::ParamPtr type = physics->Element()->GetAttribute("type");
-  if (const std::string engine = type && type->GetSet() ? type->GetAsString() : "ignored";
-      engine != "bullet" && engine != "ignored" && physics->Element()->GetExplicitlySetInFile())
-    report.warning(
-        physics->Element(),
-        "the engine '" + engine + "' is not supported; Cohort uses Bullet's rigid bodies with its own solvers");
-  // The default of SDF is 1 ms, which libsdformat adds if there is no value.
-  const sdf::ElementPtr step = physics->Element()->FindElement("max_step_size");
-  if (!step || !step->GetExplicitlySetInFile()) return std::nullopt;
+std::optional<std::chrono::nanoseconds> read_step(const Element& world, const SdfReport& report) {
+  const std::vector<const Element*> all = children_of(world, "physics");
+  if (all.empty()) return std::nullopt;
+  const auto chosen =
+      std::ranges::find_if(all, [](const Element* each) { return is_true(each->attribute("default")); });
+  const Element* const physics = chosen == all.end() ? all.front() : *chosen;
+  if (const std::string engine = physics->attribute("type");
+      physics->has_attribute("type") && engine != "bullet" && engine != "ignored")
+    report.warning(physics, "the engine '" + engine +
+                                "' is not supported; Cohort uses Bullet's rigid bodies with its own solvers");
+  const Element* const step = physics->child("max_step_size");
+  if (step == nullptr) return std::nullopt;
   constexpr double nanoseconds = 1e9;
   constexpr double rounding = 1e-3;  // in ns: 1/100 s has no exact binary representation
   constexpr double longest = 1.0;
-  const auto seconds = step->Get<double>();
+  const auto seconds = step->real();
   if (!(seconds > 0.0 && seconds <= longest)) {
     if (!std::isnan(seconds)) report.problem(step, "expected a step > 0 s and <= 1 s");
     return std::nullopt;
   }
   constexpr double longest_accurate = 0.05;
   if (seconds > longest_accurate)
-    report.warning(step, "a step of " + step->GetValue()->GetAsString() +
+    report.warning(step, "a step of " + step->text() +
                              " s is too long for contacts and joints, which may then gain energy; use at most 0.05 s");
   const double count = std::round(seconds * nanoseconds);
   if (count < 1.0 || std::abs(seconds * nanoseconds - count) > rounding)
-    report.problem(step, "expected a whole number of nanoseconds, not " + step->GetValue()->GetAsString() + " s");
+    report.problem(step, "expected a whole number of nanoseconds, not " + step->text() + " s");
   return std::chrono::nanoseconds(static_cast<std::int64_t>(count));
 }
 

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <optional>
-#include <sdf/Physics.hh>
 #include <string>
 
 #include "server/description/world.hpp"
@@ -13,7 +12,7 @@
 namespace cohort::parsing {
 
 /// Returns the step in <physics> of SDF, or nothing. Warns of an engine other than Bullet.
-std::optional<std::chrono::nanoseconds> read_step(const sdf::Physics* physics, const SdfReport& report);
+std::optional<std::chrono::nanoseconds> read_step(const Element& world, const SdfReport& report);
 
 /// Returns `settings` with the given keys of `cohort:physics` replaced.
 PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values);

@@ -83,7 +83,7 @@ std::optional<Layout> read_layout(const ExtensionValues& placement, std::uint64_
   std::string known;
   int given = 0;
   for (const auto& [name, read] : layouts) {
-    const sdf::ElementPtr element = placement.where(name);
+    const Element* const element = placement.where(name);
     known += (known.empty() ? "<cohort:" : ", <cohort:") + std::string(name) + ">";
     if (element == placement.element()) continue;
     if (++given > 1) {
@@ -123,7 +123,7 @@ bool read_heading(const ExtensionValues& values, const SdfReport& report, Popula
 
 }  // namespace
 
-std::optional<WrittenPopulation> read_population(const sdf::ElementPtr& element, const Extension& extension,
+std::optional<WrittenPopulation> read_population(const Element* element, const Extension& extension,
                                                  const SdfReport& report) {
   const auto values = ExtensionValues::read(element, extension, report);
   if (!values) return std::nullopt;

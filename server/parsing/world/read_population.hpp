@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <sdf/Element.hh>
 #include <string>
 
 #include "server/description/population.hpp"
@@ -12,13 +11,13 @@ namespace cohort::parsing {
 
 /// A `cohort:population` as it is written.
 struct WrittenPopulation {
-  sdf::ElementPtr uri_element;
+  const Element* uri_element;
   std::string uri;
   Population population;  ///< without its model
 };
 
 /// Reads a population; returns nothing, with a report, if the element is invalid.
-std::optional<WrittenPopulation> read_population(const sdf::ElementPtr& element, const Extension& extension,
+std::optional<WrittenPopulation> read_population(const Element* element, const Extension& extension,
                                                  const SdfReport& report);
 
 }  // namespace cohort::parsing

@@ -1,31 +1,30 @@
 #include "server/parsing/world/read_world.hpp"
 
+#include <exception>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "server/core/text.hpp"
-#include "server/parsing/sdf/schema/libsdformat_scope.hpp"
 #include "server/parsing/world/world_reader.hpp"
 
 namespace cohort::parsing {
 namespace {
 
-// Any other exception of a library is a problem of the file.
+// Any other exception of a library is a problem of the file. What is out of memory is passed on, since the file is not
+// its cause.
 template <class Read>
 World read_or_input_error(const std::filesystem::path& file, Read&& read) {
-  std::optional<World> world;
-  std::optional<InputError> wrong;
-  const auto failure = libsdformat_failure([&] {
-    try {
-      world = read();
-    } catch (const InputError& error) {
-      wrong = error;
-    }
-  });
-  if (wrong) throw *wrong;
-  if (failure) throw InputError({{file, 0, "", "cannot be read: " + *failure}});
-  return *std::move(world);
+  try {
+    return read();
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError({{file, 0, "", std::string("cannot be read: ") + error.what()}});
+  }
 }
 
 ParsedModelPtr read_model_text(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs,

@@ -3,11 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sdf/Error.hh>
-#include <sdf/Frame.hh>
-#include <sdf/Light.hh>
-#include <sdf/Physics.hh>
-#include <sdf/World.hh>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -41,24 +36,23 @@ bool is_once(const Extension& extension) {
 
 World WorldReader::read(LoneModel lone, const std::vector<LaterObject>& later) {
   const SdfFile& file = files_.world();
-  if (!file.loaded) throw InputError(std::move(problems_));
-  if (lone != LoneModel::none && file.root.Model() != nullptr) {
+  if (!file.elements) throw InputError(std::move(problems_));
+  if (lone != LoneModel::none && file.model() != nullptr) {
     read_model_alone(file);
     if (lone == LoneModel::on_plane && problems_.empty()) stand_on_plane(world_);
     return finished();
   }
-  if (file.root.WorldCount() != 1) {
+  if (const std::size_t count = children_of(file.elements->root(), "world").size(); count != 1) {
     // A misspelt <world> has been reported.
     if (problems_.empty())
-      problems_.push_back(
-          {file.shown, file.tree.line, "", "expected one <world>, not " + std::to_string(file.root.WorldCount())});
+      problems_.push_back({file.shown, file.tree.line, "", "expected one <world>, not " + std::to_string(count)});
     throw InputError(std::move(problems_));
   }
-  const sdf::World& sdf_world = *file.root.WorldByIndex(0);
-  read_settings(sdf_world);
-  read_models(sdf_world, file);
-  read_lights(sdf_world, file);
-  read_extensions(sdf_world);
+  const Element& world = *file.first("world");
+  read_settings(world);
+  read_models(world, file);
+  read_lights(world, file);
+  read_extensions(world);
   for (const LaterObject& object : later) add_later(object);
   if (problems_.empty()) placement::check_instances(world_, problems_);
   return finished();
@@ -66,9 +60,9 @@ World WorldReader::read(LoneModel lone, const std::vector<LaterObject>& later) {
 
 World WorldReader::read_model_file() {
   const SdfFile& file = files_.world();
-  if (file.loaded && file.root.Model() == nullptr)
+  if (file.elements && file.model() == nullptr)
     problems_.push_back({file.shown, file.tree.line, "", "expected one <model> or <robot>"});
-  if (!file.loaded || file.root.Model() == nullptr) throw InputError(std::move(problems_));
+  if (!file.elements || file.model() == nullptr) throw InputError(std::move(problems_));
   read_model_alone(file);
   return finished();
 }
@@ -82,68 +76,55 @@ World WorldReader::finished() {
 }
 
 void WorldReader::read_model_alone(const SdfFile& file) {
-  world_.name = file.root.Model()->Name();
+  world_.name = name_of(*file.model());
   world_.gravity = sdf_gravity;
-  add_instance(world_.name, shared_model(file, file.root.Model()->Static()), {});
+  add_instance(world_.name, shared_model(file, file.model()->flag("static")), {});
 }
 
-void WorldReader::read_settings(const sdf::World& sdf_world) {
-  world_.name = sdf_world.Name();
-  world_.gravity = to_eigen(sdf_world.Gravity());
-  // The default of SDF is that of World, which libsdformat rounds.
-  if (const sdf::ElementPtr field = find(sdf_world.Element(), {"magnetic_field"}); is_written(field))
-    world_.magnetic_field = to_eigen(field->Get<ignition::math::Vector3d>());
-  if (const sdf::ElementPtr wind = find(sdf_world.Element(), {"wind", "linear_velocity"}); is_written(wind))
-    world_.air.wind = to_eigen(wind->Get<ignition::math::Vector3d>());
-  check_numbers(sdf_world.Element(), report_);
-  warn_of_unsupported(sdf_world.Element(), report_);
+void WorldReader::read_settings(const Element& world) {
+  world_.name = name_of(world);
+  world_.gravity = world.vector("gravity");
+  world_.magnetic_field = world.vector("magnetic_field");
+  if (const Element* const wind = find(&world, {"wind", "linear_velocity"}); is_written(wind))
+    world_.air.wind = wind->vector();
+  check_numbers(&world, report_);
+  warn_of_unsupported(&world, report_);
 
-  if (const auto step = read_step(sdf_world.PhysicsDefault(), report_)) world_.step = *step;
+  if (const auto step = read_step(world, report_)) world_.step = *step;
 }
 
-void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) {
+void WorldReader::read_models(const Element& world, const SdfFile& file) {
   std::map<std::string, const Include*> includes;
   for (const Include& include : file.includes) includes.emplace(include.name, &include);
   auto next = file.includes.begin();
   const auto add_placed_before = [&](std::size_t place) {
     for (; next != file.includes.end() && next->place <= place; ++next)
-      if (next->X_WM) add_included_model(*next, written_pose(*next->X_WM, next->is_quaternion));
+      if (next->X_WM) add_included_model(*next, *next->X_WM);
   };
-  std::map<std::string, const sdf::Frame*> frames;  // FrameByName would search all of them for each
-  for (std::uint64_t i = 0; i < sdf_world.FrameCount(); ++i)
-    frames.emplace(sdf_world.FrameByIndex(i)->Name(), sdf_world.FrameByIndex(i));
-
+  const ModelReading how = reading(false, file);
   std::size_t place = 0;
-  for (sdf::ElementPtr child = sdf_world.Element()->GetFirstElement(); child; child = child->GetNextElement()) {
-    const bool is_frame = child->GetName() == "frame";
-    if (!is_frame && child->GetName() != "model") continue;
+  for (const Element* const child : world.children()) {
+    const bool is_frame = child->name() == "frame";
+    if (!is_frame && child->name() != "model") continue;
     add_placed_before(place++);
-    if (!child->GetAttributeSet("name")) continue;
-    const auto name = child->Get<std::string>("name");
+    if (!child->has_attribute("name")) continue;
+    const std::string name = name_of(*child);
     const auto include = includes.find(name);
-    const auto frame = frames.find(name);
-    const sdf::Model* const sdf_model = is_frame ? nullptr : sdf_world.ModelByName(name);
-    const ModelReading how = reading(false, file);
-    const bool is_included = include != includes.end();
-    if (is_frame && is_included && frame != frames.end()) {
-      add_included_model(*include->second, resolved_pose(*frame->second, how));
-    } else if (sdf_model != nullptr && is_included) {
-      add_included_model(*include->second, resolved_pose(*sdf_model, how));
-    } else if (sdf_model != nullptr && !names_.contains(name)) {
-      read_inline_model(*sdf_model, file);
-    } else if (sdf_model != nullptr) {  // libsdformat drops the second of two, and the first one is found here again
+    if (include != includes.end())
+      add_included_model(*include->second, resolved_pose(*child, *file.frames, how));
+    else if (!is_frame && !names_.contains(name))
+      read_inline_model(*child, file);
+    else if (!is_frame)
       report_.problem(child, "another model has the name '" + name + "'");
-    }
   }
   add_placed_before(place);
 }
 
 // A light of the world becomes an object with only the light, so that events can switch and move it like any other.
-void WorldReader::read_lights(const sdf::World& sdf_world, const SdfFile& file) {
+void WorldReader::read_lights(const Element& world, const SdfFile& file) {
   const ModelReading how = reading(true, file);
-  for (std::uint64_t i = 0; i < sdf_world.LightCount(); ++i) {
-    const sdf::Light& sdf_light = *sdf_world.LightByIndex(i);
-    Emitter light = read_light(sdf_light, how);
+  for (const Element* const element : children_of(world, "light")) {
+    Emitter light = read_light(*element, *file.frames, how);
     Model model;
     model.name = light.name;
     model.is_static = true;
@@ -152,25 +133,24 @@ void WorldReader::read_lights(const sdf::World& sdf_world, const SdfFile& file) 
     light.X_LE = {};
     model.emitters.push_back(std::move(light));
     world_.models.push_back(std::move(model));
-    if (!add_instance(sdf_light.Name(), world_.models.size() - 1, X_WM))
-      report_.problem(sdf_light.Element(), "another object has the name '" + sdf_light.Name() + "'");
+    if (!add_instance(name_of(*element), world_.models.size() - 1, X_WM))
+      report_.problem(element, "another object has the name '" + name_of(*element) + "'");
   }
 }
 
-void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& file) {
-  const ModelReading how = reading(sdf_model.Static(), file);
-  const std::size_t model = add_models(read_model(sdf_model, how));
-  add_instance(sdf_model.Name(), model, resolved_pose(sdf_model, how));
+void WorldReader::read_inline_model(const Element& element, const SdfFile& file) {
+  const ModelReading how = reading(element.flag("static"), file);
+  const std::size_t model = add_models(read_model(*file.frames->of(element), how));
+  add_instance(name_of(element), model, resolved_pose(element, *file.frames, how));
 }
 
 void WorldReader::add_part(const SdfFile& unread, const std::string& name, const Pose& X_WM) {
   const auto [entry, is_new] = parts_.emplace(&unread, std::nullopt);
   if (is_new) {
     const SdfFile& part = files_.load_part(unread);
-    if (part.loaded && part.root.Model() != nullptr) {
-      check_numbers(part.root.Element(), report_);
-      const sdf::Model& sdf_model = *part.root.Model();
-      entry->second = add_models(read_model(sdf_model, reading(sdf_model.Static(), part)));
+    if (part.model() != nullptr) {
+      check_numbers(&part.elements->root(), report_);
+      entry->second = add_models(read_model(*part.model_frames, reading(part.model()->flag("static"), part)));
       add_instance(name, *entry->second, X_WM);
     }
     files_.let_go(part);
@@ -199,8 +179,8 @@ void WorldReader::add_included_model(const Include& include, const Pose& X_WM) {
 std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {
   const auto [entry, is_new] = shared_.emplace(std::pair{&file, is_static}, world_.models.size());
   if (is_new) {
-    check_numbers(file.root.Element(), report_);
-    add_models(read_model(*file.root.Model(), reading(is_static, file)));
+    check_numbers(&file.elements->root(), report_);
+    add_models(read_model(*file.model_frames, reading(is_static, file)));
   }
   return entry->second;
 }
@@ -217,10 +197,10 @@ std::size_t WorldReader::add_models(std::vector<Model> bodies) {
   return first;
 }
 
-void WorldReader::read_extensions(const sdf::World& sdf_world) {
-  const auto extensions = extensions_in(sdf_world.Element(), report_);
+void WorldReader::read_extensions(const Element& world) {
+  const auto extensions = extensions_in(&world, report_);
   std::set<std::string_view> given;
-  read_world_plugins(sdf_world.Element(), world_, report_);  // `cohort:` elements have priority
+  read_world_plugins(&world, world_, report_);  // `cohort:` elements have priority
   for (const auto& [element, extension] : extensions) {
     if (is_once(*extension) && !given.insert(extension->name).second)
       report_.problem(element, "<" + prefixed(extension->name) + "> is given twice");
@@ -250,7 +230,7 @@ void WorldReader::read_extensions(const sdf::World& sdf_world) {
 }
 
 // Reads an element that names a material or an object; always checks its keys.
-void WorldReader::read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read) {
+void WorldReader::read_reference(const Element* element, const Extension& extension, bool all_is_read) {
   const bool is_pair = extension.name == "material_pair";
   if (!is_pair && extension.name != "breakable_joint") return;
   const auto values = ExtensionValues::read(element, extension, report_);
@@ -298,8 +278,8 @@ const SdfFile* WorldReader::find_model(const std::string& uri, const Report& pro
     problem(error.what());
     return nullptr;
   }
-  if (!file->loaded) return nullptr;
-  if (file->root.Model() == nullptr) {
+  if (!file->elements) return nullptr;
+  if (file->model() == nullptr) {
     problem("'" + file->shown.string() + "' has no <model>");
     return nullptr;
   }
@@ -312,7 +292,7 @@ void WorldReader::add_later(const LaterObject& object) {
   };
   const SdfFile* const file = find_model(object.uri, problem);
   if (file == nullptr) return;
-  const std::size_t model = shared_model(*file, file->root.Model()->Static());
+  const std::size_t model = shared_model(*file, file->model()->flag("static"));
   if (count_of_bodies(model) > 1)
     return problem("the model has several root links, which are separate bodies; an event can add only one body");
   if (object.is_model_only) {
@@ -329,7 +309,7 @@ void WorldReader::add_population(WrittenPopulation written) {
   const SdfFile* const file = find_model(written.uri, problem);
   if (file == nullptr) return;
   Population& population = written.population;
-  population.model = shared_model(*file, file->root.Model()->Static());
+  population.model = shared_model(*file, file->model()->flag("static"));
   population.bodies = count_of_bodies(population.model);
   // If a shape is invalid, so is the space that it occupies.
   if (problems_.empty()) world_.populations.push_back(std::move(population));

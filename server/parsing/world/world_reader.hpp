@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <sdf/World.hh>
 #include <set>
 #include <string>
 #include <utility>
@@ -42,14 +41,14 @@ class WorldReader {
  private:
   World finished();
   void read_model_alone(const SdfFile& file);
-  void read_settings(const sdf::World& sdf_world);
-  void read_models(const sdf::World& sdf_world, const SdfFile& file);
-  void read_lights(const sdf::World& sdf_world, const SdfFile& file);
-  void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
+  void read_settings(const Element& world);
+  void read_models(const Element& world, const SdfFile& file);
+  void read_lights(const Element& world, const SdfFile& file);
+  void read_inline_model(const Element& element, const SdfFile& file);
   void add_included_model(const Include& include, const Pose& X_WM);
   void add_part(const SdfFile& unread, const std::string& name, const Pose& X_WM);
-  void read_extensions(const sdf::World& sdf_world);
-  void read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read);
+  void read_extensions(const Element& world);
+  void read_reference(const Element* element, const Extension& extension, bool all_is_read);
   void add_material_pair(const ExtensionValues& values);
   void add_breakable_joint(const ExtensionValues& values);
   /// Returns the index of the material that `key` names; reports an unknown one.

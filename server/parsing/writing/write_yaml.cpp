@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <sdf/SDFImpl.hh>
 #include <set>
 #include <sstream>
 
 #include "server/core/text.hpp"
+#include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/sdf/schema/sdf_schema.hpp"
 #include "server/parsing/sdf/schema/yaml_sdf.hpp"
 
@@ -145,8 +145,7 @@ std::string lines_of(const XmlNode& node, const ElementSchema& schema) {
 std::string yaml_of_sdf(const XmlNode& sdf) {
   XmlNode root = sdf;
   std::erase_if(root.attributes, [](const auto& attribute) {
-    return (attribute.first == "version" && attribute.second == sdf::SDF::Version()) ||
-           attribute.first == "xmlns:cohort";
+    return (attribute.first == "version" && attribute.second == converted_version) || attribute.first == "xmlns:cohort";
   });
   return root.attributes.empty() ? lines_of(root, ElementSchema::root())
                                  : "sdf:" + after_key(root, ElementSchema::root());

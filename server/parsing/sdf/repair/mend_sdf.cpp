@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <sdf/Sensor.hh>
 #include <set>
 #include <string>
 #include <string_view>
@@ -14,6 +13,12 @@
 
 namespace cohort::parsing {
 namespace {
+
+// The sensor types of SDF 1.9, and the older names `gpu_ray` and `ray`.
+constexpr std::string_view sensor_types =
+    "air_pressure altimeter boundingbox_camera camera contact custom depth_camera force_torque gps gpu_lidar gpu_ray "
+    "imu lidar logical_camera magnetometer multicamera navsat none ray rfid rfidtag rgbd_camera segmentation_camera "
+    "sonar thermal_camera wide_angle_camera wireless_receiver wireless_transmitter";
 
 class SdfMender {
  public:
@@ -30,6 +35,7 @@ class SdfMender {
   void take_world_link(XmlNode& model, const std::string& path);
   void mend_masses(XmlNode& model, const std::string& path);
   void give_link(XmlNode& model, const std::string& path);
+  void name_apart(XmlNode& around, const std::string& path);
   void mend_link(XmlNode& link, const std::string& path);
   void number_apart(XmlNode& link, std::string_view kind, const std::string& path);
   void mend_joint(XmlNode& joint, const std::string& path);
@@ -43,6 +49,7 @@ class SdfMender {
 
 void SdfMender::mend(XmlNode& node, const std::string& path) {
   if (node.name == "model") mend_model(node, path);
+  if (node.name == "model" || node.name == "world") name_apart(node, path);
   if (node.name == "link") mend_link(node, path);
   if (node.name == "joint") mend_joint(node, path);
   if (node.name == "friction") mend_friction(node, path);
@@ -133,10 +140,28 @@ void SdfMender::give_link(XmlNode& model, const std::string& path) {
   model.children.push_back(std::move(link));
 }
 
+// Up to SDF 1.6, a joint or a frame could have the name of a link or a model.
+void SdfMender::name_apart(XmlNode& around, const std::string& path) {
+  std::set<std::string> names;
+  for (const XmlNode& child : around.children)
+    if (child.name == "link" || child.name == "model") names.insert(value_of(child, "name"));
+  for (const std::string_view kind : {"joint", "frame"})
+    for (XmlNode& part : around.children) {
+      const std::string name = value_of(part, "name");
+      if (part.name != kind || name.empty() || names.insert(name).second) continue;
+      std::string other = name + "_" + part.name;
+      for (int number = 0; !names.insert(other).second; ++number)
+        other = name + "_" + part.name + std::to_string(number);
+      tell_of(part, path_below(path, part),
+              "another element of the " + around.name + " has this name; this one is renamed to '" + other + "'");
+      set_attribute(part, "name", other);
+    }
+}
+
 bool SdfMender::knows_sensor(const XmlNode& sensor, const std::string& path) {
   const std::string type = value_of(sensor, "type");
-  // The first three are older names.
-  if (type == "ray" || type == "gpu_ray" || type == "gps" || sdf::Sensor().SetType(type)) return true;
+  const std::vector<std::string_view> known = words(sensor_types);
+  if (std::ranges::find(known, type) != known.end()) return true;
   tell_of(sensor, path_below(path, sensor), "the sensor type '" + type + "' is not supported; the sensor is ignored");
   return false;
 }

@@ -1,231 +1,157 @@
 #include "server/parsing/sdf/repair/older_sdf.hpp"
 
-#include <sdf/sdf_config.h>
-
 #include <algorithm>
-#include <map>
-#include <optional>
-#include <sdf/SDFImpl.hh>
+#include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "server/core/text.hpp"
+#include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
-// Declared in a header that libsdformat does not install: its embedded files by name, such as `1.7/1_6.convert`.
-namespace sdf {
-inline namespace SDF_VERSION_NAMESPACE {
-const std::map<std::string, std::string>& GetEmbeddedSdf();
-}
-}  // namespace sdf
-
-// Each rule works like the Converter of libsdformat. Names with '::', which it converts to models, are joined before.
 namespace cohort::parsing {
 namespace {
 
-/// The conversion of one version to a later one.
-struct Conversion {
-  std::string to;
-  XmlNode rules;  ///< <convert>, which holds <rename>, <move>, … and a <convert> for each child that has rules
-};
-
-// Returns the conversions by the version from which they convert.
-std::map<std::string, Conversion> read_conversions() {
-  constexpr std::string_view ending = ".convert";
-  std::map<std::string, Conversion> conversions;
-  for (const auto& [path, text] : sdf::GetEmbeddedSdf()) {
-    const std::size_t slash = path.find('/');
-    if (!path.ends_with(ending) || slash == std::string::npos) continue;
-    std::string from = path.substr(slash + 1, path.size() - ending.size() - slash - 1);
-    std::ranges::replace(from, '_', '.');
-    conversions.emplace(std::move(from), Conversion{path.substr(0, slash), outline_xml(text).root});
-  }
-  return conversions;
+XmlNode& child_or_new(XmlNode& node, const std::string& name) {
+  XmlNode* const child = child_of(node, name);
+  return child != nullptr ? *child : node.children.emplace_back(element_at(node, name));
 }
 
-using Path = std::vector<std::string>;
-
-Path parts_of(const std::string& text, const std::string& between) {
-  Path parts;
-  std::size_t begin = 0;
-  for (std::size_t end = text.find(between); end != std::string::npos; end = text.find(between, begin)) {
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + between.size();
-  }
-  parts.push_back(text.substr(begin));
-  return parts;
-}
-
-// Returns the element at the path without its last part; nullptr if there is none.
-XmlNode* around_last(XmlNode& node, const Path& path) {
-  XmlNode* at = &node;
-  for (std::size_t i = 0; i + 1 < path.size() && at != nullptr; ++i) at = child_of(*at, path[i]);
-  return at;
-}
-
-// Returns the same, and adds missing elements. The first `count` parts are elements.
-XmlNode& make_path(XmlNode& node, const Path& path, std::size_t count) {
-  XmlNode* at = &node;
-  for (std::size_t i = 0; i < count; ++i) {
-    XmlNode* const next = child_of(*at, path[i]);
-    at = next != nullptr ? next : &at->children.emplace_back(element_at(*at, path[i]));
-  }
-  return *at;
-}
-
-std::optional<std::string> text_of(const XmlNode* node) {
-  return node != nullptr && !node->text.empty() ? std::optional(node->text) : std::nullopt;
-}
-
-std::optional<std::string> attribute_of(const XmlNode* node, const std::string& name) {
-  const std::string* const value = node != nullptr ? node->attribute(name) : nullptr;
-  return value != nullptr ? std::optional(*value) : std::nullopt;
-}
-
-void remove_attribute(XmlNode& node, const std::string& name) {
+void remove_attribute(XmlNode& node, std::string_view name) {
   std::erase_if(node.attributes, [&](const auto& attribute) { return attribute.first == name; });
 }
 
-void remove_child(XmlNode& node, const XmlNode* child) {
-  node.children.erase(node.children.begin() + (child - node.children.data()));
+void remove_children(XmlNode& node, std::string_view name) {
+  std::erase_if(node.children, [&](const XmlNode& child) { return child.name == name; });
 }
 
-/// The target of a <from> or a <to> of a rule.
-struct End {
-  std::string element;
-  std::string attribute;
-
-  End(const XmlNode& rule, std::string_view which) {
-    const XmlNode* const end = rule.child(which);
-    if (end == nullptr) return;
-    element = value_of(*end, "element");
-    attribute = value_of(*end, "attribute");
+// Moves the element at the path below `node`, if there is one, to the end of `node`.
+void move_up(XmlNode& node, std::string_view path, const std::string& new_name) {
+  XmlNode* around = &node;
+  for (std::size_t slash = path.find('/'); slash != std::string_view::npos; slash = path.find('/')) {
+    around = child_of(*around, path.substr(0, slash));
+    if (around == nullptr) return;
+    path.remove_prefix(slash + 1);
   }
+  XmlNode* const found = child_of(*around, path);
+  if (found == nullptr) return;
+  XmlNode moved = std::move(*found);
+  moved.name = new_name;
+  around->children.erase(around->children.begin() + (found - around->children.data()));
+  node.children.push_back(std::move(moved));
+}
+
+void rename_step_sizes(XmlNode& physics) {
+  move_up(physics, "update_rate", "real_time_update_rate");
+  move_up(physics, "ode/solver/dt", "max_step_size");
+  move_up(physics, "bullet/dt", "max_step_size");
+}
+
+// Up to SDF 1.4, axes are expressed in the frame of the model.
+void use_model_frame(XmlNode& joint) {
+  for (XmlNode& axis : joint.children)
+    if (axis.name == "axis" || axis.name == "axis2")
+      axis.children.push_back(element_at(axis, "use_parent_model_frame", "true"));
+}
+
+void make_static_an_element(XmlNode& actor) {
+  const std::string* const value = actor.attribute("static");
+  if (value == nullptr) return;
+  actor.children.push_back(element_at(actor, "static", *value));
+  remove_attribute(actor, "static");
+}
+
+void move_fields_to_world(XmlNode& world) {
+  move_up(world, "physics/gravity", "gravity");
+  move_up(world, "physics/magnetic_field", "magnetic_field");
+}
+
+// Up to SDF 1.5, an IMU has one noise for all axes: <noise> with a <type>, and the values in <rate> and <accel>.
+void give_noise_to_axes(XmlNode& imu) {
+  constexpr std::array<std::pair<const char*, const char*>, 2> quantities{
+      {{"angular_velocity", "rate"}, {"linear_acceleration", "accel"}}};
+  for (const auto& [quantity, older] : quantities) imu.children.push_back(element_at(imu, quantity));
+  const XmlNode* const noise = imu.child("noise");
+  if (noise == nullptr) return;
+  const XmlNode* const type = noise->child("type");
+  for (const auto& [quantity, older] : quantities) {
+    const XmlNode* const values = noise->child(older);
+    for (const char* const axis : {"x", "y", "z"}) {
+      XmlNode& of_axis = child_or_new(child_or_new(*child_of(imu, quantity), axis), "noise");
+      if (type != nullptr && !type->text.empty()) set_attribute(of_axis, "type", type->text);
+      for (const char* const key : {"mean", "stddev", "bias_mean", "bias_stddev"})
+        if (const XmlNode* const value = values != nullptr ? values->child(key) : nullptr)
+          of_axis.children.push_back(*value);
+    }
+  }
+  remove_children(imu, "noise");
+}
+
+void rename_frame(XmlNode& pose) {
+  if (pose.attribute("frame") == nullptr) return;
+  const std::string frame = value_of(pose, "frame");
+  remove_attribute(pose, "frame");
+  set_attribute(pose, "relative_to", frame);
+}
+
+void name_frame_of_axes(XmlNode& joint) {
+  constexpr std::array<std::string_view, 4> yes{"true", "True", "TRUE", "1"};
+  for (XmlNode& axis : joint.children) {
+    if (axis.name != "axis" && axis.name != "axis2") continue;
+    const XmlNode* const flag = axis.child("use_parent_model_frame");
+    if (flag == nullptr) continue;
+    if (std::ranges::find(yes, flag->text) != yes.end())
+      set_attribute(child_or_new(axis, "xyz"), "expressed_in", "__model__");
+    remove_children(axis, "use_parent_model_frame");
+  }
+}
+
+// From SDF 1.8 on, the pose of an <inertial> has no such attribute.
+void remove_empty_frame(XmlNode& inertial) {
+  for (XmlNode& pose : inertial.children)
+    if (pose.name == "pose" && value_of(pose, "relative_to").empty()) remove_attribute(pose, "relative_to");
+}
+
+/// A change of the elements at a path in files before a version.
+struct Rule {
+  std::pair<int, int> before;
+  std::string_view path;  ///< below <sdf>; with "**" in front, elements of the name anywhere
+  void (*change)(XmlNode&);
 };
 
-// Renames a value in place; of an element, only the value is kept.
-void rename(XmlNode& node, const XmlNode& rule) {
-  const End from(rule, "from");
-  const End to(rule, "to");
-  XmlNode* const source = from.element.empty() ? nullptr : child_of(node, from.element);
-  const auto value = from.element.empty()     ? attribute_of(&node, from.attribute)
-                     : from.attribute.empty() ? text_of(source)
-                                              : attribute_of(source, from.attribute);
-  if (!value) return;
-  XmlNode renamed = element_at(source != nullptr ? *source : node, to.element);
-  if (to.attribute.empty())
-    renamed.text = *value;
-  else
-    set_attribute(renamed, to.attribute, *value);
-  if (source != nullptr) {
-    *source = std::move(renamed);
-    return;
-  }
-  remove_attribute(node, from.attribute);
-  node.children.push_back(std::move(renamed));
-}
+// In the order in which they apply. SDF 1.3 and 1.9 only add to the versions before them.
+constexpr Rule rules[] = {
+    {{1, 4}, "world/physics", rename_step_sizes},
+    {{1, 5}, "world/model/joint", use_model_frame},
+    {{1, 5}, "model/joint", use_model_frame},
+    {{1, 5}, "world/actor", make_static_an_element},
+    {{1, 5}, "model/actor", make_static_an_element},
+    {{1, 6}, "world", move_fields_to_world},
+    {{1, 6}, "world/model/link/sensor/imu", give_noise_to_axes},
+    {{1, 6}, "model/link/sensor/imu", give_noise_to_axes},
+    {{1, 7}, "**/pose", rename_frame},
+    {{1, 7}, "**/joint", name_frame_of_axes},
+    {{1, 8}, "**/inertial", remove_empty_frame},
+};
 
-// Moves an element with its content. Paths have '::' between their parts.
-void move(XmlNode& node, const XmlNode& rule, bool copies) {
-  const End from(rule, "from");
-  const End to(rule, "to");
-  const Path source = parts_of(from.element.empty() ? from.attribute : from.element, "::");
-  const Path target = parts_of(to.element.empty() ? to.attribute : to.element, "::");
-  if (around_last(node, source) == nullptr) return;
-  const bool is_attribute_of_element = !to.element.empty() && !to.attribute.empty();
-  XmlNode& target_around = make_path(node, target, target.size() - (is_attribute_of_element ? 0 : 1));
-  XmlNode& source_around = *around_last(node, source);
-  if (from.element.empty()) {
-    const auto value = attribute_of(&source_around, source.back());
-    if (!value) return;
-    if (!copies) remove_attribute(source_around, source.back());
-    if (to.element.empty())
-      set_attribute(target_around, target.back(), *value);
+void apply(const Rule& rule, XmlNode& node, std::string_view path) {
+  const std::size_t slash = path.find('/');
+  const bool is_last = slash == std::string_view::npos;
+  for (XmlNode& child : node.children) {
+    if (child.name != path.substr(0, slash)) continue;
+    if (is_last)
+      rule.change(child);
     else
-      target_around.children.push_back(element_at(target_around, target.back(), *value));
-    return;
+      apply(rule, child, path.substr(slash + 1));
   }
-  const XmlNode* const moved = source_around.child(source.back());
-  if (moved == nullptr) return;
-  if (!to.element.empty() && to.attribute.empty()) {
-    XmlNode copy = *moved;
-    copy.name = target.back();
-    if (!copies) remove_child(source_around, moved);
-    // The removal may have moved the parent of the target in memory.
-    make_path(node, target, target.size() - 1).children.push_back(std::move(copy));
-    return;
-  }
-  const auto value = text_of(moved);
-  if (!value) return;
-  set_attribute(target_around, to.attribute, *value);
-  if (!copies) remove_child(source_around, moved);
 }
 
-// Maps one of several values to another value at another path. Paths have '/' between their parts.
-void map(XmlNode& node, const XmlNode& rule) {
-  const XmlNode& from = *rule.child("from");
-  const XmlNode& to = *rule.child("to");
-  const Path source = parts_of(value_of(from, "name"), "/");
-  const Path target = parts_of(value_of(to, "name"), "/");
-  XmlNode* const around = around_last(node, source);
-  if (around == nullptr) return;
-  const auto value = source.back().starts_with('@') ? attribute_of(around, source.back().substr(1))
-                                                    : text_of(around->child(source.back()));
-  // If there are fewer target values, the last one is used for all remaining ones.
-  std::optional<std::string> mapped;
-  for (std::size_t i = 0; i < from.children.size() && value; ++i)
-    if (from.children[i].text == *value) mapped = to.children[std::min(i, to.children.size() - 1)].text;
-  if (!mapped) return;
-  if (target.back().starts_with('@'))
-    set_attribute(make_path(node, target, target.size() - 1), target.back().substr(1), *mapped);
-  else
-    make_path(node, target, target.size()).text = *mapped;
-}
-
-void add(XmlNode& node, const XmlNode& rule) {
-  if (const auto attribute = attribute_of(&rule, "attribute"))
-    set_attribute(node, *attribute, value_of(rule, "value"));
-  else
-    node.children.push_back(element_at(node, value_of(rule, "element"), value_of(rule, "value")));
-}
-
-void remove(XmlNode& node, const XmlNode& rule, bool only_if_empty) {
-  if (const auto attribute = attribute_of(&rule, "attribute")) {
-    if (!only_if_empty || value_of(node, *attribute).empty()) remove_attribute(node, *attribute);
-    return;
-  }
-  const std::string name = value_of(rule, "element");
-  std::erase_if(node.children, [&](const XmlNode& child) {
-    const bool is_empty = child.attributes.empty() && child.children.empty() && child.text.empty();
-    return child.name == name && (!only_if_empty || is_empty);
-  });
-}
-
-void convert(XmlNode& node, const XmlNode& rules);
-
-void convert_descendants(XmlNode& node, const std::string& name, const XmlNode& rules) {
+void apply_anywhere(const Rule& rule, XmlNode& node, std::string_view name) {
   if (node.name == "plugin" || node.name.find(':') != std::string::npos) return;
   for (XmlNode& child : node.children) {
-    if (child.name == name) convert(child, rules);
-    convert_descendants(child, name, rules);
-  }
-}
-
-void convert(XmlNode& node, const XmlNode& rules) {
-  for (const XmlNode& rule : rules.children) {
-    if (rule.name != "convert") continue;
-    if (const auto name = attribute_of(&rule, "name"))
-      for (XmlNode& child : node.children)
-        if (child.name == *name) convert(child, rule);
-    if (const auto name = attribute_of(&rule, "descendant_name")) convert_descendants(node, *name, rule);
-  }
-  for (const XmlNode& rule : rules.children) {
-    if (rule.name == "rename") rename(node, rule);
-    if (rule.name == "copy" || rule.name == "move") move(node, rule, rule.name == "copy");
-    if (rule.name == "map") map(node, rule);
-    if (rule.name == "add") add(node, rule);
-    if (rule.name == "remove" || rule.name == "remove_empty") remove(node, rule, rule.name == "remove_empty");
+    if (child.name == name) rule.change(child);
+    apply_anywhere(rule, child, name);
   }
 }
 
@@ -243,15 +169,18 @@ void rename_frames_of_includes(XmlNode& node) {
 }  // namespace
 
 void convert_older(XmlNode& sdf) {
-  static const std::map<std::string, Conversion> conversions = read_conversions();
   rename_frames_of_includes(sdf);
-  for (auto next = conversions.find(value_of(sdf, "version"));
-       next != conversions.end() && value_of(sdf, "version") != sdf::SDF::Version();
-       next = conversions.find(next->second.to)) {
-    convert(sdf, next->second.rules);
-    set_attribute(sdf, "version", next->second.to);
+  const std::pair<int, int> version = version_of(value_of(sdf, "version"));
+  constexpr std::pair<int, int> oldest{1, 2};
+  for (const Rule& rule : rules) {
+    if (version < oldest || version >= rule.before) continue;
+    constexpr std::string_view anywhere = "**/";
+    if (rule.path.starts_with(anywhere))
+      apply_anywhere(rule, sdf, rule.path.substr(anywhere.size()));
+    else
+      apply(rule, sdf, rule.path);
   }
-  set_attribute(sdf, "version", sdf::SDF::Version());
+  set_attribute(sdf, "version", std::string(converted_version));
 }
 
 }  // namespace cohort::parsing

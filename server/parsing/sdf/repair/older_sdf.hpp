@@ -4,7 +4,8 @@
 
 namespace cohort::parsing {
 
-/// Converts an <sdf> element of an older version to that of libsdformat, by the rules of libsdformat.
+/// Converts an <sdf> element of SDF 1.2 to 1.8 to `converted_version`: replaces older spellings by newer ones. In files
+/// of SDF 1.0, it only changes the version and the frames of includes.
 void convert_older(XmlNode& sdf);
 
 }  // namespace cohort::parsing

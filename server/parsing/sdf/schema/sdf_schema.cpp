@@ -1,16 +1,11 @@
 #include "server/parsing/sdf/schema/sdf_schema.hpp"
 
 #include <algorithm>
-#include <memory>
-#include <sdf/parser.hh>
+
+#include "server/parsing/sdf/schema/value_text.hpp"
 
 namespace cohort::parsing {
 namespace {
-
-bool is_vector_type(std::string_view type) {
-  constexpr std::string_view types[] = {"pose", "vector2d", "vector2i", "vector3", "color", "quaternion"};
-  return std::find(std::begin(types), std::end(types), type) != std::end(types);
-}
 
 const ExtensionKey* find_key(const Extension& extension, std::string_view name) {
   for (const ExtensionKey& key : extension.keys)
@@ -20,19 +15,10 @@ const ExtensionKey* find_key(const Extension& extension, std::string_view name) 
 
 }  // namespace
 
-const sdf::ElementPtr& sdf_definition() {
-  static const sdf::ElementPtr root = [] {
-    const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
-    sdf::init(sdf);
-    return sdf->Root();
-  }();
-  return root;
-}
-
 ElementSchema ElementSchema::root() {
   ElementSchema schema;
   schema.name_ = "sdf";
-  schema.element_ = sdf_definition();
+  schema.rule_ = &sdf_rule();
   return schema;
 }
 
@@ -44,15 +30,17 @@ ElementSchema ElementSchema::child(const std::string& name) const {
     schema.extension_ = find_extension(schema.name_, name_);
     if (extension_ != nullptr) schema.key_ = find_key(*extension_, schema.name_);
     schema.unknown_extension_ = schema.extension_ == nullptr && schema.key_ == nullptr;
-  } else if (element_ && !element_->GetCopyChildren()) {
-    // The schema of a nested model is that of the model.
-    const bool is_same = name == name_ && element_->HasElementDescription(name);
-    schema.element_ = is_same ? element_ : element_->GetElementDescription(name);
+  } else if (rule_ != nullptr && !rule_->takes_anything) {
+    for (const auto& [element, presence] : rule_->children)
+      if (element->name == name) {
+        schema.rule_ = element;
+        schema.presence_ = presence;
+      }
   }
   return schema;
 }
 
-bool ElementSchema::takes_anything() const { return is_free() || (element_ && element_->GetCopyChildren()); }
+bool ElementSchema::takes_anything() const { return is_free() || (rule_ != nullptr && rule_->takes_anything); }
 
 bool ElementSchema::has_child(const std::string& name) const {
   const std::vector<std::string> known = children();
@@ -65,35 +53,30 @@ bool ElementSchema::has_attribute(const std::string& name) const {
 }
 
 bool ElementSchema::knows_child(const std::string& name) const {
-  return !element_ || element_->GetCopyChildren() || element_->HasElementDescription(name);
+  return rule_ == nullptr || rule_->takes_anything || rule_->child(name) != nullptr;
 }
 
 bool ElementSchema::knows_attribute(const std::string& name) const {
-  return !element_ || element_->GetAttribute(name) != nullptr;
+  return rule_ == nullptr || rule_->attribute(name) != nullptr;
 }
 
 bool ElementSchema::is_single() const {
-  // For these included elements, libsdformat does not keep the number that SDF allows.
-  if (name_ == "sensor" || name_ == "projector") return false;
-  return element_ && (element_->GetRequired() == "0" || element_->GetRequired() == "1");
+  return rule_ != nullptr && (presence_ == Presence::at_most_once || presence_ == Presence::once);
 }
 
 bool ElementSchema::has_value() const {
-  if (element_) return static_cast<bool>(element_->GetValue());
+  if (rule_ != nullptr) return rule_->value.type != ValueType::none;
   if (key_ != nullptr) return key_->value != ExtensionValue::group;
   return extension_ != nullptr && extension_->value != ExtensionValue::group;
 }
 
-bool ElementSchema::can_have(const std::string& text) const {
-  return !element_ || !element_->GetValue() || element_->GetValue()->Clone()->SetFromString(text);
-}
-
-std::string ElementSchema::default_text() const {
-  return element_ && element_->GetValue() ? element_->GetValue()->GetDefaultAsString() : std::string();
-}
+bool ElementSchema::can_have(const std::string& text) const { return rule_ == nullptr || allows(rule_->value, text); }
 
 bool ElementSchema::is_vector() const {
-  if (element_) return element_->GetValue() && is_vector_type(element_->GetValue()->GetTypeName());
+  if (rule_ != nullptr) {
+    constexpr ValueType types[] = {ValueType::vector2, ValueType::vector3, ValueType::color, ValueType::pose};
+    return std::ranges::find(types, rule_->value.type) != std::end(types);
+  }
   constexpr ExtensionValue vectors[] = {ExtensionValue::point, ExtensionValue::vector, ExtensionValue::place,
                                         ExtensionValue::pose};
   return key_ != nullptr && std::ranges::find(vectors, key_->value) != std::end(vectors);
@@ -101,9 +84,8 @@ bool ElementSchema::is_vector() const {
 
 std::vector<std::string> ElementSchema::children() const {
   std::vector<std::string> names;
-  if (element_)
-    for (unsigned i = 0; i < element_->GetElementDescriptionCount(); ++i)
-      names.push_back(element_->GetElementDescription(i)->GetName());
+  if (rule_ != nullptr)
+    for (const ChildRule& child : rule_->children) names.push_back(child.element->name);
   if (extension_ != nullptr)
     for (const ExtensionKey& key : extension_->keys) names.push_back(prefixed(key.name));
   for (const Extension& extension : extensions())
@@ -113,8 +95,8 @@ std::vector<std::string> ElementSchema::children() const {
 
 std::vector<std::string> ElementSchema::attributes() const {
   std::vector<std::string> names;
-  if (element_)
-    for (const sdf::ParamPtr& attribute : element_->GetAttributes()) names.push_back(attribute->GetKey());
+  if (rule_ != nullptr)
+    for (const AttributeRule& attribute : rule_->attributes) names.push_back(attribute.name);
   if (extension_ != nullptr && extension_->has_name) names.emplace_back("name");
   return names;
 }

@@ -1,16 +1,16 @@
 #pragma once
 
 #include <cstddef>
-#include <sdf/Element.hh>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "server/parsing/keys/extensions.hpp"
+#include "server/parsing/sdf/schema/sdf_rules.hpp"
 
 namespace cohort::parsing {
 
-/// The allowed content of an element, from the schema of SDFormat or the table of extensions. A value; cheap to copy.
+/// The allowed content of an element, from the rules of SDF or the table of extensions. A value; cheap to copy.
 /// For elements that neither knows (below <plugin>, or with the prefix of another simulator) it is `free`: anything is
 /// allowed.
 class ElementSchema {
@@ -21,7 +21,7 @@ class ElementSchema {
   /// Returns the schema of a child; `free` if it is not known here.
   ElementSchema child(const std::string& name) const;
 
-  bool is_free() const { return !element_ && extension_ == nullptr && key_ == nullptr; }
+  bool is_free() const { return rule_ == nullptr && extension_ == nullptr && key_ == nullptr; }
   /// Returns whether this is an extension, a part of one, or an unknown element with its prefix.
   bool is_extension() const { return extension_ != nullptr || key_ != nullptr || unknown_extension_; }
   /// Returns whether children of any name are allowed.
@@ -36,7 +36,6 @@ class ElementSchema {
   bool has_value() const;
   /// Returns whether SDF allows this text as its value. Checks only what does not depend on attributes.
   bool can_have(const std::string& text) const;
-  std::string default_text() const;
   /// Returns whether its value is several numbers.
   bool is_vector() const;
 
@@ -46,13 +45,11 @@ class ElementSchema {
 
  private:
   std::string name_;
-  sdf::ElementPtr element_;
+  const ElementRule* rule_ = nullptr;
+  Presence presence_ = Presence::any;
   const Extension* extension_ = nullptr;
   const ExtensionKey* key_ = nullptr;
   bool unknown_extension_ = false;
 };
-
-/// Returns the description of <sdf> in SDFormat. It is shared and must not be changed.
-const sdf::ElementPtr& sdf_definition();
 
 }  // namespace cohort::parsing

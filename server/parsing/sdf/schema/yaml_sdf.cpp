@@ -1,11 +1,11 @@
 #include "server/parsing/sdf/schema/yaml_sdf.hpp"
 
 #include <algorithm>
-#include <sdf/SDFImpl.hh>
 #include <set>
 #include <utility>
 
 #include "server/core/text.hpp"
+#include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/sdf/schema/sdf_schema.hpp"
 
 namespace cohort::parsing {
@@ -252,9 +252,10 @@ void Converter::add_child(XmlNode& node, const std::string& name, int line, cons
 
 void Converter::check_top(const XmlNode& sdf) {
   const std::string* const version = sdf.attribute("version");
-  if (version != nullptr && *version != sdf::SDF::Version())
+  if (version != nullptr && *version != converted_version)
     problem(sdf.line, "sdf",
-            "expected version " + sdf::SDF::Version() + ", the only version supported in YAML, not '" + *version + "'");
+            "expected version " + std::string(converted_version) + ", the only version supported in YAML, not '" +
+                *version + "'");
 }
 
 XmlNode Converter::convert(const YamlNode& document) {
@@ -274,7 +275,7 @@ XmlNode Converter::convert(const YamlNode& document) {
   else
     problem(sdf.line, "", "expected 'world:' or 'model:' with the elements below it, not " + shown(*content));
   check_top(sdf);
-  if (sdf.attribute("version") == nullptr) sdf.attributes.emplace_back("version", sdf::SDF::Version());
+  if (sdf.attribute("version") == nullptr) sdf.attributes.emplace_back("version", converted_version);
   if (sdf.attribute("xmlns:cohort") == nullptr) sdf.attributes.emplace_back("xmlns:cohort", name_space);
   return sdf;
 }

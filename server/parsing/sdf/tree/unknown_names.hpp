@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/description/input_error.hpp"
+#include "server/parsing/parsing.hpp"
 
 namespace cohort::parsing {
 

@@ -8,33 +8,16 @@
 #include <string_view>
 
 #include "server/core/text.hpp"
+#include "server/parsing/sdf/urdf/mend_urdf.hpp"
 #include "server/parsing/sdf/urdf/urdf_file.hpp"
 #include "server/parsing/sdf/urdf/urdf_forms.hpp"
+#include "server/parsing/sdf/urdf/urdf_gazebo.hpp"
+#include "server/parsing/sdf/urdf/urdf_tree.hpp"
 
 namespace cohort::parsing {
 namespace {
 
-// Elements of <gazebo> that the converter of libsdformat reads as numbers.
-constexpr std::string_view gazebo_numbers[] = {"dampingFactor",
-                                               "maxVel",
-                                               "minDepth",
-                                               "mu1",
-                                               "mu2",
-                                               "kp",
-                                               "kd",
-                                               "maxContacts",
-                                               "laserRetro",
-                                               "springReference",
-                                               "stopCfm",
-                                               "stopErp",
-                                               "springStiffness",
-                                               "stopKp",
-                                               "stopKd",
-                                               "cfmDamping",
-                                               "fudgeFactor",
-                                               "initialJointPosition"};
-
-constexpr std::string_view joint_types[] = {"revolute", "continuous", "prismatic", "fixed"};
+constexpr std::string_view joint_types[] = {"revolute", "continuous", "prismatic", "fixed", "floating", "spherical"};
 
 class Checker {
  public:
@@ -67,34 +50,24 @@ class Checker {
   std::map<std::string, const XmlNode*> joints_;
 };
 
-std::string step(const XmlNode& node) {
-  const std::string* const name = node.attribute("name");
-  return node.name + (name != nullptr ? "[" + *name + "]" : "");
-}
-
-std::string end_of(const XmlNode& joint, const char* end) {
-  const XmlNode* const node = joint.child(end);
-  const std::string* const link = node != nullptr ? node->attribute("link") : nullptr;
-  return link != nullptr ? *link : "";
-}
-
 void Checker::check(const XmlNode& robot) {
   for (const XmlNode& child : robot.children) check_top(child);
-  if (links_.empty()) problem(robot, step(robot), "expected at least one <link>");
+  if (links_.empty()) {
+    const bool is_srdf = robot.child("group") != nullptr || robot.child("disable_collisions") != nullptr;
+    problem(robot, urdf_step(robot),
+            is_srdf ? "this is an SRDF, which describes groups of joints for MoveIt; expected a URDF, with <link>"
+                    : "expected at least one <link>");
+  }
   for (const auto& [name, joint] : joints_) {
-    const std::string path = step(robot) + "/" + step(*joint);
+    const std::string path = urdf_step(robot) + "/" + urdf_step(*joint);
     check_end(*joint, path, "parent");
     check_end(*joint, path, "child");
-    const XmlNode* const mimic = joint->child("mimic");
-    const std::string* const leader = mimic != nullptr ? mimic->attribute("joint") : nullptr;
-    if (leader != nullptr && !joints_.contains(*leader))
-      problem(*mimic, path + "/mimic", "the robot has no joint '" + *leader + "'");
   }
   if (problems_.empty()) check_tree(robot);
 }
 
 void Checker::check_top(const XmlNode& node) {
-  const std::string path = "robot/" + step(node);
+  const std::string path = "robot/" + urdf_step(node);
   if (node.name.starts_with("xacro:")) {
     problem(node, path, "this is a xacro file; expected the URDF that `xacro FILE` generates from it");
   } else if (node.name == "link" || node.name == "joint") {
@@ -108,22 +81,17 @@ void Checker::check_top(const XmlNode& node) {
     warning(node, path, "<transmission> is not supported and is ignored; define motors with cohort: elements");
   } else if (node.name == "gazebo") {
     check_gazebo(node);
-  } else if (node.name != "material") {
+  } else if (node.name != "material" && node.name != "origin") {
     warning(node, path, "<" + node.name + "> is not supported and is ignored");
   }
 }
 
 void Checker::check_form(const XmlNode& node, const std::string& path) {
   for (const XmlNode& child : node.children) {
-    if (child.name == "visual") continue;
-    const std::string child_path = path + "/" + step(child);
-    const UrdfForm* found = nullptr;
-    for (const UrdfForm& form : urdf_forms())
-      if (form.parent == node.name && form.name == child.name) found = &form;
-    if (found == nullptr) continue;
-    if (child.name != "collision" && node.child(child.name) != &child)
-      problem(child, child_path, "<" + child.name + "> is given twice");
-    check_attributes(child, *found, child_path);
+    const UrdfForm* const form = form_of(node.name, child.name);
+    if (form == nullptr || child.name == "visual") continue;
+    const std::string child_path = path + "/" + urdf_step(child);
+    check_attributes(child, *form, child_path);
     check_form(child, child_path);
   }
 }
@@ -142,33 +110,19 @@ void Checker::check_attributes(const XmlNode& node, const UrdfForm& form, const 
 
 void Checker::check_gazebo(const XmlNode& gazebo) {
   for (const XmlNode& child : gazebo.children) {
-    if (std::find(std::begin(gazebo_numbers), std::end(gazebo_numbers), child.name) == std::end(gazebo_numbers))
-      continue;
-    const std::string* const attribute = child.attribute("value");
-    const UrdfAttribute number = {child.name, 1};
-    if (const auto wrong = what_is_wrong(attribute != nullptr ? *attribute : child.text, number))
+    if (!is_gazebo_number(child.name)) continue;
+    if (const auto wrong = what_is_wrong(gazebo_value(child), {child.name, 1}))
       problem(child, "robot/gazebo/" + child.name, *wrong);
   }
 }
 
 void Checker::check_link(const XmlNode& link, const std::string& path) {
   check_form(link, path);
-  for (const XmlNode& child : link.children) {
-    if (child.name == "collision") {
-      const XmlNode* const geometry = child.child("geometry");
-      if (geometry == nullptr || geometry->children.size() != 1)
-        problem(geometry != nullptr ? *geometry : child, path + "/collision/geometry",
-                "expected one of box, sphere, cylinder or mesh");
-    } else if (child.name == "inertial") {
-      for (const char* const part : {"mass", "inertia"})
-        if (child.child(part) == nullptr) problem(child, path + "/inertial", "missing: <" + std::string(part) + ">");
-      // The converter adds the masses of merged links.
-      const XmlNode* const mass = child.child("mass");
-      const std::string* const value = mass != nullptr ? mass->attribute("value") : nullptr;
-      if (value != nullptr && parse_real(*value).value_or(0.0) < 0.0)
-        problem(*mass, path + "/inertial/mass", "expected a mass > 0 kg, not " + *value);
-    }
-  }
+  const XmlNode* const inertial = link.child("inertial");
+  const XmlNode* const mass = inertial != nullptr ? inertial->child("mass") : nullptr;
+  const std::string value = mass != nullptr ? value_of(*mass, "value") : "";
+  if (parse_real(value).value_or(0.0) < 0.0)
+    problem(*mass, path + "/inertial/mass", "expected a mass > 0 kg, not " + value);
 }
 
 void Checker::check_joint(const XmlNode& joint, const std::string& path) {
@@ -188,27 +142,27 @@ void Checker::check_joint(const XmlNode& joint, const std::string& path) {
 }
 
 void Checker::check_end(const XmlNode& joint, const std::string& path, const char* end) {
-  const std::string link = end_of(joint, end);
+  const std::string link = urdf_end(joint, end);
   if (link.empty() || links_.contains(link)) return;
   std::vector<std::string> names;
   for (const auto& [name, node] : links_) names.push_back(name);
   problem(*joint.child(end), path + "/" + end, "the robot has no link '" + link + "'" + suggestion(link, names));
 }
 
-// The converter descends from the root, without end if the links form a loop.
 void Checker::check_tree(const XmlNode& robot) {
   std::map<std::string, std::string> parent;
   for (const auto& [name, joint] : joints_)
-    if (!parent.emplace(end_of(*joint, "child"), end_of(*joint, "parent")).second)
-      problem(*joint, step(robot) + "/" + step(*joint),
-              "the link '" + end_of(*joint, "child") + "' is already the child of another joint");
+    if (!parent.emplace(urdf_end(*joint, "child"), urdf_end(*joint, "parent")).second)
+      problem(*joint, urdf_step(robot) + "/" + urdf_step(*joint),
+              "the link '" + urdf_end(*joint, "child") + "' is already the child of another joint");
   std::string roots;
   std::size_t count = 0;
   for (const auto& [name, node] : links_) {
     if (parent.contains(name)) continue;
     roots += (count++ == 0 ? "'" : ", '") + name + "'";
   }
-  if (count > 1) problem(robot, step(robot), "expected one root link (a link without a parent joint), not " + roots);
+  if (count > 1)
+    problem(robot, urdf_step(robot), "expected one root link (a link without a parent joint), not " + roots);
   // Each ascent ends at a root or at a visited link; if it was visited in this ascent, there is a loop.
   std::set<std::string> met;
   for (const auto& [name, node] : links_) {
@@ -219,7 +173,8 @@ void Checker::check_tree(const XmlNode& robot) {
       link = parent[link];
     }
     if (now.contains(link))
-      problem(*links_[link], step(robot) + "/link[" + link + "]", "is in a loop of joints; expected a tree of links");
+      problem(*links_[link], urdf_step(robot) + "/link[" + link + "]",
+              "is in a loop of joints; expected a tree of links");
   }
 }
 

@@ -8,11 +8,8 @@
 #include <utility>
 
 #include "server/core/text.hpp"
+#include "server/parsing/sdf/urdf/urdf_file.hpp"
 #include "server/parsing/sdf/urdf/urdf_forms.hpp"
-#include "server/parsing/sdf/urdf/urdf_joints.hpp"
-#include "server/parsing/sdf/urdf/urdf_masses.hpp"
-#include "server/parsing/sdf/urdf/urdf_notes.hpp"
-#include "server/parsing/sdf/urdf/urdf_surface.hpp"
 #include "server/parsing/sdf/urdf/urdf_visuals.hpp"
 
 namespace cohort::parsing {
@@ -21,27 +18,25 @@ namespace {
 class UrdfMender {
  public:
   UrdfMender(const std::filesystem::path& file, std::vector<Problem>& problems, std::vector<Problem>& warnings)
-      : file_(file), problems_(problems), warnings_(warnings), notes_(file, warnings) {}
+      : file_(file), problems_(problems), notes_(file, warnings) {}
 
-  UrdfRest mend(XmlNode& robot);
+  void mend(XmlNode& robot);
 
  private:
   void take_optional_environment(XmlNode& node, const std::string& path);
   void mend_numbers(XmlNode& node, const UrdfForm& form, const std::string& path);
-  void mend_shape(XmlNode& geometry, const std::string& path, const std::pair<std::string, std::size_t>& place);
+  void mend_shape(XmlNode& geometry, const std::string& path);
   void mend_link(XmlNode& link);
   void mend_inertial(XmlNode& inertial, const std::string& path);
   void take_unknown(XmlNode& node, const std::string& path);
 
   const std::filesystem::path& file_;
   std::vector<Problem>& problems_;
-  std::vector<Problem>& warnings_;
   UrdfNotes notes_;
   UrdfVisuals visuals_;
-  UrdfRest rest_;
 };
 
-UrdfRest UrdfMender::mend(XmlNode& robot) {
+void UrdfMender::mend(XmlNode& robot) {
   if (value_of(robot, "name").empty()) {
     set_attribute(robot, "name", file_.stem().string());
     notes_.warn(robot, "robot", "has no name; it is named '" + file_.stem().string() + "' after its file");
@@ -52,13 +47,12 @@ UrdfRest UrdfMender::mend(XmlNode& robot) {
   for (XmlNode& child : robot.children) {
     if (child.name == "link") mend_link(child);
     if (child.name != "joint") continue;
-    mend_joint(child, rest_, notes_);
+    mend_joint(child, notes_);
     take_unknown(child, "robot/" + urdf_step(child));
   }
-  let_go(robot, rest_);
-  keep_links_without_mass(robot, file_, rest_, warnings_);
+  omit_empty_root(robot);
+  omit_lost_mimics(robot, notes_);
   notes_.tell();
-  return std::move(rest_);
 }
 
 // `$(optenv NAME VALUE)` is replaced by VALUE, so that results do not depend on the environment.
@@ -76,63 +70,57 @@ void UrdfMender::take_optional_environment(XmlNode& node, const std::string& pat
   for (XmlNode& child : node.children) take_optional_environment(child, path + "/" + urdf_step(child));
 }
 
-// Numbers with a comma between them, or a point after one, which other programs read up to that character.
+// Numbers with a comma between them, with other characters behind one, or more than three, of which other programs read
+// the part that is valid.
 void UrdfMender::mend_numbers(XmlNode& node, const UrdfForm& form, const std::string& path) {
   for (const UrdfAttribute& attribute : form.attributes) {
     const std::string value = value_of(node, attribute.name);
     if (attribute.numbers == 0 || value.empty() || !what_is_wrong(value, attribute)) continue;
     std::string spaced = value;
     std::ranges::replace(spaced, ',', ' ');
+    std::vector<std::string_view> parts = words(spaced);
+    if (attribute.numbers == 3 && parts.size() > 3 && spaced == value) parts.resize(3);
     std::string mended;
-    for (std::string_view word : words(spaced)) {
-      while (word.size() > 1 && word.ends_with('.')) word.remove_suffix(1);
-      mended += (mended.empty() ? "" : " ") + std::string(word);
+    for (std::string_view part : parts) {
+      while (!part.empty() && !parse_real(part)) part.remove_suffix(1);
+      mended += (mended.empty() ? "" : " ") + std::string(part);
     }
     if (what_is_wrong(mended, attribute)) continue;
-    notes_.warn(node, path, "expected numbers separated by spaces, not '" + value + "'; read as '" + mended + "'");
+    const std::string expected =
+        attribute.numbers == 1 ? "a number" : std::to_string(attribute.numbers) + " numbers separated by spaces";
+    notes_.warn(node, path, "expected " + expected + ", not '" + value + "'; read as '" + mended + "'");
     set_attribute(node, attribute.name, mended);
   }
 }
 
-// Bullet has shapes that the converter does not know. An unknown shape is an error, since a moving model would pass
-// through others.
-void UrdfMender::mend_shape(XmlNode& geometry, const std::string& path,
-                            const std::pair<std::string, std::size_t>& place) {
+// An unknown shape is an error, since a moving model would pass through others.
+void UrdfMender::mend_shape(XmlNode& geometry, const std::string& path) {
   if (geometry.children.size() > 1)
     notes_.pass_over(geometry, path, "has more than one shape; only the first is used, as in other URDF readers");
   geometry.children.resize(1, geometry.children.front());
   XmlNode& shape = geometry.children.front();
-  const XmlNode bullets = shape;
-  const auto stand_in = [&](const char* name, const char* size, const char* value) {
-    shape = element_at(geometry, name);
-    set_attribute(shape, size, value);
-  };
-  if (shape.name == "capsule") {
-    rest_.capsules.insert(place);
-    shape.name = "cylinder";
-  } else if (shape.name == "plane") {
-    rest_.planes.emplace(place, value_of(bullets, "normal").empty() ? "0 0 1" : value_of(bullets, "normal"));
-    stand_in("sphere", "radius", "1");
-  } else if (form_of("geometry", shape.name) == nullptr) {
-    problems_.push_back({file_, bullets.line, path + "/" + bullets.name,
-                         "<" + bullets.name +
-                             "> is not supported as a collision; expected box, sphere, cylinder, "
-                             "capsule, mesh or plane"});
-    stand_in("sphere", "radius", "1");
+  if (form_of("geometry", shape.name) == nullptr) {
+    problems_.push_back(
+        {file_, shape.line, path + "/" + shape.name,
+         "<" + shape.name +
+             "> is not supported as a collision; expected box, sphere, cylinder, capsule, mesh or plane"});
+    shape = element_at(geometry, "sphere");  // so that nothing else is reported
+    set_attribute(shape, "radius", "1");
   }
   mend_mesh(geometry);
 }
 
-// The converter divides by the mass of links that it merges.
 bool is_without_mass(const XmlNode& node) {
-  const XmlNode* const mass = node.name == "inertial" ? node.child("mass") : nullptr;
-  return mass != nullptr && parse_real(value_of(*mass, "value")) == 0.0;
+  if (node.name != "inertial") return false;
+  const XmlNode* const mass = node.child("mass");
+  return mass == nullptr || parse_real(value_of(*mass, "value")) == 0.0;
 }
 
 // Returns whether a box, sphere or cylinder has a size of 0, so that other programs ignore it.
 bool has_no_size(const XmlNode& shape) {
   const UrdfForm* const form = form_of("geometry", shape.name);
-  return form != nullptr && std::ranges::any_of(form->attributes, [&](const UrdfAttribute& attribute) {
+  return form != nullptr && shape.name != "capsule" &&
+         std::ranges::any_of(form->attributes, [&](const UrdfAttribute& attribute) {
            const std::string value = value_of(shape, attribute.name);
            return attribute.positive &&
                   std::ranges::any_of(words(value), [](auto word) { return parse_real(word) == 0.0; });
@@ -141,14 +129,13 @@ bool has_no_size(const XmlNode& shape) {
 
 void UrdfMender::mend_link(XmlNode& link) {
   const std::string path = "robot/" + urdf_step(link);
-  const std::string name = value_of(link, "name");
-  if (const XmlNode* const contact = link.child("contact"))
-    if (auto surface = surface_of(*contact, path + "/contact", notes_))
-      rest_.surfaces.emplace(name, *std::move(surface));
+  const XmlNode* const contact = link.child("contact");
+  std::optional<XmlNode> surface = contact != nullptr ? surface_of(*contact, path + "/contact", notes_) : std::nullopt;
   std::erase_if(link.children, [](const XmlNode& child) { return child.name == "contact"; });
   visuals_.mend_link(link);
-  std::size_t collision = 0;
   std::erase_if(link.children, [&](const XmlNode& child) {
+    if (child.name == "inertial" && child.child("mass") == nullptr)
+      notes_.pass_over(child, path + "/inertial", "has no <mass> and is ignored, as if the link had no <inertial>");
     if (child.name != "collision") return is_without_mass(child);
     const XmlNode* const geometry = child.child("geometry");
     const bool is_empty = geometry == nullptr || geometry->children.empty();
@@ -161,22 +148,19 @@ void UrdfMender::mend_link(XmlNode& link) {
     if (child.name == "inertial") mend_inertial(child, path + "/inertial");
     XmlNode* const geometry = child_of(child, "geometry");
     if (child.name != "collision") continue;
-    if (geometry != nullptr) mend_shape(*geometry, path + "/collision/geometry", {name, collision});
-    ++collision;
+    if (geometry != nullptr) mend_shape(*geometry, path + "/collision/geometry");
   }
   take_unknown(link, path);
+  if (surface) link.children.push_back(*std::move(surface));
 }
 
 void UrdfMender::mend_inertial(XmlNode& inertial, const std::string& path) {
-  constexpr double least_mass = 2e-6;  // [kg]: the converter takes less for none
-  XmlNode* const mass = child_of(inertial, "mass");
-  const std::optional<double> value = mass != nullptr ? parse_real(value_of(*mass, "value")) : std::nullopt;
-  if (value && *value > 0.0 && *value < least_mass) {
-    notes_.pass_over(*mass, path + "/mass", "is less than 2 mg; 2 mg is used instead");
-    set_attribute(*mass, "value", shortest_text(least_mass));
+  XmlNode* inertia = child_of(inertial, "inertia");
+  if (inertia == nullptr) {
+    inertia = &inertial.children.emplace_back(element_at(inertial, "inertia"));
+    for (const char* const moment : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}) set_attribute(*inertia, moment, "0");
+    notes_.pass_over(inertial, path, "has no <inertia>; its moments of inertia are set to 0");
   }
-  XmlNode* const inertia = child_of(inertial, "inertia");
-  if (inertia == nullptr) return;
   for (const char* const product : {"ixy", "ixz", "iyz"}) {
     if (inertia->attribute(product) != nullptr) continue;
     set_attribute(*inertia, product, "0");
@@ -226,9 +210,9 @@ void UrdfMender::take_unknown(XmlNode& node, const std::string& path) {
 
 }  // namespace
 
-UrdfRest mend_urdf(XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,
-                   std::vector<Problem>& warnings) {
-  return UrdfMender(file, problems, warnings).mend(robot);
+void mend_urdf(XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,
+               std::vector<Problem>& warnings) {
+  UrdfMender(file, problems, warnings).mend(robot);
 }
 
 }  // namespace cohort::parsing

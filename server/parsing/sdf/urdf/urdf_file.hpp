@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <sdf/ParserConfig.hh>
 #include <vector>
 
 #include "server/description/input_error.hpp"
@@ -10,13 +9,19 @@
 
 namespace cohort::parsing {
 
-/// Returns the <sdf> element that libsdformat makes of a URDF <robot>, in which each element has the line of its URDF
-/// element. Adds problems, with their lines, to `problems`, and then returns nothing; adds omitted features to
-/// `warnings`.
-std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& file, const sdf::ParserConfig& config,
-                                   std::vector<Problem>& problems, std::vector<Problem>& warnings);
+/// Converts a URDF <robot> to an <sdf> element, in which each element has the line of its URDF element. Adds problems,
+/// with their lines, to `problems`, and then returns nothing; adds omitted features to `warnings`.
+std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& file, std::vector<Problem>& problems,
+                                   std::vector<Problem>& warnings);
 
-/// Checks a URDF <robot> against the format for errors that its converter would ignore or fail on: names, references,
+/// Repairs a URDF that does not follow the format but whose meaning is clear. Unknown elements are removed, missing
+/// limits mean no limits, and <contact> of Bullet becomes <surface> of SDF. A link with <inertial> has a mass that is
+/// not 0. Adds collisions with unsupported shapes to `problems`, and all changes that affect the motion of the robot to
+/// `warnings`.
+void mend_urdf(XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,
+               std::vector<Problem>& warnings);
+
+/// Checks a URDF <robot> against the format for errors that prevent its conversion: names, references,
 /// numbers, and that the links form one tree.
 void check_urdf(const XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,
                 std::vector<Problem>& warnings);

@@ -23,6 +23,8 @@ const std::vector<UrdfForm>& urdf_forms() {
       {"geometry", "box", {{"size", 3, true, true}}},
       {"geometry", "sphere", {{"radius", 1, true, true}}},
       {"geometry", "cylinder", {{"radius", 1, true, true}, {"length", 1, true, true}}},
+      {"geometry", "capsule", {{"radius", 1, true, true}, {"length", 1, true, true}}},
+      {"geometry", "plane", {{"normal", 3}}},
       {"geometry", "mesh", {{"filename", 0, true}, {"scale", 3}}},
       {"joint", "origin", {{"xyz", 3}, {"rpy", 3}}},
       {"joint", "parent", {{"link", 0, true}}},

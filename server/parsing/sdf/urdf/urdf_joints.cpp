@@ -1,12 +1,12 @@
-#include "server/parsing/sdf/urdf/urdf_joints.hpp"
-
 #include <algorithm>
 #include <map>
 #include <set>
 #include <string>
 #include <utility>
 
-#include "server/parsing/sdf/urdf/urdf_masses.hpp"
+#include "server/core/text.hpp"
+#include "server/parsing/sdf/urdf/mend_urdf.hpp"
+#include "server/parsing/sdf/urdf/urdf_tree.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -55,46 +55,52 @@ void name_joints_apart(XmlNode& robot, UrdfNotes& notes) {
         set_attribute(*mimic, "joint", leader->second);
 }
 
-void mend_joint(XmlNode& joint, UrdfRest& rest, UrdfNotes& notes) {
+void mend_joint(XmlNode& joint, UrdfNotes& notes) {
   const std::string path = "robot/" + urdf_step(joint);
-  const std::string type = value_of(joint, "type");
-  if (type == "spherical") {
-    rest.balls.insert(value_of(joint, "name"));
-    set_attribute(joint, "type", "continuous");
-  } else if (type == "planar") {
+  if (value_of(joint, "type") == "planar") {
     set_attribute(joint, "type", "floating");
     notes.warn(joint, path, "planar joints are not supported; the child moves freely, as with a floating joint");
   }
-  if (XmlNode* const properties = child_of(joint, "joint_properties"); properties != nullptr) {
-    if (joint.child("dynamics") == nullptr) properties->name = "dynamics";
-  }
+  XmlNode* const properties = child_of(joint, "joint_properties");
+  if (properties != nullptr && joint.child("dynamics") == nullptr) properties->name = "dynamics";
   mend_limit(joint, path, notes);
 }
 
-void let_go(XmlNode& robot, UrdfRest& rest) {
+void omit_empty_root(XmlNode& robot) {
   std::set<std::string> children;
   for (const XmlNode& joint : robot.children)
     if (joint.name == "joint") children.insert(urdf_end(joint, "child"));
   std::set<std::string> gone;
-  for (XmlNode& joint : robot.children) {
-    if (joint.name != "joint" || value_of(joint, "type") != "floating") continue;
+  for (const XmlNode& joint : robot.children) {
     const std::string parent = urdf_end(joint, "parent");
-    const bool is_root_of_it_alone =
-        !children.contains(parent) && std::ranges::none_of(robot.children, [&](const XmlNode& other) {
-          return (other.name == "link" && value_of(other, "name") == parent && has_mass(other)) ||
-                 (other.name == "joint" && &other != &joint && urdf_end(other, "parent") == parent);
-        });
-    if (is_root_of_it_alone) {
-      gone.insert(parent);
-      continue;
-    }
-    rest.let_go.insert(value_of(joint, "name"));
-    set_attribute(joint, "type", "continuous");
+    if (joint.name != "joint" || value_of(joint, "type") != "floating" || children.contains(parent)) continue;
+    const bool is_needed = std::ranges::any_of(robot.children, [&](const XmlNode& other) {
+      return (other.name == "link" && value_of(other, "name") == parent && other.child("inertial") != nullptr) ||
+             (other.name == "joint" && &other != &joint && urdf_end(other, "parent") == parent);
+    });
+    if (!is_needed) gone.insert(parent);
   }
   std::erase_if(robot.children, [&](const XmlNode& node) {
     return (node.name == "link" && gone.contains(value_of(node, "name"))) ||
            (node.name == "joint" && gone.contains(urdf_end(node, "parent")));
   });
+}
+
+void omit_lost_mimics(XmlNode& robot, UrdfNotes& notes) {
+  std::set<std::string> names;
+  for (const XmlNode& joint : robot.children)
+    if (joint.name == "joint") names.insert(value_of(joint, "name"));
+  for (XmlNode& joint : robot.children) {
+    if (joint.name != "joint") continue;
+    std::erase_if(joint.children, [&](const XmlNode& child) {
+      const std::string leader = value_of(child, "joint");
+      if (child.name != "mimic" || leader.empty() || names.contains(leader)) return false;
+      notes.warn(child, "robot/" + urdf_step(joint) + "/mimic",
+                 "the robot has no joint '" + leader + "'" + suggestion(leader, {names.begin(), names.end()}) +
+                     "; <mimic> is ignored");
+      return true;
+    });
+  }
 }
 
 }  // namespace cohort::parsing

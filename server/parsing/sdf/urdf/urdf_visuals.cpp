@@ -18,6 +18,7 @@ bool can_be_shown(XmlNode& visual) {
   mend_mesh(*geometry);
   XmlNode& shape = geometry->children.front();
   if (shape.name == "capsule") shape.name = "cylinder";
+  if (shape.name == "plane") return false;
   const auto is_right = [](const XmlNode& node, const UrdfForm* form) {
     return form != nullptr && std::ranges::all_of(form->attributes, [&](const UrdfAttribute& attribute) {
              const std::string* const value = node.attribute(attribute.name);

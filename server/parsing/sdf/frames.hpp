@@ -1,0 +1,83 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "server/core/pose.hpp"
+#include "server/parsing/sdf/element.hpp"
+
+namespace cohort::parsing {
+
+/// The frames of a world or a model: itself, its links, joints, <frame> elements and nested models, and those in nested
+/// models, by names such as `arm::palm` (http://sdformat.org/tutorials?tut=pose_frame_semantics_proposal). Poses are
+/// given in the frame of the world or the model. The elements must outlive this.
+class Frames {
+ public:
+  /// What is wrong with an element.
+  using Flaw = std::pair<const Element*, std::string>;
+
+  explicit Frames(const Element& owner, const Frames* outer = nullptr);
+
+  const Element& owner() const { return owner_; }
+
+  /// Returns what is wrong with the names and references here and in nested models; poses and links can be resolved
+  /// only if it is nothing.
+  std::vector<Flaw> flaws() const;
+
+  /// Returns the frames of the nested model; nullptr if it is none of these.
+  const Frames* of(const Element& model) const;
+
+  /// Returns the pose of an element that has a frame here, or that is in a link (such as a collision): in the frame
+  /// `in`, or else in that of the owner or the link. It is exactly as written if it is written in that frame.
+  std::optional<Pose> pose(const Element& posed, const std::string& in = "") const;
+  /// Returns the pose of a frame; nothing if there is none.
+  std::optional<Pose> pose_of(const std::string& name) const;
+  /// Returns the name of the link to which a frame is attached, `world` for the world, and nothing if there is none.
+  std::optional<std::string> link_of(const std::string& name) const;
+  /// Returns the direction of a vector that is written in the frame `from`, in the frame `in`.
+  std::optional<Eigen::Vector3d> direction(const Eigen::Vector3d& vector, const std::string& from,
+                                           const std::string& in) const;
+
+ private:
+  /// A frame, and the frames to which it belongs. Without an element, it is that of their owner.
+  struct Place {
+    const Frames* scope;
+    const Element* element;
+  };
+
+  bool is_world() const { return owner_.name() == "world"; }
+  std::optional<Place> find(std::string_view name) const;
+  /// Returns the frame in which the pose of a frame is written.
+  std::optional<Place> written_in(const Place& place) const;
+  /// Returns the pose in the frame in which it is written.
+  std::optional<Pose> written_pose_of(const Place& place) const;
+  std::optional<Place> attached_to(const Place& place) const;
+  std::optional<Pose> pose_at(Place place) const;
+  /// Returns the name of a place in nested models, as seen from here.
+  std::string name_from_here(const Place& place) const;
+
+  void check_names(std::vector<Flaw>& flaws) const;
+  void check_references(std::vector<Flaw>& flaws) const;
+  void check_reference(const Element& element, const std::string& attribute, const std::string& name,
+                       std::vector<Flaw>& flaws) const;
+  void check_joint(const Element& joint, std::vector<Flaw>& flaws) const;
+  /// Checks names and references here and in nested models.
+  void check(std::vector<Flaw>& flaws) const;
+  void check_resolution(std::vector<Flaw>& flaws) const;
+
+  const Element& owner_;
+  const Frames* outer_;
+  std::vector<const Element*> elements_;  // that have a frame, in document order
+  std::map<std::string, const Element*, std::less<>> by_name_;
+  std::map<const Element*, std::unique_ptr<Frames>> nested_;
+};
+
+/// Returns `relative_to` of the pose of an element; empty if it has none.
+std::string relative_to(const Element& posed);
+
+}  // namespace cohort::parsing

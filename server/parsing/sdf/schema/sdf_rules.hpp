@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cohort::parsing {
+
+/// What the text of an element or an attribute is.
+enum class ValueType { none, text, flag, integer, count, real, vector2, vector3, color, time, pose };
+
+/// How often an element may occur in its parent.
+enum class Presence { once, at_most_once, any, at_least_once, deprecated };
+
+struct ValueRule {
+  ValueType type = ValueType::none;
+  std::string standard;  ///< text that counts if there is none
+  double least = -std::numeric_limits<double>::infinity();
+  double greatest = std::numeric_limits<double>::infinity();
+};
+
+struct AttributeRule {
+  std::string name;
+  ValueRule value;
+  bool is_required = false;
+};
+
+struct ElementRule;
+
+struct ChildRule {
+  const ElementRule* element;
+  Presence presence;
+};
+
+/// What SDF 1.12 allows in an element (http://sdformat.org/spec, version 1.12).
+struct ElementRule {
+  std::string name;
+  ValueRule value;
+  bool takes_anything = false;  ///< as in <plugin>
+  std::vector<AttributeRule> attributes;
+  std::vector<ChildRule> children;
+
+  /// Returns the rule of a child; nullptr if SDF knows none of this name here.
+  const ElementRule* child(std::string_view child_name) const;
+  /// Returns the rule of an attribute; nullptr if SDF knows none of this name here.
+  const AttributeRule* attribute(std::string_view attribute_name) const;
+};
+
+/// Returns the rule of <sdf>. It lives as long as the program; threads may read it at the same time.
+const ElementRule& sdf_rule();
+
+/// Returns the number of numbers in a value; 0 for one that does not consist of numbers.
+std::size_t count_of_numbers(ValueType type);
+
+/// The rules as text, a line for each element, indented below its parent:
+///
+///     NAME PRESENCE [TYPE [>=LEAST] [<=GREATEST] ["STANDARD"]] [...] [@ATTRIBUTE[!] TYPE ["STANDARD"]]...
+///
+/// PRESENCE is `1`, `?` (at most once), `*` (any number), `+` (at least once) or `-` (deprecated). `...` allows any
+/// children, and `!` marks a required attribute. A line that begins with `@` continues the element above it.
+/// `[NAME] PRESENCE` is the element that is defined at the left margin.
+extern const char* const rules_of_worlds;
+extern const char* const rules_of_models;
+extern const char* const rules_of_sensors;
+
+}  // namespace cohort::parsing

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/urdf/urdf_file.hpp"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/description/input_error.hpp"
+#include "server/parsing/files/xml_outline.hpp"
 #include "server/parsing/sdf/tree/unknown_names.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 

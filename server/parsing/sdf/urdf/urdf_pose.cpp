@@ -1,5 +1,6 @@
 #include "server/parsing/sdf/urdf/urdf_pose.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "server/parsing/sdf/urdf/urdf_tree.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 #include "server/parsing/sdf/urdf/urdf_gazebo.hpp"

@@ -13,7 +13,7 @@ std::pair<int, int> version_of(std::string_view text);
 /// The version to which files of other versions are converted.
 inline constexpr std::string_view converted_version = "1.9";
 
-/// The newest version that libsdformat reads; newer files are converted down to it.
+/// The newest version that is read.
 inline constexpr std::pair<int, int> newest_version{1, 12};
 
 }  // namespace cohort::parsing

@@ -11,35 +11,6 @@
 namespace cohort::parsing {
 namespace {
 
-std::string with_entities(std::string_view raw) {
-  std::string text;
-  for (const char c : raw) {
-    switch (c) {
-      case '&': text += "&amp;"; break;
-      case '<': text += "&lt;"; break;
-      case '>': text += "&gt;"; break;
-      case '"': text += "&quot;"; break;
-      case '\n': text += "&#10;"; break;  // a line is an element
-      case '\r': text += "&#13;"; break;
-      default: text += c;
-    }
-  }
-  return text;
-}
-
-void write(const XmlNode& node, XmlText& written) {
-  std::string& text = written.text;
-  written.nodes.push_back(&node);
-  text += '<' + node.name;
-  for (const auto& [name, value] : node.attributes) text += ' ' + name + "=\"" + with_entities(value) + '"';
-  text += '>' + with_entities(node.text);
-  for (const XmlNode& child : node.children) {
-    text += '\n';
-    write(child, written);
-  }
-  text += "</" + node.name + '>';
-}
-
 constexpr std::size_t most_elements_deep = 64;  // nested XML elements; SDF needs a dozen
 
 /// Builds the tree from the events of expat. Entities that a file declares are not expanded in text; in attributes, the
@@ -210,12 +181,6 @@ XmlOutline outline_loose_xml(std::string_view text) {
   for (const std::string_view root : {"</sdf>", "</robot>"})
     if (const std::size_t end = without.rfind(root); end != std::string::npos) blank(end + root.size(), without.size());
   return outline_xml(without);
-}
-
-XmlText xml_text_of(const XmlNode& node) {
-  XmlText written{"", {nullptr}};
-  write(node, written);
-  return written;
 }
 
 }  // namespace cohort::parsing

@@ -40,8 +40,7 @@ struct XmlSyntaxError {
   std::string message;
 };
 
-/// The elements of an XML text. It is parsed here because libsdformat reports neither where an XML file is invalid, nor
-/// on which line an unknown element is. It also does not list the includes of a file before it searches for them.
+/// The elements of an XML text.
 struct XmlOutline {
   XmlNode root;
   std::optional<XmlSyntaxError> error;  ///< then `root` is not complete
@@ -54,13 +53,5 @@ XmlOutline outline_loose_xml(std::string_view text);
 
 /// Returns whether the text can be the name of an element or an attribute.
 bool is_xml_name(std::string_view name);
-
-struct XmlText {
-  std::string text;
-  std::vector<const XmlNode*> nodes;  ///< by line, from 1; in place 0 is nothing
-};
-
-/// Returns an element as XML text, with each element on a separate line. `node` must outlive the result.
-XmlText xml_text_of(const XmlNode& node);
 
 }  // namespace cohort::parsing

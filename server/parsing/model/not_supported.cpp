@@ -24,7 +24,6 @@ struct Unsupported {
 constexpr Unsupported unsupported[] = {
     {"world", "actor"},
     {"world", "state"},
-    {"world", "joint"},
     {"world", "population", "; use <cohort:population>"},
     {"model", "gripper"},
     {"model", "model_state"},

@@ -24,7 +24,6 @@ Light read_light_values(const Element* element, const SdfReport& report) {
     report.flaw(element, "expected the type point, directional or spot, not '" + type + "'", "the light is a point");
   if (const Element* const color = element->child("diffuse")) light.color = color->color().head<3>();
   light.intensity = number(find(element, {"intensity"}), 1.0, report);
-  // libsdformat clips the factors to ranges of its own.
   const Element* const attenuation = find(element, {"attenuation"});
   if (attenuation && (is_written(find(attenuation, {"range"})) || is_written(find(attenuation, {"constant"})) ||
                       is_written(find(attenuation, {"linear"})) || is_written(find(attenuation, {"quadratic"})))) {

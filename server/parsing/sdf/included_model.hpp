@@ -28,7 +28,7 @@ XmlNode as_included(const XmlNode& model, const XmlNode& include);
 XmlNode frames_of(const XmlNode& model);
 
 /// Returns the elements that <include merge="true"> adds to a model: all named parts of the other, whose frame becomes
-/// a <frame>. The names are those of libsdformat. `frames` are those of `model`.
+/// a <frame>. The names are those of libsdformat, which other files may use. `frames` are those of `model`.
 std::vector<XmlNode> merged(const XmlNode& model, const Frames& frames, const XmlNode& include);
 
 }  // namespace cohort::parsing

@@ -117,7 +117,7 @@ std::optional<XmlNode> SourceReader::read_xml(const std::string& text, SdfFile& 
                                "\"> as the root element, not <" + root.name + ">");
   if (version_of(*version) > newest_version || version_of(*version) == std::pair{0, 0})
     return fail(root.line, "SDF version '" + *version + "' is not supported; expected a version up to 1.12");
-  make_older(outline.root, file.shown, warnings_);
+  take_newer(outline.root, file.shown, warnings_);
   if (version_of(*version) > version_of(converted_version))
     set_attribute(outline.root, "version", std::string(converted_version));
   if (file.is_foreign) mend_sdf(outline.root, file.shown, warnings_);

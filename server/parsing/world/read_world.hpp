@@ -8,12 +8,12 @@
 
 namespace cohort::parsing {
 
-/// Reads a world in SDF or YAML with libsdformat, and expands its includes and, by `seed`, its `cohort:population`
+/// Reads a world in SDF or YAML, and expands its includes and, by `seed`, its `cohort:population`
 /// elements. The instances are the models and includes in document order, then the populations in theirs.
 /// `model://NAME` is searched for in the folders of COHORT_MODEL_PATH (an environment variable), in `robots` and
 /// `objects` beside the file and in up to four parents, and in `last_model_folders`. Other URIs are paths relative to
 /// the file; docs/sdf.md has the details. `later`: instances that are not present initially; they come last. Throws
-/// InputError with all problems. Callable from any thread; calls wait for each other.
+/// InputError with all problems. Callable from any thread.
 World read_world(const std::filesystem::path& file, std::uint64_t seed,
                  const std::vector<std::filesystem::path>& last_model_folders = {},
                  const std::vector<LaterObject>& later = {});

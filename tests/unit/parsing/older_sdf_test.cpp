@@ -14,16 +14,24 @@ std::string in_version(const std::string& version, const std::string& content) {
   return "<sdf version='" + version + "'>" + content + "</sdf>";
 }
 
+std::string text_of(const XmlNode& node) {
+  std::string text = "<" + node.name;
+  for (const auto& [name, value] : node.attributes) text += " " + name + "='" + value + "'";
+  text += ">" + node.text;
+  for (const XmlNode& child : node.children) text += "\n" + text_of(child);
+  return text + "</" + node.name + ">";
+}
+
 std::string converted(const std::string& version, const std::string& content) {
   XmlNode sdf = outline_xml(in_version(version, content)).root;
   convert_older(sdf);
-  return xml_text_of(sdf).text;
+  return text_of(sdf);
 }
 
 // Returns the content as `converted` writes it.
 std::string newest(const std::string& content) {
   const XmlNode sdf = outline_xml(in_version("1.9", content)).root;
-  return xml_text_of(sdf).text;
+  return text_of(sdf);
 }
 
 std::string world(const std::string& content) { return "<world name='w'>" + content + "</world>"; }

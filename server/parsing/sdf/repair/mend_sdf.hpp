@@ -8,8 +8,8 @@
 
 namespace cohort::parsing {
 
-/// Repairs an SDF file from another source that other programs accept but libsdformat rejects: duplicate or reserved
-/// names, links without mass, axes without direction, unknown sensors. Adds each change to `warnings`.
+/// Repairs an SDF file from another source that other programs accept although it does not follow the format: duplicate
+/// or reserved names, links without mass, axes without direction, unknown sensors. Adds each change to `warnings`.
 void mend_sdf(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings);
 
 }  // namespace cohort::parsing

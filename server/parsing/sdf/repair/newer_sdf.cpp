@@ -14,9 +14,9 @@ namespace {
 
 constexpr const char* density_of_water = "1000";  // SDF's default [kg/m^3]
 
-class OlderSdf {
+class NewerSdf {
  public:
-  OlderSdf(const std::filesystem::path& file, std::vector<Problem>& warnings) : file_(file), warnings_(warnings) {}
+  NewerSdf(const std::filesystem::path& file, std::vector<Problem>& warnings) : file_(file), warnings_(warnings) {}
 
   void change(XmlNode& node, const std::string& path);
 
@@ -33,7 +33,7 @@ class OlderSdf {
   std::vector<Problem>& warnings_;
 };
 
-void OlderSdf::change(XmlNode& node, const std::string& path) {
+void NewerSdf::change(XmlNode& node, const std::string& path) {
   if (node.name == "link") change_link(node);
   if (node.name == "joint") change_joint(node);
   if (node.name == "geometry") change_geometry(node, path);
@@ -47,7 +47,7 @@ XmlNode density_from(const XmlNode& where, const std::string& text) {
 }
 
 // `auto`: inertia from the shapes and their densities, as <cohort:density>. A mass beside it scales the inertia.
-void OlderSdf::change_link(XmlNode& link) {
+void NewerSdf::change_link(XmlNode& link) {
   const XmlNode* const inertial = link.child("inertial");
   const bool is_auto =
       inertial != nullptr && (value_of(*inertial, "auto") == "true" || value_of(*inertial, "auto") == "1");
@@ -85,7 +85,7 @@ void set_thread_pitch(XmlNode& joint) {
 }
 
 // The position in SDF is multiplier * (leader - reference) + offset.
-void OlderSdf::change_joint(XmlNode& joint) {
+void NewerSdf::change_joint(XmlNode& joint) {
   set_thread_pitch(joint);
   std::optional<XmlNode> follows;
   for (XmlNode& axis : joint.children) {
@@ -106,7 +106,7 @@ void OlderSdf::change_joint(XmlNode& joint) {
   if (follows) joint.children.push_back(*std::move(follows));
 }
 
-void OlderSdf::change_geometry(XmlNode& geometry, const std::string& path) {
+void NewerSdf::change_geometry(XmlNode& geometry, const std::string& path) {
   XmlNode* const cone = child_of(geometry, "cone");
   if (cone == nullptr) return;
   cone->name = "cylinder";
@@ -122,7 +122,7 @@ std::pair<std::string, std::string> object_and_link(const std::string& name) {
 }
 
 // A fixed joint connects two objects.
-void OlderSdf::change_world(XmlNode& world, const std::string& path) {
+void NewerSdf::change_world(XmlNode& world, const std::string& path) {
   std::vector<XmlNode> ours;
   std::erase_if(world.children, [&](const XmlNode& joint) {
     if (joint.name != "joint") return false;
@@ -151,8 +151,8 @@ void OlderSdf::change_world(XmlNode& world, const std::string& path) {
 
 }  // namespace
 
-void make_older(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings) {
-  OlderSdf(file, warnings).change(sdf, "");
+void take_newer(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings) {
+  NewerSdf(file, warnings).change(sdf, "");
 }
 
 }  // namespace cohort::parsing

@@ -8,9 +8,8 @@
 
 namespace cohort::parsing {
 
-/// Converts elements that SDF has had since 1.10 to what libsdformat reads, in files of every version. Inertia
-/// by density, joints that follow others and joints in a world become `cohort:` elements. Other new features go to
-/// `warnings`.
-void make_older(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings);
+/// Replaces elements that SDF has had since 1.10 by what is read, in files of every version. Inertia by density, joints
+/// that follow others and joints in a world become `cohort:` elements. Other new features go to `warnings`.
+void take_newer(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings);
 
 }  // namespace cohort::parsing

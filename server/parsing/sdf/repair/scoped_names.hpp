@@ -9,9 +9,8 @@
 namespace cohort::parsing {
 
 /// Replaces '::' by '.' in the names of a file, and in references from the same model. Up to SDF 1.7 such names belong
-/// to a nested model whose parts are in the outer one. The conversion by libsdformat would nest them again. It aborts
-/// where a joint, a frame or a pose refers to something outside of the nested model. As parts of the outer model with
-/// the new names, they can refer to anything. Reports the first position if `warnings` is given.
+/// to a nested model whose parts are in the outer one. As parts of the outer model with the new names, they can refer
+/// to anything. Reports the first position if `warnings` is given.
 void join_scoped_names(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>* warnings);
 
 }  // namespace cohort::parsing

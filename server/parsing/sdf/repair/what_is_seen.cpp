@@ -16,14 +16,13 @@ const ElementSchema& schema_of_visuals() {
   return schema;
 }
 
-// Poses can be written in several ways, depending on their attributes, so libsdformat checks them.
 bool can_be_read(const XmlNode& node, const ElementSchema& schema) {
   if (node.name != "pose" && !node.text.empty() && !schema.can_have(node.text)) return false;
   return std::ranges::all_of(node.children,
                              [&](const XmlNode& child) { return can_be_read(child, schema.child(child.name)); });
 }
 
-// Removes everything else. libsdformat requires at most one of each.
+// Removes everything else.
 bool has_albedo_map(XmlNode& pbr) {
   const auto keep_first = [](XmlNode& node, const char* name) {
     bool is_kept = false;

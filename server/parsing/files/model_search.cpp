@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view model_scheme = "model://";
+constexpr std::string_view misspelt_scheme = "models://";  // other programs accept it, too
 constexpr std::string_view package_scheme = "package://";
 constexpr std::string_view file_scheme = "file://";
 constexpr int parent_levels = 4;
@@ -70,7 +71,9 @@ fs::path ModelSearch::sdf_file_of(const fs::path& folder) const {
   const fs::path config = folder / "model.config";
   if (!input_.is_file(config))
     throw std::runtime_error("the model's folder '" + folder.string() + "' has no model.config");
-  const XmlOutline outline = outline_xml(input_.read(config));
+  const std::string& text = input_.read(config);
+  XmlOutline outline = outline_xml(text);
+  if (outline.error) outline = outline_loose_xml(text);
   if (outline.error)
     throw std::runtime_error(config.string() + ":" + std::to_string(outline.error->line) + ": " +
                              outline.error->message);
@@ -213,7 +216,7 @@ std::string ModelSearch::newest_version(const fs::path& model) const {
 
 fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder, bool is_model) const {
   fs::path path;
-  if (uri.starts_with(model_scheme) || uri.starts_with(package_scheme)) {
+  if (uri.starts_with(model_scheme) || uri.starts_with(misspelt_scheme) || uri.starts_with(package_scheme)) {
     const std::string inside = fs::path(uri.substr(uri.find("://") + 3)).relative_path();  // also of package:///NAME
     const std::size_t slash = std::min(inside.find('/'), inside.size());
     const std::string name = inside.substr(0, slash);

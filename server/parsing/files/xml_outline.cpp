@@ -164,6 +164,13 @@ XmlOutline outline_xml(std::string_view text) {
   return OutlineBuilder(without).build();
 }
 
+// Returns whether a text begins like `&amp;` or `&#38;`.
+static bool is_reference(std::string_view text) {
+  const std::size_t end = text.find(';');
+  const std::string_view name = end == std::string_view::npos ? "" : text.substr(1, end - 1);
+  return name.starts_with('#') || is_xml_name(name);
+}
+
 XmlOutline outline_loose_xml(std::string_view text) {
   std::string without(text);
   const auto blank = [&](std::size_t from, std::size_t to) {
@@ -178,8 +185,15 @@ XmlOutline outline_loose_xml(std::string_view text) {
     if (is_comment) blank(at, end + 3);
     at = end + 3;
   }
-  for (const std::string_view root : {"</sdf>", "</robot>"})
-    if (const std::size_t end = without.rfind(root); end != std::string::npos) blank(end + root.size(), without.size());
+  if (const std::size_t end = without.find("?>"); without.starts_with("<?xml ") && end != std::string::npos)
+    blank(0, end + 2);
+  for (std::size_t at = without.find('&'); at != std::string::npos; at = without.find('&', at + 1))
+    if (!is_reference(std::string_view(without).substr(at))) without.insert(at + 1, "amp;");
+  if (const std::size_t root = without.find('<'); root != std::string::npos) {
+    const std::string name = without.substr(root + 1, without.find_first_of(" \t\r\n/>", root) - root - 1);
+    const std::size_t end = without.rfind("</" + name + ">");
+    if (end != std::string::npos) blank(end + name.size() + 3, without.size());
+  }
   return outline_xml(without);
 }
 

@@ -48,7 +48,8 @@ struct XmlOutline {
 
 XmlOutline outline_xml(std::string_view text);
 
-/// Does the same for invalid XML that other programs accept: with "--" in comments, or text around the root.
+/// Does the same for invalid XML that other programs accept: with "--" in comments, text around the root, a bare "&", or
+/// the encoding "ASCII".
 XmlOutline outline_loose_xml(std::string_view text);
 
 /// Returns whether the text can be the name of an element or an attribute.

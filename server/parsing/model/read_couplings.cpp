@@ -69,7 +69,7 @@ std::optional<Coupling> read_gearbox(const Element* element, const Frames& frame
   };
   const Element* const body = element->child("gearbox_reference_body");
   if (!body) {
-    reading.report.problem(element, "missing: <gearbox_reference_body>", "gearbox_reference_body");
+    reading.report.flaw(element, "missing: <gearbox_reference_body>", "the gearbox is ignored");
     return std::nullopt;
   }
   const auto reference = link_of(body->text());

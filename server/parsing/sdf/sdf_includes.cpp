@@ -78,7 +78,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
   children.reserve(node.children.size());
   for (XmlNode& child : node.children) {
     const std::string child_path = path_below(path, child);
-    if (child.name != "include" || (!is_world && node.name != "model")) {
+    if (child.name != "include" || (!is_world && node.name != "model" && node.name != "sdf")) {
       if (child.name == "world" || child.name == "model") usable = replace_includes(child, child_path, file) && usable;
       if (is_world && child.name == "model" && set_apart(child, named, place_after(children), file)) continue;
       children.push_back(std::move(child));
@@ -98,7 +98,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
     } else if (!fits(child, child_path, found->file, file)) {
       return false;
     } else {
-      replace_in_model(child, *found, merges, children);
+      replace_in_model(child, *found, merges && node.name == "model", children);
     }
   }
   node.children = std::move(children);

@@ -194,5 +194,81 @@ TEST_F(MendedFiles, ReportProblemsOfNestedModelsWithPosition) {
   expect_only_flaw(flaw, write_world(flaw.content));
 }
 
+// A folder `robots` with a model `box` is beside the files of these tests.
+class IncludedByThirdParties : public MendedFiles {
+ protected:
+  IncludedByThirdParties() {
+    write("robots/box/model.config", "<model><name>Box & more</name><sdf>model.sdf</sdf></model>");
+    write("robots/box/model.sdf", in_sdf("<model name=\"box\"><link name=\"l\"/></model>"));
+  }
+  static std::string in_sdf(const std::string& content, const std::string& version = "1.9") {
+    return "<sdf version=\"" + version + "\">\n" + content + "\n</sdf>";
+  }
+};
+
+TEST_F(IncludedByThirdParties, ABareAmpersandInModelConfigIsRead) {
+  const auto file = write("world.sdf", in_sdf("<world name=\"w\"><include><uri>models://box</uri></include></world>"));
+  EXPECT_EQ(parsing::read_world(file, 1).instances.at(0).name, "box");
+}
+
+TEST_F(IncludedByThirdParties, AFileWithOnlyAnIncludeIsAWorldAndAModel) {
+  const auto file = write("only.sdf", in_sdf("<include><uri>model://box</uri><name>crate</name></include>"));
+  EXPECT_EQ(parsing::read_world(file, 1).instances.at(0).name, "crate");
+  const auto world = write("world.sdf", in_sdf("<world name=\"w\"><include><uri>only.sdf</uri></include></world>"));
+  EXPECT_EQ(parsing::read_world(world, 1).instances.at(0).name, "crate");
+}
+
+TEST_F(IncludedByThirdParties, NamespacesAreNamed) {
+  const auto file =
+      write("world.sdf", in_sdf("<world name=\"w\"><include><uri>model://box</uri><namespace>n</namespace></include>"
+                                "</world>"));
+  expect_warnings(parsing::read_world(file, 1), {"world.sdf:2: world/include/namespace: <namespace> is not supported"});
+}
+
+TEST_F(MendedFiles, RenameJointsAndFramesThatHaveTheNameOfALink) {
+  const auto file = write("m.sdf",
+                          "<sdf version=\"1.6\"><model name=\"m\"><link name=\"a\"/><link name=\"b\"/>\n"
+                          "<joint name=\"b\" type=\"fixed\"><parent>a</parent><child>b</child></joint>\n"
+                          "<frame name=\"a\"><pose>1 0 0 0 0 0</pose></frame></model></sdf>");
+  const World world = parsing::read_world_or_model(file, 1);
+  EXPECT_EQ(world.models[0].joints.at(0).name, "b_joint");
+  expect_warnings(world, {"m.sdf:2: model[m]/joint[b]: another element of the model has this name; this one is renamed "
+                          "to 'b_joint'",
+                          "m.sdf:3: model[m]/frame[a]: another element of the model has this name"});
+}
+
+TEST_F(MendedFiles, IgnoreAGearboxWithoutItsReference) {
+  const auto file =
+      write("m.sdf",
+            "<sdf version=\"1.9\"><model name=\"m\"><link name=\"a\"/><link name=\"b\"/>\n"
+            "<joint name=\"j\" type=\"gearbox\"><parent>a</parent><child>b</child></joint></model></sdf>");
+  expect_warnings(parsing::read_world_or_model(file, 1),
+                  {"m.sdf:2: model[m]/joint[j]: missing: <gearbox_reference_body>; the gearbox is ignored"});
+}
+
+TEST_F(MendedFiles, IgnoreVisualsWhosePoseCannotBeRead) {
+  const auto file =
+      write("m.sdf",
+            "<sdf version=\"1.9\"><model name=\"m\"><link name=\"a\"><visual name=\"v\"><pose>1 2 3 4 5"
+            "</pose><geometry><sphere><radius>1</radius></sphere></geometry></visual></link></model></sdf>");
+  EXPECT_TRUE(parsing::read_world_or_model(file, 1).models[0].links[0].visuals.empty());
+}
+
+TEST_F(MendedFiles, PassOverStatesOfModels) {
+  const auto file = write("w.sdf",
+                          "<sdf version=\"1.6\"><world name=\"w\"><state world_name=\"w\"><sim_time>none</sim_time>"
+                          "<model name=\"m\"/></state></world></sdf>");
+  const World world = parsing::read_world(file, 1);
+  ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
+  expect_warnings(world, {"<state> is not supported"});
+}
+
+TEST_F(MendedFiles, ReadTheEncodingAscii) {
+  const auto file = write("m.sdf",
+                          "<?xml version=\"1.0\" encoding=\"ASCII\"?>\n<sdf version=\"1.9\"><model name=\"m\">"
+                          "<link name=\"a\"/></model></sdf>");
+  EXPECT_EQ(parsing::read_world_or_model(file, 1).models[0].name, "m");
+}
+
 }  // namespace
 }  // namespace cohort::description

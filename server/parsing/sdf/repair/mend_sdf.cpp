@@ -53,7 +53,7 @@ void SdfMender::mend(XmlNode& node, const std::string& path) {
   if (node.name == "link") mend_link(node, path);
   if (node.name == "joint") mend_joint(node, path);
   if (node.name == "friction") mend_friction(node, path);
-  if (node.name == "plugin" || node.name == "visual" || node.name == "sensor") return;
+  if (node.name == "plugin" || node.name == "visual" || node.name == "sensor" || node.name == "state") return;
   for (XmlNode& child : node.children) mend(child, path_below(path, child));
 }
 

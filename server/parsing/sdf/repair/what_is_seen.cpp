@@ -5,7 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "server/parsing/sdf/schema/sdf_angles.hpp"
 #include "server/parsing/sdf/schema/sdf_schema.hpp"
+#include "server/parsing/sdf/schema/value_text.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
 namespace cohort::parsing {
@@ -17,7 +19,9 @@ const ElementSchema& schema_of_visuals() {
 }
 
 bool can_be_read(const XmlNode& node, const ElementSchema& schema) {
-  if (node.name != "pose" && !node.text.empty() && !schema.can_have(node.text)) return false;
+  const bool is_right = node.name == "pose" ? written_pose(node).has_value() && !flaw_of_angles(node)
+                                            : node.text.empty() || schema.can_have(node.text);
+  if (!is_right) return false;
   return std::ranges::all_of(node.children,
                              [&](const XmlNode& child) { return can_be_read(child, schema.child(child.name)); });
 }

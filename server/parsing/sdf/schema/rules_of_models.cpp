@@ -13,15 +13,7 @@ model * @name! text @namespace text @canonical_link text @placement_frame text
   [joint] *
   [plugin] *
   [gripper] *
-  include * @merge flag "false"
-    uri 1 text
-    model_state ? ...
-    [pose] ?
-    [plugin] *
-    name ? text
-    namespace ? text
-    static ? flag "false"
-    placement_frame ? text
+  [include] *
   [model] *
   model_state ? ...
   enable_wind ? flag "false"

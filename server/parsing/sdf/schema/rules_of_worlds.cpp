@@ -8,20 +8,13 @@ sdf 1 @version! text
   [model] ?
   [actor] ?
   [light] ?
+  [include] *
 world * @name! text
   audio ?
     device 1 text "default"
   wind ?
     linear_velocity ? vector3 "0 0 0"
-  include * @merge flag "false"
-    uri 1 text
-    name ? text
-    namespace ? text
-    static ? flag "false"
-    model_state ? ...
-    [pose] ?
-    [plugin] *
-    placement_frame ? text
+  [include] *
   gravity 1 vector3 "0 0 -9.8"
   magnetic_field 1 vector3 "5.5645e-6 22.8758e-6 -42.3884e-6"
   [atmosphere] 1
@@ -38,6 +31,15 @@ world * @name! text
   [spherical_coordinates] ?
   state * ... @world_name! text
   [population] *
+include * @merge flag "false"
+  uri 1 text
+  name ? text
+  namespace ? text
+  static ? flag "false"
+  model_state ? ...
+  [pose] ?
+  [plugin] *
+  placement_frame ? text
 scene 1
   ambient 1 color "0.4 0.4 0.4 1.0"
   background 1 color ".7 .7 .7 1"

@@ -114,6 +114,7 @@ TEST(Ros2BadNodes, ARunDoesNotWaitForStoppedNodesWithoutCommands) {
   run.start();
   // First, as it hears nothing after tick 80.
   const auto watcher = run.start_node(jazzy(), "watcher.py", {"/", "scan", "odom", "/clock"});
+  ASSERT_TRUE(watcher->wait_for_output("found"));
   const auto node = run.start_node(jazzy(), "commander.py", stopping_commander);
   EXPECT_TRUE(run.says("the run waits at tick 80 "));
   EXPECT_TRUE(watcher->wait_for_output("odom"));

@@ -1,4 +1,7 @@
-"""A node that prints what it hears of a robot: watcher.py NAMESPACE TOPIC..., as `TOPIC STAMP VALUE...`."""
+"""A node that prints what it hears of a robot: watcher.py NAMESPACE TOPIC..., as `TOPIC STAMP VALUE...`.
+
+It prints `found` when it has found a publisher of each topic.
+"""
 
 import math
 import sys
@@ -44,5 +47,12 @@ def watch(topic: str) -> None:
 
 for topic in topics:
     watch(topic)
+def find_publishers() -> None:
+    if all(node.count_publishers(topic) > 0 for topic in topics):
+        print("found", flush=True)
+        timer.cancel()
+
+
+timer = node.create_timer(0.05, find_publishers)
 print("ready", flush=True)
 rclpy.spin(node)

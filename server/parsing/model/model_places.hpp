@@ -19,7 +19,7 @@ struct DeviceScope {
 /// The position of a `<sensor>` of SDF.
 struct SensorPlace {
   const Element* sensor = nullptr;
-  const Frames* frames = nullptr;  ///< of its model
+  const Frames* frames = nullptr;  ///< those of its model
   bool is_on_joint = false;
   std::string owner;   ///< scoped name of the link or joint
   std::string prefix;  ///< prefix of all names in its model

@@ -7,13 +7,18 @@
 #include <utility>
 
 #include "server/geometry/shapes/convex_hull.hpp"
-#include "server/parsing/model/mass_properties.hpp"
+#include "server/geometry/shapes/mass_properties.hpp"
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
 #include "server/parsing/sdf/schema/value_text.hpp"
 
 namespace cohort::parsing {
 namespace {
+
+using geometry::mass_properties;
+using geometry::MassProperties;
+using geometry::moved;
+using geometry::together;
 
 // Returns the nearest physically possible principal moments for a body of this mass, in ascending order. If all are
 // nearly 0, the body is a small grain.

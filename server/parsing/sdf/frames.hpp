@@ -18,7 +18,7 @@ namespace cohort::parsing {
 /// given in the frame of the world or the model. The elements must outlive this.
 class Frames {
  public:
-  /// What is wrong with an element.
+  /// An element with a mistake, and the mistake.
   using Flaw = std::pair<const Element*, std::string>;
 
   explicit Frames(const Element& owner, const Frames* outer = nullptr);
@@ -32,8 +32,9 @@ class Frames {
   /// Returns the frames of the nested model; nullptr if it is none of these.
   const Frames* of(const Element& model) const;
 
-  /// Returns the pose of an element that has a frame here, or that is in a link (such as a collision): in the frame
-  /// `in`, or else in that of the owner or the link. It is exactly as written if it is written in that frame.
+  /// Returns the pose of an element that has a frame here, or that is in a link, such as a collision. It is in the
+  /// frame `in`, or else in that of the owner or the link. A pose that is written in that frame is returned as it is
+  /// written.
   std::optional<Pose> pose(const Element& posed, const std::string& in = "") const;
   /// Returns the pose of a frame; nothing if there is none.
   std::optional<Pose> pose_of(const std::string& name) const;

@@ -35,9 +35,9 @@ struct SdfFile : SourceFile {
   XmlNode tree;                                 ///< SDF in the newest version, with replacements of includes
   std::size_t size = 0;                         ///< elements of `tree`
   std::vector<Include> includes;                ///< directly in <world>, in document order
-  std::unique_ptr<ElementTree> elements;        ///< of `tree`; null if the file cannot be read
-  std::unique_ptr<Frames> frames;               ///< of its world; null if it has none
-  std::unique_ptr<Frames> model_frames;         ///< of its model; null if it has none
+  std::unique_ptr<ElementTree> elements;        ///< those of `tree`; null if the file cannot be read
+  std::unique_ptr<Frames> frames;               ///< those of its world; null if it has none
+  std::unique_ptr<Frames> model_frames;         ///< those of its model; null if it has none
   bool sound = false;                           ///< no problem was found, so frames can be resolved
   bool complete = true;                         ///< every include was found
   std::map<std::string, const SdfFile*> parts;  ///< by their content

@@ -77,7 +77,7 @@ Location SdfFiles::locate(const Element* element) {
     const std::string own = !source.written.empty() ? source.written : source.name != "sdf" ? step_of(source) : "";
     if (own.empty()) continue;
     location.element = own + (location.element.empty() ? "" : "/") + location.element;
-    // What a URDF or a world calls otherwise has its whole path, below the model, in `written`.
+    // A name that differs from the one in the file is replaced by the path there, from the model or the world on.
     if (!source.written.empty() && source.name != "sdf") step = step->parent();
     if (step == nullptr) break;
   }

@@ -12,8 +12,7 @@
 namespace cohort::parsing {
 namespace {
 
-// Any other exception of a library is a problem of the file. What is out of memory is passed on, since the file is not
-// its cause.
+// Any other exception of a library is a problem of the file, except out of memory, which the file did not cause.
 template <class Read>
 World read_or_input_error(const std::filesystem::path& file, Read&& read) {
   try {

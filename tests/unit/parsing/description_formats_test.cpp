@@ -8,7 +8,7 @@
 #include <string>
 
 #include "server/geometry/shapes/convex_hull.hpp"
-#include "server/parsing/model/mass_properties.hpp"
+#include "server/geometry/shapes/mass_properties.hpp"
 #include "server/parsing/model/terrain.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
@@ -245,11 +245,11 @@ TEST_F(Formats, ComputeTheMassOfALinkFromDensity) {
 
 // The properties of two halves together equal those of the whole, for any shape.
 TEST(MassProperties, AddUp) {
-  const parsing::MassProperties half = parsing::mass_properties(Box{{1.0, 2.0, 1.5}}, 3.0);
-  const parsing::MassProperties whole = parsing::mass_properties(Box{{1.0, 2.0, 3.0}}, 3.0);
-  const parsing::MassProperties both =
-      parsing::together({parsing::moved(half, {{0, 0, 0.75}, Eigen::Quaterniond::Identity()}),
-                         parsing::moved(half, {{0, 0, -0.75}, Eigen::Quaterniond(0, 1, 0, 0)})});
+  const geometry::MassProperties half = geometry::mass_properties(Box{{1.0, 2.0, 1.5}}, 3.0);
+  const geometry::MassProperties whole = geometry::mass_properties(Box{{1.0, 2.0, 3.0}}, 3.0);
+  const geometry::MassProperties both =
+      geometry::together({geometry::moved(half, {{0, 0, 0.75}, Eigen::Quaterniond::Identity()}),
+                          geometry::moved(half, {{0, 0, -0.75}, Eigen::Quaterniond(0, 1, 0, 0)})});
   EXPECT_NEAR(both.mass, whole.mass, near);
   EXPECT_LT((both.inertia - whole.inertia).norm(), near);
 }
@@ -267,7 +267,7 @@ void expect_body_of_revolution(const Shape& shape, double half_length, const std
     about_z += disc * r2 / 2.0;
     across += disc * (r2 / 4.0 + z * z);
   }
-  const parsing::MassProperties found = parsing::mass_properties(shape, 1.0);
+  const geometry::MassProperties found = geometry::mass_properties(shape, 1.0);
   EXPECT_NEAR(found.mass, mass, 1e-6 * mass);
   EXPECT_NEAR(found.inertia(2, 2), about_z, 1e-6 * about_z);
   EXPECT_NEAR(found.inertia(0, 0), across, 1e-6 * across);
@@ -292,8 +292,8 @@ TEST(MassProperties, AreTheSameForABoxAndItsMesh) {
     for (const double y : {-1.0, 1.0})
       for (const double z : {-1.5, 1.5}) corners.emplace_back(offset + Eigen::Vector3d(x, y, z));
   const Mesh mesh{std::make_shared<const TriangleMesh>(geometry::convex_hull(corners)), true};
-  const parsing::MassProperties found = parsing::mass_properties(mesh, 2.0);
-  const parsing::MassProperties box = parsing::mass_properties(Box{{1.0, 2.0, 3.0}}, 2.0);
+  const geometry::MassProperties found = geometry::mass_properties(mesh, 2.0);
+  const geometry::MassProperties box = geometry::mass_properties(Box{{1.0, 2.0, 3.0}}, 2.0);
   EXPECT_NEAR(found.mass, box.mass, near);
   expect_near(found.centre, offset);
   EXPECT_LT((found.inertia - box.inertia).norm(), 1e-10);

@@ -206,7 +206,7 @@ INSTANTIATE_TEST_SUITE_P(
         "</joint></model></sdf>"));
 
 // Returns the texts that libsdformat can read alone: valid XML in UTF-8, of a known version, without includes and
-// scoped names, and without cameras, whose field of view has other bounds in newer versions.
+// scoped names. Cameras are left out, since their field of view has other bounds in newer versions.
 std::vector<std::string> texts_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))

@@ -8,7 +8,7 @@
 
 namespace cohort::parsing {
 
-/// What the text of an element or an attribute is.
+/// The kind of value in the text of an element or an attribute.
 enum class ValueType { none, text, flag, integer, count, real, vector2, vector3, color, time, pose };
 
 /// How often an element may occur in its parent.
@@ -34,7 +34,7 @@ struct ChildRule {
   Presence presence;
 };
 
-/// What SDF 1.12 allows in an element (http://sdformat.org/spec, version 1.12).
+/// The content that SDF 1.12 allows in an element (http://sdformat.org/spec, version 1.12).
 struct ElementRule {
   std::string name;
   ValueRule value;

@@ -8,8 +8,8 @@
 #include "server/parsing/files/xml_outline.hpp"
 #include "server/parsing/sdf/schema/sdf_rules.hpp"
 
-/// Values of SDF in texts. A number counts up to its first other character, as in other programs: "3 m" is 3. What
-/// follows is checked where it matters (check_numbers).
+/// Values of SDF in texts. A number counts up to its first other character, as in other programs: "3 m" is 3. The
+/// rest is checked where it matters (check_numbers).
 namespace cohort::parsing {
 
 /// Returns the number with which a word begins; nothing if there is none.

@@ -8,12 +8,16 @@
 #include <vector>
 
 #include "server/core/text.hpp"
-#include "server/parsing/model/mass_properties.hpp"
+#include "server/geometry/shapes/mass_properties.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 #include "server/parsing/sdf/urdf/urdf_pose.hpp"
 
 namespace cohort::parsing {
 namespace {
+
+using geometry::MassProperties;
+using geometry::moved;
+using geometry::together;
 
 constexpr std::string_view lump_mark = "_fixed_joint_lump__";
 constexpr const char* inertia_names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "server/description/model.hpp"
-#include "server/parsing/parsing.hpp"
+#include "server/core/pose.hpp"
+#include "server/description/shape.hpp"
 
-namespace cohort::parsing {
+namespace cohort::geometry {
 
 /// Mass properties of a solid with uniform density.
 struct MassProperties {
@@ -17,7 +17,7 @@ struct MassProperties {
 /// Returns the mass properties of a shape in its frame C. They are closed forms, or for a mesh exact integrals over the
 /// enclosed volume (Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", J. Math. Stat. 1, 2005).
 /// Planes and height maps have mass 0. `density` in kg/m^3.
-MassProperties mass_properties(const Shape& shape, double density);
+MassProperties mass_properties(const description::Shape& shape, double density);
 
 /// Returns the properties of the same solid in frame A, in which the pose of its frame is X_AB.
 MassProperties moved(const MassProperties& part, const Pose& X_AB);
@@ -25,4 +25,4 @@ MassProperties moved(const MassProperties& part, const Pose& X_AB);
 /// Returns the properties of several solids together, all in one frame. Overlapping volumes count twice.
 MassProperties together(const std::vector<MassProperties>& parts);
 
-}  // namespace cohort::parsing
+}  // namespace cohort::geometry

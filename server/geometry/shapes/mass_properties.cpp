@@ -1,13 +1,13 @@
-#include "server/parsing/model/mass_properties.hpp"
+#include "server/geometry/shapes/mass_properties.hpp"
 
 #include <array>
 #include <numbers>
 #include <type_traits>
 
-namespace cohort::parsing {
+namespace cohort::geometry {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using namespace description;
 
 MassProperties centred(double mass, const Eigen::Vector3d& moments) {
   return {mass, Eigen::Vector3d::Zero(), moments.asDiagonal()};
@@ -27,7 +27,7 @@ MassProperties solid(const Box& box, double density) {
 
 MassProperties solid(const Ellipsoid& ellipsoid, double density) {
   const Eigen::Vector3d square = ellipsoid.radii.cwiseAbs2();
-  const double mass = density * 4.0 / 3.0 * pi * ellipsoid.radii.prod();
+  const double mass = density * 4.0 / 3.0 * std::numbers::pi * ellipsoid.radii.prod();
   return centred(
       mass, mass / 5.0 * Eigen::Vector3d(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()));
 }
@@ -38,7 +38,7 @@ MassProperties solid(const Sphere& sphere, double density) {
 
 MassProperties solid(const Cylinder& cylinder, double density) {
   const double r2 = cylinder.radius * cylinder.radius;
-  const double mass = density * pi * r2 * cylinder.length;
+  const double mass = density * std::numbers::pi * r2 * cylinder.length;
   const double across = mass * (3.0 * r2 + cylinder.length * cylinder.length) / 12.0;
   return centred(mass, {across, across, mass * r2 / 2.0});
 }
@@ -48,7 +48,7 @@ MassProperties solid(const Capsule& capsule, double density) {
   const double r = capsule.radius;
   const double l = capsule.length;
   const MassProperties middle = solid(Cylinder{r, l}, density);
-  const double ends = density * 4.0 / 3.0 * pi * r * r * r;
+  const double ends = density * 4.0 / 3.0 * std::numbers::pi * r * r * r;
   const double across = ends * (0.4 * r * r + l * l / 4.0 + 3.0 / 8.0 * l * r);
   return centred(middle.mass + ends, middle.inertia.diagonal() + Eigen::Vector3d(across, across, ends * 0.4 * r * r));
 }
@@ -84,7 +84,7 @@ MassProperties solid(const Heightmap&, double) { return {}; }
 
 }  // namespace
 
-MassProperties mass_properties(const Shape& shape, double density) {
+MassProperties mass_properties(const description::Shape& shape, double density) {
   return std::visit([&](const auto& each) { return solid(each, density); }, shape);
 }
 
@@ -106,4 +106,4 @@ MassProperties together(const std::vector<MassProperties>& parts) {
   return whole;
 }
 
-}  // namespace cohort::parsing
+}  // namespace cohort::geometry

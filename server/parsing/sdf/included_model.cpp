@@ -8,6 +8,7 @@
 #include "server/parsing/sdf/schema/sdf_angles.hpp"
 #include "server/parsing/sdf/schema/value_text.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
+#include "server/parsing/sdf/world_joints.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -20,6 +21,13 @@ std::string pose_text(const Pose& X) {
   return text;
 }
 
+// Makes directions of friction that are written in the frame of the merged model refer to `proxy`.
+void redirect_friction(XmlNode& node, const std::string& proxy) {
+  for (auto& [name, value] : node.attributes)
+    if (node.name == "fdir1" && name.ends_with(":expressed_in") && value == "__model__") value = proxy;
+  for (XmlNode& child : node.children) redirect_friction(child, proxy);
+}
+
 // Makes all references to the frame of the merged model refer to `proxy`.
 void refer_to_proxy(XmlNode& node, const std::string& proxy) {
   const auto redirect = [&](XmlNode* where, const std::string& attribute, bool also_if_absent) {
@@ -28,6 +36,9 @@ void refer_to_proxy(XmlNode& node, const std::string& proxy) {
     const bool is_absent = value == nullptr || value->empty();
     if (is_absent ? also_if_absent : *value == "__model__") set_attribute(*where, attribute, proxy);
   };
+  if (node.name == "link")
+    for (XmlNode& part : node.children)
+      if (part.name == "collision") redirect_friction(part, proxy);
   if (node.name == "link" || node.name == "model") {
     if (child_of(node, "pose") == nullptr) node.children.push_back({"pose", node.line, node.file, {}, "", {}});
     redirect(child_of(node, "pose"), "relative_to", true);
@@ -76,7 +87,10 @@ XmlNode as_included(const XmlNode& model, const XmlNode& include) {
   if (const XmlNode* const pose = include.child("pose")) set_child(changed, *pose);
   if (const XmlNode* const is_static = include.child("static")) set_child(changed, *is_static);
   for (const XmlNode& part : include.children)
-    if (part.name == "plugin") changed.children.push_back(part);
+    if (part.name == "plugin" || part.name == added_joint) {
+      changed.children.push_back(part);
+      if (part.name == added_joint) changed.children.back().name = "joint";
+    }
   return changed;
 }
 

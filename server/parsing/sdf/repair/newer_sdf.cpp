@@ -25,9 +25,8 @@ class NewerSdf {
     warnings_.push_back({file_, node.line, path, message});
   }
   static void change_link(XmlNode& link);
-  static void change_joint(XmlNode& joint);
+  void change_joint(XmlNode& joint, const std::string& path);
   void change_geometry(XmlNode& geometry, const std::string& path);
-  void change_world(XmlNode& world, const std::string& path);
 
   const std::filesystem::path& file_;
   std::vector<Problem>& warnings_;
@@ -35,9 +34,8 @@ class NewerSdf {
 
 void NewerSdf::change(XmlNode& node, const std::string& path) {
   if (node.name == "link") change_link(node);
-  if (node.name == "joint") change_joint(node);
+  if (node.name == "joint") change_joint(node, path);
   if (node.name == "geometry") change_geometry(node, path);
-  if (node.name == "world") change_world(node, path);
   if (node.name == "plugin") return;
   for (XmlNode& child : node.children) change(child, (path.empty() ? "" : path + "/") + step_of(child));
 }
@@ -84,13 +82,21 @@ void set_thread_pitch(XmlNode& joint) {
   child_of(joint, "screw_thread_pitch")->name = "thread_pitch";
 }
 
-// The position in SDF is multiplier * (leader - reference) + offset.
-void NewerSdf::change_joint(XmlNode& joint) {
+// The position in SDF is multiplier * (leader - reference) + offset. Only first axes can be coupled.
+void NewerSdf::change_joint(XmlNode& joint, const std::string& path) {
   set_thread_pitch(joint);
   std::optional<XmlNode> follows;
   for (XmlNode& axis : joint.children) {
-    const XmlNode* const mimic = axis.name == "axis" ? axis.child("mimic") : nullptr;
+    const XmlNode* const mimic = axis.name == "axis" || axis.name == "axis2" ? axis.child("mimic") : nullptr;
     if (mimic == nullptr) continue;
+    const bool is_led_by_second = value_of(*mimic, "axis") == "axis2";
+    if (axis.name == "axis2" || is_led_by_second) {
+      warn(*mimic, path + "/" + axis.name + "/mimic",
+           std::string("a <mimic> ") + (is_led_by_second ? "that follows an <axis2>" : "of an <axis2>") +
+               " is not supported and is ignored; expected <axis>");
+      std::erase_if(axis.children, [](const XmlNode& child) { return child.name == "mimic"; });
+      continue;
+    }
     const auto number = [&](const char* name, double otherwise) {
       const XmlNode* const child = mimic->child(name);
       return child != nullptr ? parse_real(child->text).value_or(otherwise) : otherwise;
@@ -113,40 +119,6 @@ void NewerSdf::change_geometry(XmlNode& geometry, const std::string& path) {
   if (XmlNode* const radius = child_of(*cone, "radius"))
     if (const auto value = parse_real(radius->text)) radius->text = shortest_text(*value / std::sqrt(3.0));
   warn(*cone, path + "/cone", "a cone is replaced by a cylinder of the same length and volume");
-}
-
-// Returns the object and its link for a name such as `arm::hand::palm`.
-std::pair<std::string, std::string> object_and_link(const std::string& name) {
-  const std::size_t end = name.find("::");
-  return {name.substr(0, end), end == std::string::npos ? "" : name.substr(end + 2)};
-}
-
-// A fixed joint connects two objects.
-void NewerSdf::change_world(XmlNode& world, const std::string& path) {
-  std::vector<XmlNode> ours;
-  std::erase_if(world.children, [&](const XmlNode& joint) {
-    if (joint.name != "joint") return false;
-    const XmlNode* const parent = joint.child("parent");
-    const XmlNode* const child = joint.child("child");
-    const bool holds = value_of(joint, "type") == "fixed" && parent != nullptr && child != nullptr &&
-                       parent->text != "world" && child->text != "world";
-    if (!holds) {
-      warn(joint, path + "/" + step_of(joint),
-           "a joint between objects of a world must be fixed and must connect two models; it is ignored");
-      return true;
-    }
-    XmlNode& held = ours.emplace_back(element_at(joint, prefixed("breakable_joint")));
-    set_attribute(held, "name", value_of(joint, "name"));
-    const auto add_end = [&](const std::string& key, const std::string& name) {
-      const auto [object, link] = object_and_link(name);
-      held.children.push_back(element_at(joint, prefixed(key), object));
-      if (!link.empty()) held.children.push_back(element_at(joint, prefixed(key + "_link"), link));
-    };
-    add_end("first", parent->text);
-    add_end("second", child->text);
-    return true;
-  });
-  for (XmlNode& each : ours) world.children.push_back(std::move(each));
 }
 
 }  // namespace

@@ -12,6 +12,9 @@ namespace cohort::parsing {
 /// Returns the child of this name; nullptr if there is none.
 inline XmlNode* child_of(XmlNode& parent, std::string_view name) { return const_cast<XmlNode*>(parent.child(name)); }
 
+/// Returns whether the name of an element or an attribute has the prefix of a namespace.
+inline bool has_any_prefix(std::string_view name) { return name.find(':') != std::string_view::npos; }
+
 /// Returns the value of the attribute; empty if there is none.
 inline std::string value_of(const XmlNode& node, std::string_view attribute) {
   const std::string* const value = node.attribute(attribute);

@@ -61,8 +61,8 @@ class SignalChain {
   bool measures_at(std::uint64_t tick, bool is_due) const {
     return plan_->is_immediate_ ? is_due || plan_->wanders_ : plan_->measurements_.contains(tick);
   }
-  /// Adds all errors to the values measured at this tick. Infinite values, which mean that there was nothing to
-  /// measure, become the bound of their channel if the device has noise. Like `take` and `report`, it may be called
+  /// Adds all errors to the values measured at this tick. Infinite values, which mean that what there was to measure
+  /// is out of range, become the bound of their channel if the device has noise. Like `take` and `report`, it may be called
   /// again at the same tick after a change from outside, and then replaces its previous result.
   void disturb(std::uint64_t tick, std::span<double> values);
   /// Takes the values measured at this tick, with their errors.

@@ -79,6 +79,14 @@ TEST_F(Plugins, AreFoundByFilesOfAllGenerationsAndByClasses) {
     EXPECT_EQ(device<DifferentialDrive>(plugin("anything", wheels, name)).name, "cmd_vel") << name;
 }
 
+TEST_F(Plugins, ReportJointsThatCloseLoops) {
+  const std::string loop = joint("k", "b", "c");
+  expect_flaw(loop + plugin("gz-sim-joint-controller-system", "<joint_name>k</joint_name>"), "/joint_name",
+              "the joint 'k' closes a kinematic loop");
+  expect_flaw(loop + plugin("gz-sim-joint-controller-system", "<joint_name>kk</joint_name>"), "/joint_name",
+              "the model has no joint 'kk'");
+}
+
 TEST_F(Plugins, WarnOnceOfUnknownPlugins) {
   const std::string unknown = plugin("libfoo.so", "<x/>") + plugin("libfoo.so", "<y/>");
   expect_warning(unknown, "the plugin 'libfoo.so' is not supported and is ignored");

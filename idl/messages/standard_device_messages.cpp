@@ -40,7 +40,13 @@ double elevation(const description::Lidar& lidar, std::size_t row) {
          static_cast<double>(row) * (lidar.max_elevation - lidar.min_elevation) / static_cast<double>(lidar.rows - 1);
 }
 
-// A reading at the end of the range means that the object is further away, which is infinite in ROS (REP 117).
+// Returns the range of a reading as in ROS (REP 117): -infinity if the object is too near, and infinity if nothing is
+// in range. The reading is then at a bound of its channel.
+double range_of(const description::Lidar& lidar, double reading) {
+  if (reading <= lidar.min_range) return -std::numeric_limits<double>::infinity();
+  return reading < lidar.max_range ? reading : std::numeric_limits<double>::infinity();
+}
+
 void fill(ros::LaserScan& scan, const description::Lidar& lidar, Values ranges) {
   scan.angle_min = static_cast<float>(bearing(lidar, 0));
   scan.angle_max = static_cast<float>(bearing(lidar, lidar.columns - 1));
@@ -49,19 +55,19 @@ void fill(ros::LaserScan& scan, const description::Lidar& lidar, Values ranges) 
   scan.range_min = static_cast<float>(lidar.min_range);
   scan.range_max = static_cast<float>(lidar.max_range);
   scan.ranges.reserve(lidar.columns);
-  for (const double range : ranges.first(lidar.columns))
-    scan.ranges.push_back(range < lidar.max_range ? static_cast<float>(range) : infinite);
+  for (const double reading : ranges.first(lidar.columns))
+    scan.ranges.push_back(static_cast<float>(range_of(lidar, reading)));
 }
 
-// Writes the points that were hit, in S.
+// Writes the points whose distance was measured, in S.
 void fill(ros::PointCloud2& cloud, const description::Lidar& lidar, Values ranges) {
   std::vector<float> points;
   points.reserve(3 * lidar.rows * lidar.columns);
   for (std::size_t row = 0; row < lidar.rows; ++row) {
     const double up = elevation(lidar, row);
     for (std::size_t column = 0; column < lidar.columns; ++column) {
-      const double range = ranges[row * lidar.columns + column];
-      if (!(range < lidar.max_range)) continue;
+      const double range = range_of(lidar, ranges[row * lidar.columns + column]);
+      if (!std::isfinite(range)) continue;
       const double aside = bearing(lidar, column);
       const double level = range * std::cos(up);
       for (const double coordinate : {level * std::cos(aside), level * std::sin(aside), range * std::sin(up)})

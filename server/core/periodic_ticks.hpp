@@ -36,6 +36,12 @@ class PeriodicTicks {
     if (ticks_ != 0) return tick / ticks_;
     return static_cast<std::uint64_t>((static_cast<std::int64_t>(tick) * step_ + step_ / 2) / period_);
   }
+  /// Returns the tick at which it happens for the given time after tick 0: the first one with this count.
+  std::uint64_t tick_of(std::uint64_t count) const {
+    if (ticks_ != 0 || count == 0) return count * ticks_;
+    const std::chrono::nanoseconds least = static_cast<std::int64_t>(count) * period_ - step_ / 2;
+    return static_cast<std::uint64_t>((least + step_ - std::chrono::nanoseconds(1)) / step_);
+  }
   bool contains(std::uint64_t tick) const {
     if (ticks_ != 0) return tick % ticks_ == 0;
     return tick == 0 || count(tick) != count(tick - 1);

@@ -23,8 +23,8 @@ struct Lidar {
   double max_bearing = 0.0;    ///< a single column is midway between the two
   double min_elevation = 0.0;  ///< elevation of a row above the xy plane of S [rad]
   double max_elevation = 0.0;
-  double min_range = 0.0;  ///< reading for objects that are nearer [m]
-  double max_range = 0.0;  ///< reading for objects that are farther away, or for none [m]
+  double min_range = 0.0;  ///< reading for objects that are nearer, without noise [m]
+  double max_range = 0.0;  ///< reading for objects that are farther away, or for none, without noise [m]
   Readout readout{};
 };
 

@@ -50,16 +50,6 @@ ros::JointState joint_state(const description::Model& model, const physics::Worl
   return state;
 }
 
-// Returns the schema of a message with a field for each channel, with names that ROS allows.
-std::string observation_schema(const RobotKind& kind) {
-  std::string text = "builtin_interfaces/Time stamp\n";
-  for (const cohort::Channel& channel : kind.observation)
-    text += (channel.size == 1 ? "float64 " : "float64[" + std::to_string(channel.size) + "] ") +
-            ros_field_name(channel.name) + "\n";
-  const messages::RosDefinition time = messages::definition<ros::Time>();
-  return messages::schema_text({"", text, {{"builtin_interfaces/Time", time.text, {}}}});
-}
-
 std::vector<std::uint8_t> bytes_of(std::span<const std::byte> bytes) {
   std::vector<std::uint8_t> result(bytes.size());
   std::ranges::transform(bytes, result.begin(), [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
@@ -118,6 +108,8 @@ void Recorder::begin(const description::Experiment& experiment, const Simulation
   joint_ticks_ = ticks_at_rate(recorded_.joint_rate, step);
   observation_ticks_ = ticks_at_rate(recorded_.observation_rate, step);
   snapshot_ticks_ = ticks_every(recorded_.snapshot_interval, step);
+  for (Observed& observed : observed_)
+    for (Measured& sensor : observed.sensors) sensor.times.begin(0);
   unless_memory_lacks([&] {
     const bool is_first = observed_.empty() && observation_ticks_;
     if (is_first) add_observed();
@@ -143,7 +135,7 @@ void Recorder::add_observed() {
   static_transforms_ = add_topic<ros::TFMessage>("/tf_static", true);
   std::vector<SchemaId> schemas;
   for (const RobotKind& kind : kinds)
-    schemas.push_back(file_.add_schema(observation_type(kind.model), "ros2msg", observation_schema(kind)));
+    schemas.push_back(file_.add_schema(observation_type(kind.model), "ros2msg", observation_schema(kind.observation)));
   std::map<std::string, SchemaId> schema_of;  // by type
   for (const std::uint32_t robot : recorded_.observed) {
     const std::string name = "/" + simulation_->robot_name(robot);
@@ -154,7 +146,8 @@ void Recorder::add_observed() {
     for (const messages::DeviceMessage& sensor : sensors_[kind]) {
       if (!schema_of.contains(sensor.type))
         schema_of[sensor.type] = file_.add_schema(sensor.type, "ros2msg", messages::schema_text(sensor.definition));
-      observed.sensors.push_back({add_ros_channel(file_, name + "/" + sensor.name, schema_of[sensor.type])});
+      observed.sensors.push_back({{add_ros_channel(file_, name + "/" + sensor.name, schema_of[sensor.type])},
+                                  MeasurementTimes(sensor, *simulation_, robot)});
     }
   }
 }
@@ -304,6 +297,8 @@ void Recorder::write_observations() {
   const ros::Time now = ros::time(simulation_->time());
   ros::TFMessage places;
   for (auto& [robot, topic, sensors] : observed_) {
+    if (!simulation_->is_present(robot))
+      for (Measured& sensor : sensors) sensor.times.begin(simulation_->tick() + 1);
     if (!is_observed_now(robot)) continue;
     cdr_.clear();
     cdr_.add(now);
@@ -315,13 +310,16 @@ void Recorder::write_observations() {
   if (!places.transforms.empty()) write(transforms_, places, Importance::display);
 }
 
-void Recorder::write_sensors(std::uint32_t robot, std::span<Topic> topics) {
+// Writes each measurement once, with the time at which it was taken.
+void Recorder::write_sensors(std::uint32_t robot, std::span<Measured> topics) {
   const std::vector<messages::DeviceMessage>& sensors = sensors_[simulation_->kind_of(robot)];
-  const ros::Time now = ros::time(simulation_->time());
   for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const std::optional<std::uint64_t> measured = topics[i].times.next(*simulation_);
+    if (!measured) continue;
+    const ros::Time then = ros::time(experiment_->world.step * static_cast<std::int64_t>(*measured));
     cdr_.clear();
-    sensors[i].add(cdr_, {now, frame_of(robot, sensors[i].frame)}, simulation_->observation(robot));
-    write_bytes(topics[i], cdr_.bytes(), Importance::display);
+    sensors[i].add(cdr_, {then, frame_of(robot, sensors[i].frame)}, simulation_->observation(robot));
+    write_bytes(topics[i].topic, cdr_.bytes(), Importance::display);
   }
 }
 

@@ -14,6 +14,7 @@
 #include "server/core/periodic_ticks.hpp"
 #include "server/description/experiment.hpp"
 #include "server/recording/mcap/writing/recording_file.hpp"
+#include "server/recording/measurement_times.hpp"
 #include "server/recording/ros_channels.hpp"
 #include "server/recording/run_messages.hpp"
 #include "server/simulation/simulation.hpp"
@@ -82,7 +83,8 @@ class Recorder {
   void write_joints();
   bool is_observed_now(std::uint32_t robot) const;
   void write_observations();
-  void write_sensors(std::uint32_t robot, std::span<Topic> topics);
+  struct Measured;
+  void write_sensors(std::uint32_t robot, std::span<Measured> topics);
   std::string frame_of(std::uint32_t robot, const std::string& part) const;
   std::string frame_of_link(std::uint32_t robot, std::size_t link) const;
   void write_static_places();
@@ -105,10 +107,14 @@ class Recorder {
   std::optional<PeriodicTicks> joint_ticks_;
   std::optional<PeriodicTicks> observation_ticks_;
   std::optional<PeriodicTicks> snapshot_ticks_;
+  struct Measured {
+    Topic topic;
+    MeasurementTimes times;
+  };
   struct Observed {
     std::uint32_t robot = 0;
     Topic topic;
-    std::vector<Topic> sensors;  // the topics of its kind's sensors
+    std::vector<Measured> sensors;  // the messages of its kind's sensors
   };
   std::vector<Observed> observed_;
   std::vector<std::vector<messages::DeviceMessage>> sensors_;  // by kind

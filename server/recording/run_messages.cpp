@@ -46,4 +46,13 @@ std::string observation_type(std::string_view model) {
   return "cohort_msgs/msg/" + name + "Observation";
 }
 
+std::string observation_schema(std::span<const cohort::Channel> channels) {
+  std::string text = "builtin_interfaces/Time stamp\n";
+  for (const cohort::Channel& channel : channels)
+    text += (channel.size == 1 ? "float64 " : "float64[" + std::to_string(channel.size) + "] ") +
+            ros_field_name(channel.name) + "\n";
+  const messages::RosDefinition time = messages::definition<ros::Time>();
+  return messages::schema_text({"", text, {{"builtin_interfaces/Time", time.text, {}}}});
+}
+
 }  // namespace cohort::recording

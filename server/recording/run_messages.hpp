@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/core/channel.hpp"
 #include "server/recording/ros_channels.hpp"
 
 /// Cohort's own messages in a recording: the data for a replay, and the events of the run. In the file they have the
@@ -149,5 +150,7 @@ inline constexpr const char* observation_topic_end = "/observation";
 std::string ros_field_name(std::string_view channel);
 /// Returns the message type of the robots of a model: `SbotDetailedObservation`.
 std::string observation_type(std::string_view model);
+/// Returns the schema of this message, with a field for each channel of an observation.
+std::string observation_schema(std::span<const cohort::Channel> channels);
 
 }  // namespace cohort::recording

@@ -181,6 +181,15 @@ std::span<const double> Robots::observation(std::uint32_t robot) const {
           kinds_->described[robots_[robot].kind].observation_size};
 }
 
+std::optional<std::uint64_t> Robots::measurement_at(std::uint32_t robot, std::size_t place, std::uint64_t tick) const {
+  std::size_t end = 0;
+  for (const SensorOfRobot& each : robots_[robot].sensors) {
+    end += each.size;
+    if (place < end) return each.signal_chain.measurement_at(tick);
+  }
+  return std::nullopt;
+}
+
 std::optional<CommandFault> Robots::check_command(std::uint32_t robot, std::span<const double> values) const {
   const RobotKind& kind = kinds_->described[robots_[robot].kind];
   if (values.size() != kind.command_size) return wrong_size(robot, values.size());

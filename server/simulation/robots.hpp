@@ -93,6 +93,9 @@ class Robots {
   /// tick after a change from outside.
   void sense(std::uint64_t tick);
   std::span<const double> observation(std::uint32_t robot) const;
+  /// Returns the tick at which a value of the observation at `tick` was measured; nothing before the first report.
+  /// `place`: the index of the value. The robot must be due at the tick, and in the world since tick 0.
+  std::optional<std::uint64_t> measurement_at(std::uint32_t robot, std::size_t place, std::uint64_t tick) const;
 
   /// Adds the observation, command and internal state of one robot to the hash.
   void hash(std::uint32_t robot, StateHash& hash) const;

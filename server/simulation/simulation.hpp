@@ -78,6 +78,11 @@ class Simulation {
 
   /// Returns the observation of the last tick at which the robot was due.
   std::span<const double> observation(std::uint32_t robot) const { return robots_.observation(robot); }
+  /// Returns the tick at which a value of the current observation of a robot that is due was measured; nothing before
+  /// the first report of its sensor. `place`: the index of the value. The robot must be in the world since tick 0.
+  std::optional<std::uint64_t> measurement_at(std::uint32_t robot, std::size_t place) const {
+    return robots_.measurement_at(robot, place, tick());
+  }
 
   /// Returns nothing if `values` are a valid command of `robot`.
   std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const {

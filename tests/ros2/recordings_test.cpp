@@ -65,8 +65,8 @@ void expect_bag_of_the_run(const Ended& bag) {
   ASSERT_EQ(bag.exit_code, 0) << bag.err;
   for (const char* line :
        {"/clock rosgraph_msgs/msg/Clock 21 volatile\n", "/tf_static tf2_msgs/msg/TFMessage 1 transient_local\n",
-        "/turtlebot3/scan sensor_msgs/msg/LaserScan 21 volatile\n",
-        "/cohort/boundary cohort_msgs/msg/Boundary 201 volatile\n", "\n/turtlebot3/scan 100000000 100000000\n",
+        "/turtlebot3/scan sensor_msgs/msg/LaserScan 11 volatile\n",
+        "/cohort/boundary cohort_msgs/msg/Boundary 201 volatile\n", "\n/turtlebot3/scan 200000000 200000000\n",
         "\n/turtlebot3/imu 2000000000 2000000000\n", "\n/clock 1500000000 1500000000\n", "\n/tf_static 0 0\n",
         "\n/turtlebot3/observation 700000000 700000000\n"})
     EXPECT_NE(bag.out.find(line), std::string::npos) << line << bag.out;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "server/core/text.hpp"
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
 
@@ -11,10 +10,8 @@ namespace {
 // Returns the joint; nothing, with a report, if no joint of this name has an axis.
 std::optional<std::size_t> find_joint(const Model& model, const std::string& name, const Element* where,
                                       const SdfReport& report) {
-  std::vector<std::string> names;
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    names.push_back(joint.name);
     if (joint.name != name) continue;
     if (joint.type != JointType::fixed && joint.type != JointType::ball) return i;
     report.problem(where,
@@ -22,10 +19,7 @@ std::optional<std::size_t> find_joint(const Model& model, const std::string& nam
                        (joint.type == JointType::fixed ? "is fixed" : "is a ball joint, which has no single axis"));
     return std::nullopt;
   }
-  if (std::ranges::any_of(model.loop_joints, [&](const Joint& joint) { return joint.name == name; }))
-    report.problem(where, "the joint '" + name + "' closes a kinematic loop, so its position is not independent");
-  else
-    report.problem(where, "the model has no joint '" + name + "'" + suggestion(name, names));
+  report.problem(where, why_no_joint(model, name));
   return std::nullopt;
 }
 

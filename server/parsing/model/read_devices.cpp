@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <numbers>
 #include <set>
@@ -106,10 +107,14 @@ std::optional<std::size_t> References::find_index(Referent to, const std::string
     report_.problem(where, "the link '" + name + "' already has a belt");
     return std::nullopt;
   }
-  const std::optional<std::size_t> joint = find_named("joint", model_.joints, name, where);
-  if (!joint) return std::nullopt;
-  const std::string flaw = flaw_of_joint(to, *joint);
-  if (flaw.empty()) return joint;
+  const auto joint = std::ranges::find(model_.joints, name, &Joint::name);
+  if (joint == model_.joints.end()) {
+    report_.problem(where, why_no_joint(model_, name));
+    return std::nullopt;
+  }
+  const auto index = static_cast<std::size_t>(joint - model_.joints.begin());
+  const std::string flaw = flaw_of_joint(to, index);
+  if (flaw.empty()) return index;
   report_.problem(where, "the joint '" + name + "' " + flaw);
   return std::nullopt;
 }

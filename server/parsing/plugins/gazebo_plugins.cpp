@@ -172,6 +172,13 @@ std::vector<Counterpart> read_model_plugins(const Element* model_element, const 
   return counterparts;
 }
 
+bool has_wind_effects(const Element& world_element) {
+  bool has = false;
+  for_plugins(&world_element,
+              [&](const Element*, const PluginKind& kind) { has = has || kind.in_world == wind_effects; });
+  return has;
+}
+
 void read_world_plugins(const Element* world_element, World& world, const SdfReport& report) {
   for_plugins(world_element, [&](const Element* element, const PluginKind& kind) {
     if (kind.in_world == nullptr) return;

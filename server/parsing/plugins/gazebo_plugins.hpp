@@ -37,6 +37,9 @@ std::vector<Counterpart> read_model_plugins(const Element* model_element, const 
                                             const std::set<const Element*>& elsewhere, const Model& model,
                                             std::set<std::string>& names, const SdfReport& report);
 
+/// Returns whether the world has the plugin by which wind exerts forces on links in Gazebo.
+bool has_wind_effects(const Element& world_element);
+
 /// Applies the plugins of the world to air and water.
 void read_world_plugins(const Element* world_element, World& world, const SdfReport& report);
 

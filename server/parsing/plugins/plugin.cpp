@@ -57,6 +57,16 @@ constexpr std::string_view of_no_consequence[] = {"ros",
 
 }  // namespace
 
+std::string why_no_joint(const Model& model, const std::string& name, const std::string& scope) {
+  if (std::ranges::find(model.loop_joints, scope + name, &Joint::name) != model.loop_joints.end())
+    return "the joint '" + name +
+           "' closes a kinematic loop, but motors, encoders and mimic joints need a joint of the tree; in the file, "
+           "move it before another joint of the loop";
+  std::vector<std::string> names;
+  for (const Joint& joint : model.joints) names.push_back(joint.name);
+  return "the model has no joint '" + name + "'" + suggestion(name, names);
+}
+
 std::string text_of_parameter(const Element* parameter) { return std::string(trimmed(parameter->text())); }
 
 std::vector<const Element*> Plugin::all(ParameterNames names) {
@@ -149,12 +159,9 @@ void ModelPlugin::Values::finish(std::string name, const std::string& link) {
 
 const Joint* ModelPlugin::joint(const Element* parameter) const {
   const std::string name = text_of_parameter(parameter);
-  std::vector<std::string> names;
-  for (const Joint& each : model_.joints) {
-    if (each.name == prefix_ + name) return &each;
-    names.push_back(each.name);
-  }
-  report().problem(parameter, "the model has no joint '" + name + "'" + suggestion(name, names));
+  const auto found = std::ranges::find(model_.joints, prefix_ + name, &Joint::name);
+  if (found != model_.joints.end()) return &*found;
+  report().problem(parameter, why_no_joint(model_, name, prefix_));
   return nullptr;
 }
 

@@ -48,6 +48,10 @@ class Plugin {
   std::set<std::string, std::less<>> asked_;
 };
 
+/// Returns why the tree of a model has no joint of this name: the joint closes a loop, or does not exist. `scope`: the
+/// prefix of its names, which the message omits.
+std::string why_no_joint(const Model& model, const std::string& name, const std::string& scope = "");
+
 /// Returns the value of a parameter; empty if it has none.
 std::string text_of_parameter(const Element* parameter);
 

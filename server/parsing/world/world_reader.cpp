@@ -85,12 +85,21 @@ void WorldReader::read_settings(const Element& world) {
   world_.name = name_of(world);
   world_.gravity = world.vector("gravity");
   world_.magnetic_field = world.vector("magnetic_field");
-  if (const Element* const wind = find(&world, {"wind", "linear_velocity"}); is_written(wind))
-    world_.air.wind = wind->vector();
+  if (const Element* const wind = find(&world, {"wind", "linear_velocity"}); is_written(wind)) read_wind(world, *wind);
   check_numbers(&world, report_);
   warn_of_unsupported(&world, report_);
 
   if (const auto step = read_step(world, report_)) world_.step = *step;
+}
+
+// Without its plugin, Gazebo applies the velocity of the wind to rotors and fins, and no force to links.
+void WorldReader::read_wind(const Element& world, const Element& velocity) {
+  world_.air.wind = velocity.vector();
+  if (world_.air.wind.isZero(0.0) || !SdfReport::is_foreign(&velocity) || has_wind_effects(world)) return;
+  world_.air.wind_force = 0.0;
+  report_.warning(&velocity,
+                  "the wind exerts no force on links without the plugin 'gz::sim::systems::WindEffects', as "
+                  "in Gazebo; it only acts on rotors, fins and drag");
 }
 
 void WorldReader::read_models(const Element& world, const SdfFile& file) {

@@ -42,6 +42,7 @@ class WorldReader {
   World finished();
   void read_model_alone(const SdfFile& file);
   void read_settings(const Element& world);
+  void read_wind(const Element& world, const Element& velocity);
   void read_models(const Element& world, const SdfFile& file);
   void read_lights(const Element& world, const SdfFile& file);
   void read_inline_model(const Element& element, const SdfFile& file);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include "server/geometry/scene/ray_fan.hpp"
@@ -16,13 +15,14 @@ double angle(double least, double greatest, std::size_t i, std::size_t n) {
 
 /// Ranges by one ray each, from the origin of S, through the robot's own bodies. The ray of bearing b and elevation e
 /// has the direction (cos e cos b, cos e sin b, sin e) in S. In n columns or rows the i-th is at min + i (max - min) /
-/// (n - 1). A distance below the least range reads as the least range. Without a hit the reading is the greatest range,
-/// which noise does not change.
+/// (n - 1). A distance below the least range reads as the least range, and no hit as the greatest range. Noise changes
+/// neither of the two.
 class Lidar final : public SensorOf<description::Lidar> {
  public:
   Lidar(const description::Lidar& lidar, const Mount& mount)
       : SensorOf(lidar, mount),
         // Noise does not change infinity, and the signal chain then clamps it to the range of the channel.
+        too_near_(lidar.readout.noises.empty() ? lidar.min_range : -infinity),
         nothing_(lidar.readout.noises.empty() ? lidar.max_range : infinity) {
     for (std::size_t row = 0; row < lidar.rows; ++row) {
       const double elevation = angle(lidar.min_elevation, lidar.max_elevation, row, lidar.rows);
@@ -47,13 +47,17 @@ class Lidar final : public SensorOf<description::Lidar> {
     const geometry::RayFan fan(mount_.world.scene(), X_WS.position, region, mount_.body);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto hit = fan.cast(X_WS.position, X_WS.orientation * directions_S_[i], device_.max_range);
-      values[i] = hit ? std::max(hit->distance, device_.min_range) : nothing_;
+      if (!hit)
+        values[i] = nothing_;
+      else
+        values[i] = hit->distance < device_.min_range ? too_near_ : hit->distance;
     }
   }
 
  private:
   std::vector<Eigen::Vector3d> directions_S_;
   bool is_flat_ = true;  // all rays are in the xy plane of S
+  double too_near_;      // measured value of a hit below the least range
   double nothing_;       // measured value without a hit
 };
 

@@ -110,9 +110,26 @@ void SignalChain::disturb(std::uint64_t tick, std::span<double> values) {
   }
 }
 
-void SignalChain::take(std::uint64_t tick, std::span<const double> values) {
+// Returns whether the report of the measurement of a tick is lost.
+bool SignalChain::is_lost(std::uint64_t measured) const {
   const double drop_out_rate = plan_->readout_.drop_out;
-  if (drop_out_rate > 0.0 && random_.uniform(tick, draw_of(drop_out, 0)) < drop_out_rate) return;
+  return drop_out_rate > 0.0 && random_.uniform(measured, draw_of(drop_out, 0)) < drop_out_rate;
+}
+
+std::optional<std::uint64_t> SignalChain::measurement_at(std::uint64_t tick) const {
+  if (plan_->is_immediate_) return tick;
+  constexpr double always = 1.0;
+  if (tick < plan_->latency_ || plan_->readout_.drop_out >= always) return std::nullopt;
+  const PeriodicTicks& measurements = plan_->measurements_;
+  for (std::uint64_t number = measurements.count(tick - plan_->latency_) + 1; number-- > 0;) {
+    const std::uint64_t measured = measurements.tick_of(number);
+    if (measured + plan_->latency_of(number) <= tick && !is_lost(measured)) return measured;
+  }
+  return std::nullopt;
+}
+
+void SignalChain::take(std::uint64_t tick, std::span<const double> values) {
+  if (is_lost(tick)) return;
   std::vector<Report>& under_way = memory_->under_way;
   const std::uint64_t due = tick + plan_->latency_of(plan_->measurements_.count(tick));
   if (!under_way.empty() && under_way.back().due == due) under_way.pop_back();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -61,14 +62,18 @@ class SignalChain {
   bool measures_at(std::uint64_t tick, bool is_due) const {
     return plan_->is_immediate_ ? is_due || plan_->wanders_ : plan_->measurements_.contains(tick);
   }
-  /// Adds all errors to the values measured at this tick. Infinite values, which mean that there was nothing to
-  /// measure, become the bound of their channel if the device has noise. Like `take` and `report`, it may be called
-  /// again at the same tick after a change from outside, and then replaces its previous result.
+  /// Adds all errors to the values measured at this tick. Infinite values, which mean that what there was to measure
+  /// is out of range, become the bound of their channel if the device has noise. Like `take` and `report`, it may be
+  /// called again at the same tick after a change from outside, and then replaces its previous result.
   void disturb(std::uint64_t tick, std::span<double> values);
   /// Takes the values measured at this tick, with their errors.
   void take(std::uint64_t tick, std::span<const double> values);
   /// Returns the reading that is reported at this tick, after all previous measurements were taken.
   void report(std::uint64_t tick, std::span<double> values);
+
+  /// Returns the tick of the measurement that is reported at this tick; nothing before the first report. The sensor has
+  /// measured since tick 0.
+  std::optional<std::uint64_t> measurement_at(std::uint64_t tick) const;
 
   /// Adds the state that determines later readings, besides the observation itself; nothing if there is none.
   void hash(StateHash& hash) const;
@@ -88,6 +93,7 @@ class SignalChain {
     std::vector<double> reported;   // current reading, unless it is immediate
     std::vector<Report> under_way;  // oldest first
   };
+  bool is_lost(std::uint64_t measured) const;
   template <class Memories, class Visit>
   static void visit_state(Memories& memory, Visit&& visit);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -119,6 +120,27 @@ TEST_F(DeviceMessages, HaveTheDistancesOfProximitySensorsAndInfinityWithoutAnObs
   EXPECT_NEAR(now<ros::Range>("range/ground_0").range, 0.15, 5e-3);
   EXPECT_EQ(find("range/proximity_2").period, std::chrono::milliseconds(50));
   EXPECT_EQ(find("imu").period.count(), 0);
+}
+
+TEST_F(DeviceMessages, HaveInfiniteRangesOutOfTheRangeOfALidar) {
+  description::Model lone = robot_with_everything();
+  description::Lidar sensor = lidar("front");
+  sensor.rows = 2;
+  sensor.max_elevation = 0.5;
+  lone.devices = {sensor};
+  const std::vector<Channel> ranges = {
+      {"front/0/ranges", "m", 6, sensor.min_range, sensor.max_range, sensor.max_range}};
+  const std::vector<double> readings = {sensor.min_range, 0.5, sensor.max_range, 0.5, sensor.max_range,
+                                        sensor.max_range};
+  CdrWriter cloud;
+  device_messages(lone, ranges)[0].add(cloud, {}, readings);
+  EXPECT_EQ(decode<ros::PointCloud2>(cloud.bytes()).width, 2u) << "only what was measured is a point";
+
+  std::get<description::Lidar>(lone.devices[0]).rows = 1;
+  CdrWriter scan;
+  device_messages(lone, ranges)[0].add(scan, {}, readings);
+  const float infinite = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(decode<ros::LaserScan>(scan.bytes()).ranges, (std::vector<float>{-infinite, 0.5F, infinite}));
 }
 
 TEST_F(DeviceMessages, HaveThePoseOfEachSensorWithItsXAxisInTheDirectionOfMeasurement) {

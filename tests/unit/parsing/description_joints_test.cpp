@@ -302,6 +302,9 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{model(links("ab") + "\n<joint name=\"j\" type=\"screw\"><parent>a</parent><child>b</child><axis>"
                                  "<xyz>0 0 1</xyz></axis><thread_pitch>0</thread_pitch></joint>"),
              3, in_joint + "/thread_pitch", "other than 0"},
+        Flaw{model(links("abc") + joint("i", "a", "b") + joint("j", "a", "c") + joint("k", "b", "c") +
+                   device("velocity_motor", motor_of("k"))),
+             3, "world/model[m]/cohort:velocity_motor[d]/cohort:joint", "the joint 'k' closes a kinematic loop"},
         Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "ball") +
                    device("velocity_motor", motor_of("j"))),
              3, "world/model[m]/cohort:velocity_motor[d]/cohort:joint", "has no single axis"},

@@ -79,6 +79,14 @@ TEST_F(Plugins, AreFoundByFilesOfAllGenerationsAndByClasses) {
     EXPECT_EQ(device<DifferentialDrive>(plugin("anything", wheels, name)).name, "cmd_vel") << name;
 }
 
+TEST_F(Plugins, ReportJointsThatCloseLoops) {
+  const std::string loop = joint("k", "b", "c");
+  expect_flaw(loop + plugin("gz-sim-joint-controller-system", "<joint_name>k</joint_name>"), "/joint_name",
+              "the joint 'k' closes a kinematic loop");
+  expect_flaw(loop + plugin("gz-sim-joint-controller-system", "<joint_name>kk</joint_name>"), "/joint_name",
+              "the model has no joint 'kk'");
+}
+
 TEST_F(Plugins, WarnOnceOfUnknownPlugins) {
   const std::string unknown = plugin("libfoo.so", "<x/>") + plugin("libfoo.so", "<y/>");
   expect_warning(unknown, "the plugin 'libfoo.so' is not supported and is ignored");
@@ -257,6 +265,29 @@ TEST_F(Plugins, ConvertPluginsOfTheWorldToWaterAirAndWind) {
                                   "<force_approximation_scaling_factor>0.5"
                                   "</force_approximation_scaling_factor>"));
   EXPECT_EQ(windy.air.wind_force, 0.5);
+}
+
+TEST_F(Plugins, LetTheWindOfThirdPartyWorldsActOnLinks) {
+  const std::string wind = "<wind>\n<linear_velocity>3 0 0</linear_velocity></wind>";
+  const auto read_foreign = [&](const std::string& content) {
+    return parsing::read_world(
+        write("windy.sdf", "<sdf version=\"1.9\"><world name=\"w\">" + content + "</world></sdf>"), 1);
+  };
+  for (const char* const file : {"gz-sim-wind-effects-system", "libignition-gazebo6-wind-effects-system.so"}) {
+    const World windy = read_foreign(wind + plugin(file, ""));
+    EXPECT_TRUE(windy.warnings.empty()) << texts_of(windy.warnings);
+    EXPECT_EQ(windy.air.wind_force, Air{}.wind_force) << file;
+  }
+  const World calm = read_foreign(wind);
+  EXPECT_EQ(calm.air.wind_force, 0.0);
+  ASSERT_EQ(calm.warnings.size(), 1u) << texts_of(calm.warnings);
+  expect_problem(calm.warnings, folder_ / "windy.sdf",
+                 {"", 2, "world/wind/linear_velocity", "exerts no force on links without the plugin"});
+  EXPECT_TRUE(read_foreign("<wind><linear_velocity>0 0 0</linear_velocity></wind>").warnings.empty());
+
+  const World ours = read(wind);
+  EXPECT_TRUE(ours.warnings.empty()) << texts_of(ours.warnings);
+  EXPECT_EQ(ours.air.wind_force, Air{}.wind_force);
 }
 
 std::string track(const std::string& side, const std::string& link) {

@@ -15,8 +15,8 @@ using namespace std::chrono_literals;
 constexpr std::uint64_t samples = 20'000;
 
 SignalChain readout_of(const description::Readout& readout, double lower = -infinity, double upper = infinity,
-                       const std::string& robot = "robot", std::uint32_t size = 1) {
-  return {readout, {{"sensor/0/reading", "1", size, lower, upper, 0.0}}, 7, robot, "sensor", 10ms};
+                       const std::string& robot = "robot", std::uint32_t size = 1, double neutral = 0.0) {
+  return {readout, {{"sensor/0/reading", "1", size, lower, upper, neutral}}, 7, robot, "sensor", 10ms};
 }
 description::Readout with_noise(const description::Noise& noise) { return {{noise}}; }
 
@@ -26,9 +26,9 @@ double disturbed(SignalChain& readout, std::uint64_t tick, double value) {
   return values[0];
 }
 
-// Returns the reading at each tick for a measurement that is the tick's number.
-std::vector<double> reports(const description::Readout& described, std::uint64_t ticks) {
-  SignalChain readout = readout_of(described);
+// Returns the reading at each tick for a measurement that is the tick's number. `neutral`: before the first report.
+std::vector<double> reports(const description::Readout& described, std::uint64_t ticks, double neutral = 0.0) {
+  SignalChain readout = readout_of(described, -infinity, infinity, "robot", 1, neutral);
   std::vector<double> out;
   for (std::uint64_t tick = 0; tick < ticks; ++tick) {
     double values[] = {static_cast<double>(tick)};
@@ -37,6 +37,21 @@ std::vector<double> reports(const description::Readout& described, std::uint64_t
     out.push_back(values[0]);
   }
   return out;
+}
+
+TEST(Readout, KnowsWhenTheReportedValueWasMeasured) {
+  constexpr double none = -1.0;
+  const std::vector<description::Readout> all = {{{}, 0.0, 100ms, 30ms}, {{}, 0.0, 33ms, 27ms}, {{}, 0.0, 20ms, 95ms},
+                                                 {{}, 0.6, 33ms, 7ms},   {{}, 0.9, 0ms, 0ms},   {{}, 1.0, 0ms, 0ms}};
+  for (const description::Readout& described : all) {
+    const SignalChain readout = readout_of(described);
+    const std::vector<double> reported = reports(described, 1000, none);
+    for (std::uint64_t tick = 0; tick < reported.size(); ++tick) {
+      const std::optional<std::uint64_t> measured = readout.measurement_at(tick);
+      EXPECT_EQ(measured ? static_cast<double>(*measured) : none, reported[tick]) << tick;
+    }
+  }
+  EXPECT_EQ(readout_of({}).measurement_at(7), 7u);
 }
 
 TEST(Readout, OfAnExactSensorIsTheMeasuredValue) {

@@ -79,13 +79,16 @@ TEST(LidarSensor, ReadsTheMaximumRangeWithoutAHitAndTheMinimumIfTooNear) {
 
 TEST(LidarSensor, IgnoresItsOwnBody) { EXPECT_EQ(Sensed(lidar(1, 0.0)).read()[0], 8.0); }
 
-TEST(LidarSensor, HasTheGivenNoiseOnEveryRayExceptWithoutAHit) {
+TEST(LidarSensor, HasTheGivenNoiseOnEveryRayExceptOutOfRange) {
   constexpr std::size_t count = 20'000;
   description::Lidar sensor = lidar(count, 0.0);
   sensor.readout.noises.push_back(noise_on("ranges", 0.05));
   sensor.readout.noises[0].mean = 0.3;
   const std::vector<double> nothing = Sensed(sensor).report(7);
   for (const double range : nothing) ASSERT_EQ(range, 8.0);
+  Sensed before_a_wall(sensor);
+  before_a_wall.add_wall({0.2, 20, 20}, at(0.2, 0, 5));  // its face is 0.1 m ahead, less than the least range
+  for (const double range : before_a_wall.report(7)) ASSERT_EQ(range, 0.15);
 
   Sensed sensed(sensor);
   sensed.add_wall({0.2, 20, 20}, at(2.1, 0, 5));

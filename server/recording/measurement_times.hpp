@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "idl/messages/device_message.hpp"
+#include "server/simulation/simulation.hpp"
+
+namespace cohort::recording {
+
+/// The times of the measurements in one message of a robot, of which a recording has each one once. A message has the
+/// measurements of one device, or of all joint encoders.
+class MeasurementTimes {
+ public:
+  MeasurementTimes(const messages::DeviceMessage& message, const Simulation& simulation, std::uint32_t robot);
+
+  /// Starts a world in which the robot is present since this tick. Earlier measurements are not of this robot.
+  void begin(std::uint64_t since) {
+    since_ = since;
+    last_.reset();
+  }
+  /// Returns the tick of the newest measurement in the current observation of the robot, which is due now. Returns
+  /// nothing before the first report, and if the function has returned this tick before.
+  std::optional<std::uint64_t> next(const Simulation& simulation);
+
+ private:
+  std::uint32_t robot_;
+  std::vector<std::size_t> places_;  // one observed value of each device
+  std::uint64_t since_ = 0;
+  std::optional<std::uint64_t> last_;
+};
+
+}  // namespace cohort::recording

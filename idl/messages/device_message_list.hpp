@@ -39,6 +39,7 @@ class DeviceMessageList {
     topics_.emplace_back(std::move(topic), device.name);
     DeviceMessage& added = messages_.emplace_back();
     added.device = added.frame = device.name;
+    added.devices = {device.name};
     added.type = Message::type;
     added.definition = definition<Message>();
     added.period = device.readout.period;

@@ -1,7 +1,7 @@
-#include "server/parsing/model/friction_frames.hpp"
-
 #include <algorithm>
 #include <string>
+
+#include "server/parsing/model/read_model.hpp"
 
 namespace cohort::parsing {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "server/geometry/shapes/convex_hull.hpp"
 #include "server/geometry/shapes/mass_properties.hpp"
-#include "server/parsing/model/friction_frames.hpp"
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
 #include "server/parsing/sdf/schema/value_text.hpp"

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "server/parsing/model/free_bodies.hpp"
-#include "server/parsing/model/friction_frames.hpp"
 #include "server/parsing/model/not_supported.hpp"
 #include "server/parsing/plugins/gazebo_plugins.hpp"
 #include "server/parsing/sdf/extension_values.hpp"

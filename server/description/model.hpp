@@ -30,8 +30,12 @@ struct Surface {
   double spinning_resistance = 0.0;  ///< ratio of torque about the normal to normal force [m]
   std::uint32_t material = 0;        ///< index into World::materials
   bool is_grippable = false;         ///< grippers can grasp any point
-  /// Direction in which `friction` applies, a unit vector in C; zero for every direction.
+  /// Direction in which `friction` applies, a unit vector in C, or in the frame of `friction_link`; zero for every
+  /// direction.
   Eigen::Vector3d friction_direction = Eigen::Vector3d::Zero();
+  /// Index into Model::links of another link, with which the direction turns: that of a mecanum wheel turns with the
+  /// chassis.
+  std::optional<std::size_t> friction_link{};
   double second_friction = 1.0;                                ///< Coulomb coefficient across that direction [1]
   double stiffness = std::numeric_limits<double>::infinity();  ///< for each point of contact [N/m]
   double damping = 1.0;                                        ///< if the stiffness is finite [N s/m]

@@ -6,6 +6,7 @@ namespace cohort::test {
 namespace {
 
 using description::Box;
+using description::JointType;
 using description::Sphere;
 using description::Surface;
 using Eigen::Vector3d;
@@ -170,6 +171,31 @@ TEST_P(Surfaces, FrictionHasItsCoefficientsAlongAndAcrossItsDirection) {
     EXPECT_NEAR(small.position(one).dot(y), 0.0, 0.01);
     EXPECT_NEAR((small.position(two) - before).dot(y), speed * speed / (2.0 * across * g), 0.01);
   }
+}
+
+// Mecanum wheels as spheres that slide without friction along their rollers, which do not turn with the wheels.
+TEST_P(Surfaces, ADirectionOfFrictionTurnsWithTheLinkThatItNames) {
+  constexpr double radius = 0.1, speed = 0.2, seconds = 3.0;
+  SmallWorld small(GetParam().world());
+  description::Model robot;
+  robot.name = "robot";
+  robot.links.push_back({"chassis", {}, solid_box(4.0, {0.6, 0.5, 0.1}), {}});
+  for (const Vector3d& corner : {Vector3d(0.3, 0.25, 0), {0.3, -0.25, 0}, {-0.3, 0.25, 0}, {-0.3, -0.25, 0}}) {
+    Surface surface;
+    surface.second_friction = 0.0;
+    surface.friction_direction = Vector3d(1.0, corner.x() * corner.y() > 0.0 ? -1.0 : 1.0, 0.0).normalized();
+    surface.friction_link = 0;
+    robot.joints.push_back(joint_of("j", JointType::revolute, 0, robot.links.size(), Vector3d::UnitY()));
+    robot.links.push_back({"wheel", {corner}, solid_sphere(0.5, radius), {{"c", {}, Sphere{radius}, surface}}});
+    robot.devices.push_back(description::VelocityMotor{"motor", robot.joints.size() - 1, 10.0, 10.0});
+  }
+  const auto body = small.add(robot, at(0, 0, radius));
+  for (const std::uint32_t wheel : {0u, 1u, 2u, 3u})
+    small.world().set_joint_target(
+        body, JointId{wheel}, physics::JointTarget::velocity((wheel == 0 || wheel == 3 ? -1.0 : 1.0) * speed / radius));
+  small.run(seconds);
+  EXPECT_NEAR(small.position(body).y(), speed * seconds, 0.02) << "the wheels have turned by almost a whole turn";
+  EXPECT_NEAR(small.position(body).x(), 0.0, 0.02);
 }
 
 TEST_P(Surfaces, ABoxOnASlopeStaysOnlyAcrossItsLowFrictionDirection) {

@@ -208,9 +208,9 @@ std::uint16_t read_bitmask(const Element* element, std::uint16_t by_default) {
 }
 
 // Reads friction from <ode> or, without it, from <bullet>.
-void read_friction(const Element* friction, const SdfReport& report, Surface& surface) {
-  const bool is_bullet = !find(friction, {"ode"}) && find(friction, {"bullet"});
-  const Element* const element = find(friction, {is_bullet ? "bullet" : "ode"});
+void read_friction(const Element& collision, const SdfReport& report, Surface& surface) {
+  const Element* const element = friction_of(collision);
+  const bool is_bullet = element != nullptr && element->name() == "bullet";
   surface.friction = read_friction_coefficient(find(element, {is_bullet ? "friction" : "mu"}), report);
   surface.second_friction = read_friction_coefficient(find(element, {is_bullet ? "friction2" : "mu2"}), report);
   const Element* const direction = find(element, {"fdir1"});
@@ -251,7 +251,7 @@ Surface read_surface(const Element* collision, const ModelReading& reading) {
   const SdfReport& report = reading.report;
   const double most = std::numeric_limits<double>::max();
   Surface surface;
-  read_friction(find(collision, {"surface", "friction"}), report, surface);
+  read_friction(*collision, report, surface);
   surface.restitution = read_coefficient(find(collision, {"surface", "bounce", "restitution_coefficient"}),
                                          by_default.restitution, 1.0, "expected a coefficient from 0 to 1", report);
   const Element* const threshold = find(collision, {"surface", "bounce", "threshold"});

@@ -275,6 +275,7 @@ std::vector<Model> read_model(const Frames& frames, const ModelReading& reading)
   }
   if (model.is_static) {
     warn_of_what_static_has(parts, reading.report);
+    set_friction_frames(frames, reading, model);
     return {std::move(model)};
   }
   parts.add_joints(frames, "");
@@ -288,6 +289,7 @@ std::vector<Model> read_model(const Frames& frames, const ModelReading& reading)
   for (std::size_t number = 0; number < std::max<std::size_t>(bodies.count(), 1); ++number) {
     Model& body = read.emplace_back(bodies.body(number, model));
     if (!order_links(*element, body, reading.report)) continue;
+    set_friction_frames(frames, reading, body);
     if (number > 0) body.name += "/" + without_colons(body.links.front().name);
     warn_of_loops(*element, body, reading.report);
     take_kinematic_links(body, reading.report, element);

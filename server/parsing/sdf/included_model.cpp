@@ -20,6 +20,13 @@ std::string pose_text(const Pose& X) {
   return text;
 }
 
+// Makes directions of friction that are written in the frame of the merged model refer to `proxy`.
+void redirect_friction(XmlNode& node, const std::string& proxy) {
+  for (auto& [name, value] : node.attributes)
+    if (node.name == "fdir1" && name.ends_with(":expressed_in") && value == "__model__") value = proxy;
+  for (XmlNode& child : node.children) redirect_friction(child, proxy);
+}
+
 // Makes all references to the frame of the merged model refer to `proxy`.
 void refer_to_proxy(XmlNode& node, const std::string& proxy) {
   const auto redirect = [&](XmlNode* where, const std::string& attribute, bool also_if_absent) {
@@ -28,6 +35,9 @@ void refer_to_proxy(XmlNode& node, const std::string& proxy) {
     const bool is_absent = value == nullptr || value->empty();
     if (is_absent ? also_if_absent : *value == "__model__") set_attribute(*where, attribute, proxy);
   };
+  if (node.name == "link")
+    for (XmlNode& part : node.children)
+      if (part.name == "collision") redirect_friction(part, proxy);
   if (node.name == "link" || node.name == "model") {
     if (child_of(node, "pose") == nullptr) node.children.push_back({"pose", node.line, node.file, {}, "", {}});
     redirect(child_of(node, "pose"), "relative_to", true);

@@ -77,10 +77,19 @@ class WorldWriter {
       add_key(element, "rolling_resistance", pair.rolling_resistance);
     }
     for (const BreakableJoint& joint : world_.breakable_joints) write_breakable_joint(world, joint);
+    if (has_friction_links()) root.attributes.emplace_back("xmlns:gz", "http://gazebosim.org/schema");
     return root;
   }
 
  private:
+  bool has_friction_links() const {
+    for (const Instance& instance : world_.instances)
+      for (const Link& link : world_.models[instance.model].links)
+        for (const Collision& collision : link.collisions)
+          if (collision.surface.friction_link) return true;
+    return false;
+  }
+
   void write_breakable_joint(XmlNode& world, const BreakableJoint& joint) const {
     XmlNode& element = add_named(world, prefixed("breakable_joint"), joint.name);
     const auto add_end = [&](const std::string& key, std::size_t object, std::size_t link) {
@@ -168,7 +177,7 @@ class WorldWriter {
       XmlNode& shape = add_named(element, "collision", collision.name);
       add_pose(shape, collision.X_LC);
       std::visit(ShapeWriter{add(shape, "geometry"), folder_}, collision.shape);
-      write_surface(add(shape, "surface"), collision.surface);
+      write_surface(add(shape, "surface"), collision.surface, model);
       if (collision.surface.is_grippable) add_key(shape, "grippable", true);
       if (collision.surface.material != 0) add_key(shape, "material", world_.materials[collision.surface.material]);
     }
@@ -183,14 +192,17 @@ class WorldWriter {
       if (emitter.link == index) write_emitter(element, emitter);
   }
 
-  static void write_surface(XmlNode& element, const Surface& surface) {
+  static void write_surface(XmlNode& element, const Surface& surface, const Model& model) {
     const Surface usual;
     XmlNode& friction = add(element, "friction");
     XmlNode& ode = add(friction, "ode");
     add_value(ode, "mu", surface.friction);
     if (surface.has_direction()) {
       add_value(ode, "mu2", surface.second_friction);
-      add_value(ode, "fdir1", surface.friction_direction);
+      XmlNode& direction = add_value(ode, "fdir1", surface.friction_direction);
+      if (surface.friction_link)
+        direction.attributes.emplace_back("gz:expressed_in",
+                                          without_scope_marks(model.links[*surface.friction_link].name));
     }
     add_value(add(friction, "bullet"), "rolling_friction", surface.rolling_resistance);
     if (surface.spinning_resistance > 0.0) {

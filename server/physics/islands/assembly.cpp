@@ -270,14 +270,19 @@ void Assembly::add_contact_rows(SolidPair& pair, Problem& problem, FrictionStart
     case SurfacePair::Directed::neither:
       pair.contact.friction_direction_W = running.a.is_belt() ? running.a.axis_W : running.b.axis_W;
       break;
-    case SurfacePair::Directed::by_first:
-      pair.contact.friction_direction_W = a.X_WC.orientation * a.surface().friction_direction;
-      break;
-    case SurfacePair::Directed::by_second:
-      pair.contact.friction_direction_W = b.X_WC.orientation * b.surface().friction_direction;
-      break;
+    case SurfacePair::Directed::by_first: pair.contact.friction_direction_W = friction_direction_of(pair.a); break;
+    case SurfacePair::Directed::by_second: pair.contact.friction_direction_W = friction_direction_of(pair.b); break;
   }
   physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, running, step, start);
+}
+
+Eigen::Vector3d Assembly::friction_direction_of(std::uint32_t solid) const {
+  const description::Surface& surface = scene.solid(solid).surface();
+  if (!surface.friction_link || !anchors.moves(solid))
+    return scene.solid(solid).X_WC.orientation * surface.friction_direction;
+  const Multibody& multibody = *members[anchors.member(solid)].multibody;
+  const Mechanism::LinkPlace& place = multibody.mechanism().link(*surface.friction_link);
+  return (multibody.motion().segment_pose(place.segment) * place.X_SL).orientation * surface.friction_direction;
 }
 
 bool Assembly::is_immovable(std::uint32_t solid) const {

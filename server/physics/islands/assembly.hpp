@@ -184,6 +184,8 @@ struct Assembly {
   void add_solid(BodyId body, const ModelParts& parts, std::size_t index, const Pose& X_WC, Anchors::Part part);
   /// Returns the velocity of a solid's surface (of a belt).
   RunningSurface surface_of(std::uint32_t solid) const;
+  /// Returns the direction of friction of the solid's surface in W.
+  Eigen::Vector3d friction_direction_of(std::uint32_t solid) const;
   /// Returns whether the solid belongs to a kinematic root, which no force moves.
   bool is_immovable(std::uint32_t solid) const;
   void keep_from_passing_through(Member& member) const;

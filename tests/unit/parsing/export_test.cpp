@@ -241,6 +241,19 @@ TEST_F(ExportedWorlds, KeepColorsTechniquesCamerasAndSampleFiles) {
   expect_the_same_again(world);
 }
 
+TEST_F(ExportedWorlds, KeepTheFrameOfTheDirectionOfFriction) {
+  std::string wheel = links("b");
+  wheel.insert(
+      wheel.find("</link>"),
+      "<collision name=\"c\"><geometry><sphere><radius>0.1</radius></sphere></geometry><surface><friction><ode>"
+      "<mu2>0</mu2><fdir1 gz:expressed_in=\"a\">1 2 0</fdir1></ode></friction></surface></collision>");
+  const World world =
+      read(static_model_sdf(collision("<plane/>"), "floor") + "<model name=\"m\"><pose>0 0 0.1 0 0 0</pose>" +
+           links("a") + wheel + joint("j", "a", "b", "<xyz>0 1 0</xyz>") + "</model>");
+  EXPECT_NE(text_of(world).find("gz:expressed_in=\"a\""), std::string::npos);
+  expect_the_same_again(world);
+}
+
 TEST_F(ExportedWorlds, KeepActionsAndBreakableJoints) {
   const auto hung = [](const std::string& name, const std::string& x) {
     return "<model name=\"" + name + "\"><pose>" + x + " 0 0.7 0.1 0.2 0.3</pose>" + links("ab") +

@@ -196,6 +196,26 @@ TEST_F(Joints, FollowOtherJointsByMimicAndGearbox) {
   }
 }
 
+TEST_F(Joints, WarnOfMimicsOfSecondAxes) {
+  const auto coupled = [](const std::string& on_first, const std::string& on_second) {
+    return model(links("abc") + joint("i", "a", "b") +
+                 "<joint name=\"j\" type=\"universal\"><parent>a</parent><child>c</child><axis><xyz>1 0 0</xyz>" +
+                 on_first + "</axis><axis2><xyz>0 1 0</xyz>" + on_second + "</axis2></joint>");
+  };
+  const auto expect_warning = [&](const std::string& content, const std::string& element, const std::string& message) {
+    const World world = read(content);
+    EXPECT_TRUE(world.models[0].couplings.empty());
+    ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
+    EXPECT_EQ(world.warnings[0].element, "world/model[m]/joint[j]/" + element);
+    EXPECT_NE(world.warnings[0].message.find(message), std::string::npos) << world.warnings[0].message;
+  };
+  expect_warning(coupled("", "<mimic joint=\"i\"/>"), "axis2/mimic",
+                 "a <mimic> of an <axis2> is not supported and is ignored");
+  expect_warning(coupled("<mimic joint=\"i\" axis=\"axis2\"/>", ""), "axis/mimic",
+                 "a <mimic> that follows an <axis2> is not supported and is ignored");
+  EXPECT_EQ(read(coupled("<mimic joint=\"i\" axis=\"axis\"/>", "")).models[0].couplings.size(), 1u);
+}
+
 std::string device(const std::string& kind, const std::string& keys) {
   return "<cohort:" + kind + " name=\"d\">\n" + keys + "</cohort:" + kind + ">";
 }

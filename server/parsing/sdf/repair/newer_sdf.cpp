@@ -25,7 +25,7 @@ class NewerSdf {
     warnings_.push_back({file_, node.line, path, message});
   }
   static void change_link(XmlNode& link);
-  static void change_joint(XmlNode& joint);
+  void change_joint(XmlNode& joint, const std::string& path);
   void change_geometry(XmlNode& geometry, const std::string& path);
   void change_world(XmlNode& world, const std::string& path);
 
@@ -35,7 +35,7 @@ class NewerSdf {
 
 void NewerSdf::change(XmlNode& node, const std::string& path) {
   if (node.name == "link") change_link(node);
-  if (node.name == "joint") change_joint(node);
+  if (node.name == "joint") change_joint(node, path);
   if (node.name == "geometry") change_geometry(node, path);
   if (node.name == "world") change_world(node, path);
   if (node.name == "plugin") return;
@@ -84,13 +84,21 @@ void set_thread_pitch(XmlNode& joint) {
   child_of(joint, "screw_thread_pitch")->name = "thread_pitch";
 }
 
-// The position in SDF is multiplier * (leader - reference) + offset.
-void NewerSdf::change_joint(XmlNode& joint) {
+// The position in SDF is multiplier * (leader - reference) + offset. Only first axes can be coupled.
+void NewerSdf::change_joint(XmlNode& joint, const std::string& path) {
   set_thread_pitch(joint);
   std::optional<XmlNode> follows;
   for (XmlNode& axis : joint.children) {
-    const XmlNode* const mimic = axis.name == "axis" ? axis.child("mimic") : nullptr;
+    const XmlNode* const mimic = axis.name == "axis" || axis.name == "axis2" ? axis.child("mimic") : nullptr;
     if (mimic == nullptr) continue;
+    const bool is_led_by_second = value_of(*mimic, "axis") == "axis2";
+    if (axis.name == "axis2" || is_led_by_second) {
+      warn(*mimic, path + "/" + axis.name + "/mimic",
+           std::string("a <mimic> ") + (is_led_by_second ? "that follows an <axis2>" : "of an <axis2>") +
+               " is not supported and is ignored; expected <axis>");
+      std::erase_if(axis.children, [](const XmlNode& child) { return child.name == "mimic"; });
+      continue;
+    }
     const auto number = [&](const char* name, double otherwise) {
       const XmlNode* const child = mimic->child(name);
       return child != nullptr ? parse_real(child->text).value_or(otherwise) : otherwise;

@@ -8,6 +8,7 @@
 #include "server/parsing/sdf/schema/sdf_angles.hpp"
 #include "server/parsing/sdf/schema/value_text.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
+#include "server/parsing/sdf/world_joints.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -86,7 +87,10 @@ XmlNode as_included(const XmlNode& model, const XmlNode& include) {
   if (const XmlNode* const pose = include.child("pose")) set_child(changed, *pose);
   if (const XmlNode* const is_static = include.child("static")) set_child(changed, *is_static);
   for (const XmlNode& part : include.children)
-    if (part.name == "plugin") changed.children.push_back(part);
+    if (part.name == "plugin" || part.name == added_joint) {
+      changed.children.push_back(part);
+      if (part.name == added_joint) changed.children.back().name = "joint";
+    }
   return changed;
 }
 

@@ -7,6 +7,7 @@
 #include "server/parsing/sdf/included_model.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
+#include "server/parsing/sdf/world_joints.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -31,6 +32,18 @@ std::set<std::string> repeated_names_in(const XmlNode& world) {
     if ((child.name == "model" || child.name == "frame") && !names.insert(name_of(child)).second)
       repeated.insert(name_of(child));
   return repeated;
+}
+
+// Moves the joints that hold a model to its element or its <include>, as elements with this name of an element. Their
+// scoped names differ from all names in the model.
+void move_joints(HoldingJoints& holding, const std::string& model, std::string_view name, XmlNode& element) {
+  const auto [begin, end] = holding.equal_range(model);
+  for (auto joint = begin; joint != end; ++joint) {
+    element.children.push_back(std::move(joint->second));
+    element.children.back().name = name;
+    set_attribute(element.children.back(), "name", "world::" + name_of(element.children.back()));
+  }
+  holding.erase(begin, end);
 }
 
 // Returns the number of models and frames before the next child.
@@ -69,6 +82,8 @@ struct SdfFiles::Found {
 
 bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile& file) {
   const bool is_world = node.name == "world";
+  HoldingJoints holding;
+  if (is_world) holding = take_world_joints(node, path, warnings_);
   Named named;
   if (is_world) named.collect(node);
   if (is_world) named.repeated = repeated_names_in(node);
@@ -80,6 +95,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
     const std::string child_path = path_below(path, child);
     if (child.name != "include" || (!is_world && node.name != "model")) {
       if (child.name == "world" || child.name == "model") usable = replace_includes(child, child_path, file) && usable;
+      if (is_world && child.name == "model") move_joints(holding, name_of(child), "joint", child);
       if (is_world && child.name == "model" && set_apart(child, named, place_after(children), file)) continue;
       children.push_back(std::move(child));
       continue;
@@ -88,6 +104,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
     if (!found) continue;
     if (is_world && file.is_foreign && names.contains(found->name)) rename_include(child, child_path, names, *found);
     const bool merges = is_merged(child);
+    if (is_world) move_joints(holding, found->name, added_joint, child);
     if (is_world && merges) {
       problems_.push_back({file.shown, child.line, child_path, "merge=\"true\" is allowed only in a <model>"});
     } else if (is_world && !names.insert(found->name).second) {
@@ -102,6 +119,10 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
     }
   }
   node.children = std::move(children);
+  for (const auto& [model, joint] : holding)
+    if (file.complete)
+      problems_.push_back({joint.file->shown, joint.line, path_below(path, joint),
+                           "the world has no model '" + model + "' that the joint could hold"});
   return usable;
 }
 
@@ -219,7 +240,8 @@ std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const st
 
 bool SdfFiles::replace_in_world(const XmlNode& include, const std::string& path, const Found& found, const Named& named,
                                 std::vector<XmlNode>& children, SdfFile& file) {
-  if (include.child("plugin") != nullptr) {  // it shares its model with no other
+  if (include.child("plugin") != nullptr ||
+      include.child(added_joint) != nullptr) {  // it shares its model with no other
     children.push_back(as_included(found.model, include));
     return fits(include, path, found.file, file);
   }

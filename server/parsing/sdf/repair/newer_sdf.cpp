@@ -27,7 +27,6 @@ class NewerSdf {
   static void change_link(XmlNode& link);
   void change_joint(XmlNode& joint, const std::string& path);
   void change_geometry(XmlNode& geometry, const std::string& path);
-  void change_world(XmlNode& world, const std::string& path);
 
   const std::filesystem::path& file_;
   std::vector<Problem>& warnings_;
@@ -37,7 +36,6 @@ void NewerSdf::change(XmlNode& node, const std::string& path) {
   if (node.name == "link") change_link(node);
   if (node.name == "joint") change_joint(node, path);
   if (node.name == "geometry") change_geometry(node, path);
-  if (node.name == "world") change_world(node, path);
   if (node.name == "plugin") return;
   for (XmlNode& child : node.children) change(child, (path.empty() ? "" : path + "/") + step_of(child));
 }
@@ -121,40 +119,6 @@ void NewerSdf::change_geometry(XmlNode& geometry, const std::string& path) {
   if (XmlNode* const radius = child_of(*cone, "radius"))
     if (const auto value = parse_real(radius->text)) radius->text = shortest_text(*value / std::sqrt(3.0));
   warn(*cone, path + "/cone", "a cone is replaced by a cylinder of the same length and volume");
-}
-
-// Returns the object and its link for a name such as `arm::hand::palm`.
-std::pair<std::string, std::string> object_and_link(const std::string& name) {
-  const std::size_t end = name.find("::");
-  return {name.substr(0, end), end == std::string::npos ? "" : name.substr(end + 2)};
-}
-
-// A fixed joint connects two objects.
-void NewerSdf::change_world(XmlNode& world, const std::string& path) {
-  std::vector<XmlNode> ours;
-  std::erase_if(world.children, [&](const XmlNode& joint) {
-    if (joint.name != "joint") return false;
-    const XmlNode* const parent = joint.child("parent");
-    const XmlNode* const child = joint.child("child");
-    const bool holds = value_of(joint, "type") == "fixed" && parent != nullptr && child != nullptr &&
-                       parent->text != "world" && child->text != "world";
-    if (!holds) {
-      warn(joint, path + "/" + step_of(joint),
-           "a joint between objects of a world must be fixed and must connect two models; it is ignored");
-      return true;
-    }
-    XmlNode& held = ours.emplace_back(element_at(joint, prefixed("breakable_joint")));
-    set_attribute(held, "name", value_of(joint, "name"));
-    const auto add_end = [&](const std::string& key, const std::string& name) {
-      const auto [object, link] = object_and_link(name);
-      held.children.push_back(element_at(joint, prefixed(key), object));
-      if (!link.empty()) held.children.push_back(element_at(joint, prefixed(key + "_link"), link));
-    };
-    add_end("first", parent->text);
-    add_end("second", child->text);
-    return true;
-  });
-  for (XmlNode& each : ours) world.children.push_back(std::move(each));
 }
 
 }  // namespace

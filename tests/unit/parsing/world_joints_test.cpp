@@ -1,0 +1,91 @@
+#include <string>
+
+#include "tests/support/worlds/written_worlds.hpp"
+
+// Tests of joints between the models of a world.
+namespace cohort::description {
+namespace {
+
+class WorldJoints : public Description {
+ protected:
+  WorldJoints() {
+    write("two.sdf", "<sdf version=\"1.9\"><model name=\"two\">" + links("ab") + joint("j", "a", "b") +
+                         "<frame name=\"f\" attached_to=\"b\"/></model></sdf>");
+  }
+};
+
+std::string fixed(const std::string& parent, const std::string& child, const std::string& type = "fixed") {
+  return "\n<joint name=\"bolt\" type=\"" + type + "\"><parent>" + parent + "</parent><child>" + child +
+         "</child></joint>";
+}
+
+std::string model(const std::string& name, const std::string& pose = "") {
+  return "<model name=\"" + name + "\"><pose>" + pose + "</pose>" + links("a") + "</model>";
+}
+
+std::string include(const std::string& name) {
+  return "<include><uri>two.sdf</uri><name>" + name + "</name></include>";
+}
+
+// Returns the links that are fixed to the world.
+std::string held_links(const World& world, std::size_t instance) {
+  std::string names;
+  const Model& model = world.models[world.instances[instance].model];
+  for (const std::vector<Joint>* const joints : {&model.joints, &model.loop_joints})
+    for (const Joint& joint : *joints)
+      if (joint.parent == Joint::world && joint.type == JointType::fixed) names += model.links[joint.child].name;
+  return names;
+}
+
+TEST_F(WorldJoints, HoldTheCanonicalLinkOfAModel) {
+  for (const std::string& joint : {fixed("world", "m"), fixed("world", "m::a"), fixed("m", "world")}) {
+    const World world = read(model("m", "1 2 3 0 0 0") + model("n", "2 2 3 0 0 0") + joint);
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+    ASSERT_EQ(world.instances.size(), 2u);
+    EXPECT_EQ(held_links(world, 0), "a");
+    EXPECT_EQ(held_links(world, 1), "");
+    EXPECT_EQ(world.instances[0].X_WM.position, Eigen::Vector3d(1, 2, 3));
+  }
+}
+
+TEST_F(WorldJoints, HoldOneOfSeveralIncludesOfAModel) {
+  const World world = read(include("m") + include("n") + include("o") + fixed("world", "n::f"));
+  ASSERT_EQ(world.instances.size(), 3u);
+  EXPECT_EQ(held_links(world, 0), "");
+  EXPECT_EQ(held_links(world, 2), "");
+  std::size_t held = 0;
+  while (world.instances[held].name != "n") ++held;
+  EXPECT_EQ(held_links(world, held), "b");
+}
+
+TEST_F(WorldJoints, FollowFramesOfTheWorld) {
+  const World world = read(model("m") + model("n") +
+                           "<frame name=\"wall\"/><frame name=\"hook\" attached_to=\"m::a\"/>" + fixed("wall", "hook"));
+  EXPECT_EQ(held_links(world, 0), "a");
+  const World tied = read(model("m") + model("n") + "<frame name=\"hook\" attached_to=\"m::a\"/>" + fixed("hook", "n"));
+  ASSERT_EQ(tied.breakable_joints.size(), 1u);
+  EXPECT_EQ(tied.instances[tied.breakable_joints[0].first].name, "m");
+}
+
+TEST_F(WorldJoints, OfOtherKindsAreIgnoredWithAWarning) {
+  const auto expect_warning = [&](const std::string& joint, const std::string& message) {
+    const World world = read(model("m") + model("n") + joint);
+    ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
+    EXPECT_EQ(world.warnings[0].element, "world/joint[bolt]");
+    EXPECT_EQ(world.warnings[0].line, 3);
+    EXPECT_NE(world.warnings[0].message.find(message), std::string::npos) << world.warnings[0].message;
+    EXPECT_EQ(held_links(world, 0), "");
+  };
+  expect_warning(fixed("world", "m", "revolute"), "only if they are fixed, not of the type 'revolute'");
+  expect_warning(fixed("m", "n", "ball"), "only if they are fixed, not of the type 'ball'");
+  expect_warning("<frame name=\"f\"/>" + fixed("world", "f"), "connects the world to itself; expected a model");
+}
+
+TEST_F(WorldJoints, NameAModelOfTheWorld) {
+  const std::string content = model("m") + fixed("world", "x::a");
+  expect_only_flaw({content, 3, "world/joint[bolt]", "the world has no model 'x' that the joint could hold"},
+                   write_world(content));
+}
+
+}  // namespace
+}  // namespace cohort::description

@@ -72,7 +72,9 @@ class SdfFiles {
   std::optional<Found> follow(const XmlNode& include, const std::string& path, SdfFile& file);
   /// Renames an include in a world from another source if another model has its name.
   void rename_include(XmlNode& include, const std::string& path, const std::set<std::string>& taken, Found& found);
-  static void replace_in_model(const XmlNode& include, const Found& found, bool merges, std::vector<XmlNode>& children);
+  static void replace_in_model(const XmlNode& include, const Found& found, std::vector<XmlNode>& children);
+  /// Replaces each include of a world that merges a model by the parts of this model. Returns false like `fits`.
+  bool merge_in_world(XmlNode& world, const std::string& path, SdfFile& file);
   /// Returns false in the same cases as `fits`.
   bool replace_in_world(const XmlNode& include, const std::string& path, const Found& found, const Named& named,
                         std::vector<XmlNode>& children, SdfFile& file);

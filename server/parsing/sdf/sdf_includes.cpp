@@ -82,6 +82,7 @@ struct SdfFiles::Found {
 
 bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile& file) {
   const bool is_world = node.name == "world";
+  if (is_world && !merge_in_world(node, path, file)) return false;
   HoldingJoints holding;
   if (is_world) holding = take_world_joints(node, path, warnings_);
   Named named;
@@ -103,11 +104,8 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
     std::optional<Found> found = follow(child, child_path, file);
     if (!found) continue;
     if (is_world && file.is_foreign && names.contains(found->name)) rename_include(child, child_path, names, *found);
-    const bool merges = is_merged(child);
     if (is_world) move_joints(holding, found->name, added_joint, child);
-    if (is_world && merges) {
-      problems_.push_back({file.shown, child.line, child_path, "merge=\"true\" is allowed only in a <model>"});
-    } else if (is_world && !names.insert(found->name).second) {
+    if (is_world && !names.insert(found->name).second) {
       problems_.push_back({file.shown, child.line, "world/include[" + found->name + "]",
                            "another model has the name '" + found->name + "'"});
     } else if (is_world) {
@@ -115,7 +113,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
     } else if (!fits(child, child_path, found->file, file)) {
       return false;
     } else {
-      replace_in_model(child, *found, merges, children);
+      replace_in_model(child, *found, children);
     }
   }
   node.children = std::move(children);
@@ -135,9 +133,35 @@ void SdfFiles::rename_include(XmlNode& include, const std::string& path, const s
   set_child(include, element_at(include, "name", found.name));
 }
 
-void SdfFiles::replace_in_model(const XmlNode& include, const Found& found, bool merges,
-                                std::vector<XmlNode>& children) {
-  if (!merges) {
+// A world cannot have links, so the model must consist of other models.
+bool SdfFiles::merge_in_world(XmlNode& world, const std::string& path, SdfFile& file) {
+  std::vector<XmlNode> children;
+  children.reserve(world.children.size());
+  for (XmlNode& child : world.children) {
+    if (child.name != "include" || !is_merged(child)) {
+      children.push_back(std::move(child));
+      continue;
+    }
+    const std::string child_path = path_below(path, child);
+    const std::optional<Found> found = follow(child, child_path, file);
+    if (!found) continue;
+    const auto is_part_of_model = [](const XmlNode& part) { return part.name == "link" || part.name == "gripper"; };
+    const auto part = std::ranges::find_if(found->model.children, is_part_of_model);
+    if (part != found->model.children.end()) {
+      problems_.push_back({file.shown, child.line, child_path,
+                           "the model '" + found->name + "' cannot be merged into a world, because it has a <" +
+                               part->name + ">; expected only models, frames, joints and plugins in it"});
+      continue;
+    }
+    if (!fits(child, child_path, found->file, file)) return false;
+    replace_in_model(child, *found, children);
+  }
+  world.children = std::move(children);
+  return true;
+}
+
+void SdfFiles::replace_in_model(const XmlNode& include, const Found& found, std::vector<XmlNode>& children) {
+  if (!is_merged(include)) {
     children.push_back(as_included(found.model, include));
     return;
   }

@@ -2,7 +2,7 @@
 
 #include "tests/support/worlds/written_worlds.hpp"
 
-// Tests of joints between the models of a world.
+// Tests of joints between the models of a world, and of models that are merged into it.
 namespace cohort::description {
 namespace {
 
@@ -85,6 +85,31 @@ TEST_F(WorldJoints, NameAModelOfTheWorld) {
   const std::string content = model("m") + fixed("world", "x::a");
   expect_only_flaw({content, 3, "world/joint[bolt]", "the world has no model 'x' that the joint could hold"},
                    write_world(content));
+}
+
+const std::string merging = "<include merge=\"true\"><uri>merged.sdf</uri><pose>10 0 0 0 0 0</pose></include>";
+
+TEST_F(WorldJoints, ComeWithAModelThatIsMergedIntoTheWorld) {
+  write("merged.sdf", "<sdf version=\"1.10\"><model name=\"merged\">" + include("one") + model("other", "0 5 0 0 0 0") +
+                          model("third", "0 9 0 0 0 0") + fixed("one", "other") + "</model></sdf>");
+  const World world = read(model("m") + merging +
+                           "<joint name=\"nail\" type=\"fixed\"><parent>world</parent><child>third</child></joint>");
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  ASSERT_EQ(world.instances.size(), 4u);
+  EXPECT_EQ(world.instances[1].name, "one");
+  EXPECT_EQ(world.instances[1].X_WM.position, Eigen::Vector3d(10, 0, 0));
+  EXPECT_EQ(world.instances[2].name, "other");
+  EXPECT_EQ(world.instances[2].X_WM.position, Eigen::Vector3d(10, 5, 0));
+  EXPECT_EQ(held_links(world, 3), "a");
+  ASSERT_EQ(world.breakable_joints.size(), 1u);
+  EXPECT_EQ(world.breakable_joints[0].second, 2u);
+}
+
+TEST_F(WorldJoints, CannotMergeAModelWithLinks) {
+  write("merged.sdf", "<sdf version=\"1.10\">" + model("merged") + "</sdf>");
+  expect_only_flaw(
+      {merging, 2, "world/include", "the model 'merged' cannot be merged into a world, because it has a <link>"},
+      write_world(merging));
 }
 
 }  // namespace

@@ -32,6 +32,11 @@ bool check_size(const Element& shape, const char* size, double least, const SdfR
   return !is_wrong || !report.flaw(element != nullptr ? element : &shape, "expected a size > 0 m", left_out);
 }
 
+MeshPart part_of_mesh(const Element& mesh) {
+  const Element* const name = find(&mesh, {"submesh", "name"});
+  return is_written(name) ? MeshPart{name->text(), mesh.child("submesh")->flag("center")} : MeshPart{};
+}
+
 std::optional<Shape> read_mesh_shape(const Element& mesh, const ModelReading& reading) {
   const Eigen::Vector3d scale = mesh.vector("scale");
   if ((scale.array() == 0.0).any()) {
@@ -46,7 +51,7 @@ std::optional<Shape> read_mesh_shape(const Element& mesh, const ModelReading& re
   }
   if (!scale.allFinite()) return std::nullopt;  // has been reported
   try {
-    return Mesh{reading.shape_files.mesh(uri, scale, convex), convex};
+    return Mesh{reading.shape_files.mesh(uri, scale, convex, part_of_mesh(mesh)), convex};
   } catch (const ImporterFailed& error) {
     reading.report.stop(uri, error.what());
   } catch (const std::runtime_error& error) {
@@ -60,7 +65,7 @@ std::optional<Shape> read_visual_mesh(const Element& mesh, const ModelReading& r
   const Element* const uri = mesh.child("uri");
   if (!is_written(uri) || !scale.allFinite() || (scale.array() == 0.0).any()) return std::nullopt;
   try {
-    Mesh shape{reading.shape_files.mesh(uri, scale, false), false};
+    Mesh shape{reading.shape_files.mesh(uri, scale, false, part_of_mesh(mesh)), false};
     for (const std::string& warning : reading.shape_files.warnings_of(*shape.triangles))
       reading.report.warning_once(uri, warning);
     return shape;

@@ -24,6 +24,10 @@ struct ShapeWriter {
     XmlNode& element = add(geometry, "mesh");
     add_value(element, "uri", relative(mesh.triangles->file));
     add_value(element, "scale", mesh.triangles->scale);
+    if (mesh.triangles->submesh.empty()) return;
+    XmlNode& submesh = add(element, "submesh");
+    add_value(submesh, "name", mesh.triangles->submesh);
+    add_value(submesh, "center", mesh.triangles->is_centered);
   }
   void operator()(const Heightmap& map) const {
     XmlNode& element = add(geometry, "heightmap");

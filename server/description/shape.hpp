@@ -52,6 +52,12 @@ struct MeshTextures {
   std::vector<std::shared_ptr<const Image>> images{};  ///< null: it is not shown
 };
 
+/// A simple polygon that is extruded along z, from 0 to the height.
+struct Polyline {
+  std::vector<Eigen::Vector2d> points;  ///< counter-clockwise or clockwise [m]
+  double height = 1.0;                  ///< [m]
+};
+
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;                ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices, counter-clockwise seen from outside
@@ -62,7 +68,7 @@ struct TriangleMesh {
   MeshTextures textures{};            ///< if there are images, there are colours
   std::string submesh{};              ///< the part of the file that this is; empty for the whole file
   bool is_centered = false;           ///< the part was moved so that its bounding box is centred on the origin
-};  ///< source instead of a file
+  std::vector<Polyline> polylines{};  ///< source instead of a file
 };
 /// A mesh. If `convex`, the convex hull of its vertices is solid, as in all moving models. Otherwise its triangles are
 /// used: a closed surface encloses a solid, and an open surface is a two-sided skin.

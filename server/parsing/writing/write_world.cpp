@@ -21,6 +21,12 @@ struct ShapeWriter {
   void operator()(const Ellipsoid& ellipsoid) const { add_value(add(geometry, "ellipsoid"), "radii", ellipsoid.radii); }
   void operator()(const Plane& plane) const { add_value(add(geometry, "plane"), "normal", plane.normal); }
   void operator()(const Mesh& mesh) const {
+    for (const Polyline& polyline : mesh.triangles->polylines) {
+      XmlNode& element = add(geometry, "polyline");
+      for (const Eigen::Vector2d& point : polyline.points) add_value(element, "point", point);
+      add_value(element, "height", polyline.height);
+    }
+    if (!mesh.triangles->polylines.empty()) return;
     XmlNode& element = add(geometry, "mesh");
     add_value(element, "uri", relative(mesh.triangles->file));
     add_value(element, "scale", mesh.triangles->scale);

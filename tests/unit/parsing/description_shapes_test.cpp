@@ -255,8 +255,8 @@ std::string still(const std::string& geometry) { return static_model_sdf(collisi
 INSTANTIATE_TEST_SUITE_P(
     Shapes, FlawOfAShape,
     testing::Values(
-        Flaw{still("<polyline><point>0 0</point><height>1</height></polyline>"), 2, in_geometry,
-             "<polyline> is not supported; expected box, sphere, cylinder, capsule, ellipsoid, mesh, plane "
+        Flaw{still("<image><uri>a.png</uri></image>"), 2, in_geometry,
+             "<image> is not supported; expected box, sphere, cylinder, capsule, ellipsoid, mesh, polyline, plane "
              "or heightmap"},
         Flaw{still("<capsule>\n<radius>0</radius><length>1</length></capsule>"), 3, in_geometry + "/capsule/radius",
              "expected a size > 0"},

@@ -270,6 +270,19 @@ TEST_F(ExportedWorlds, KeepSubmeshes) {
   expect_the_same_again(world);
 }
 
+TEST_F(ExportedWorlds, KeepPolylines) {
+  const std::string bracket =
+      "<polyline><point>0 0</point><point>0.1 0.37</point><point>0.7 0</point><point>0.1 -0.1</point><height>0.31"
+      "</height></polyline><polyline><point>2 0</point><point>3 0</point><point>2 "
+      "1</point><height>1</height></polyline>";
+  std::string falling = links("a");
+  falling.insert(falling.find("</link>"), "<collision name=\"c\"><geometry>" + bracket + "</geometry></collision>");
+  const World world = read(static_model_sdf(collision(bracket)) + "<model name=\"n\"><pose>0 0 1 0.1 0.2 0.3</pose>" +
+                           falling + "</model>");
+  EXPECT_NE(text_of(world).find("<point>0.1 0.37</point>"), std::string::npos);
+  expect_the_same_again(world);
+}
+
 TEST_F(ExportedWorlds, KeepActionsAndBreakableJoints) {
   const auto hung = [](const std::string& name, const std::string& x) {
     return "<model name=\"" + name + "\"><pose>" + x + " 0 0.7 0.1 0.2 0.3</pose>" + links("ab") +

@@ -52,6 +52,12 @@ struct MeshTextures {
   std::vector<std::shared_ptr<const Image>> images{};  ///< null: it is not shown
 };
 
+/// A simple polygon that is extruded along z, from 0 to the height.
+struct Polyline {
+  std::vector<Eigen::Vector2d> points;  ///< counter-clockwise or clockwise [m]
+  double height = 1.0;                  ///< [m]
+};
+
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;                ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices, counter-clockwise seen from outside
@@ -59,7 +65,10 @@ struct TriangleMesh {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();      ///< factors applied to the coordinates of the file
   /// Red, green and blue of each triangle, for display only; none if the file has no materials.
   std::vector<std::array<std::uint8_t, 3>> colors{};
-  MeshTextures textures{};  ///< if there are images, there are colours
+  MeshTextures textures{};            ///< if there are images, there are colours
+  std::string submesh{};              ///< the part of the file that this is; empty for the whole file
+  bool is_centered = false;           ///< the part was moved so that its bounding box is centred on the origin
+  std::vector<Polyline> polylines{};  ///< source instead of a file
 };
 /// A mesh. If `convex`, the convex hull of its vertices is solid, as in all moving models. Otherwise its triangles are
 /// used: a closed surface encloses a solid, and an open surface is a two-sided skin.

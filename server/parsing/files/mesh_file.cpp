@@ -94,9 +94,9 @@ class SourcesOfParent : public MeshSources {
 };
 
 void import_and_send(ChildStream& stream, MeshSources& sources, const std::filesystem::path& file,
-                     const Eigen::Vector3d& scale) {
+                     const Eigen::Vector3d& scale, const MeshPart& which) {
   try {
-    const ImportedMesh mesh = import_mesh(sources, file, scale);
+    const ImportedMesh mesh = import_mesh(sources, file, scale, which);
     stream.send(Message::mesh);
     send_items(stream, mesh.vertices);
     send_items(stream, mesh.triangles);
@@ -189,12 +189,13 @@ const std::string& content_of(InputFiles& input, const std::filesystem::path& fi
 
 }  // namespace
 
-ImportedMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale) {
+ImportedMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale,
+                       const MeshPart& which) {
   check_format(file);
   const std::string& content = content_of(input, file);
   LimitedChild importer({}, [&](ChildStream& stream) {
     SourcesOfParent sources(stream, file.string(), content);
-    import_and_send(stream, sources, file, scale);
+    import_and_send(stream, sources, file, scale, which);
   });
   const auto failed = [&](const std::string& why) {
     return ImporterFailed("'" + file.string() + "' cannot be imported: the importer " + why);

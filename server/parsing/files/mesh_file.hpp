@@ -17,7 +17,9 @@ struct ImporterFailed : std::runtime_error {
 /// Reads all triangles of an STL, OBJ, COLLADA or glTF file. Coordinates are those of the file, in metres, multiplied
 /// by `scale`; the unit of a COLLADA file is applied, its up-axis is not. Vertices at the same position are merged.
 /// Colours are those of materials (of an OBJ in its .mtl), if any. The importer is a separate process (LimitedChild).
+/// If `which` names a submesh that the file does not have, the message lists those that it has.
 /// Throws std::runtime_error with the problem of the file, or ImporterFailed.
-ImportedMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale);
+ImportedMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale,
+                       const MeshPart& which = {});
 
 }  // namespace cohort::parsing

@@ -5,6 +5,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <assimp/IOStream.hpp>
@@ -15,6 +16,7 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -224,9 +226,43 @@ bool is_gltf_file(const std::filesystem::path& file) {
   return extension.size() > 2 && std::tolower(static_cast<unsigned char>(extension[1])) == 'g';
 }
 
+// Selects the parts of a submesh, and notes the names of all. As in Gazebo, the name is that of a node; parts that
+// formats do not put into nodes of their own have names too.
+class Selection {
+ public:
+  explicit Selection(const std::string& submesh) : submesh_(submesh) {}
+
+  bool contains(const aiNode& node, const aiMesh& part) {
+    if (submesh_.empty()) return true;
+    for (const aiString* const name : {&node.mName, &part.mName})
+      if (name->length > 0) names_.insert(name->C_Str());
+    return submesh_ == node.mName.C_Str() || submesh_ == part.mName.C_Str();
+  }
+  void expect_found(const std::filesystem::path& file) const {
+    if (submesh_.empty() || names_.contains(submesh_)) return;
+    std::string all;
+    for (const std::string& name : names_) all += (all.empty() ? "'" : ", '") + name + "'";
+    throw std::runtime_error("'" + file.string() + "' has no submesh '" + submesh_ + "'; " +
+                             (all.empty() ? "its parts have no names" : "expected one of " + all));
+  }
+
+ private:
+  const std::string& submesh_;
+  std::set<std::string> names_;
+};
+
+// Moves the centre of the bounding box to the origin.
+void centre(std::vector<Eigen::Vector3d>& vertices) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : vertices) box.extend(vertex);
+  const Eigen::Vector3d middle = box.center();
+  for (Eigen::Vector3d& vertex : vertices) vertex -= middle;
+}
+
 }  // namespace
 
-ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale) {
+ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale,
+                         const MeshPart& which) {
   Assimp::Importer importer;
   importer.SetIOHandler(new AssimpFiles(sources));  // which it owns
   // Otherwise assimp would rotate a file whose z axis points upwards.
@@ -238,6 +274,7 @@ ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file
   const bool is_gltf = is_gltf_file(file);
   MeshBuilder builder;
   Images images(*scene);
+  Selection selection(which.submesh);
   struct Placed {
     const aiNode* node;
     Eigen::Matrix4d transform;
@@ -252,6 +289,7 @@ ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file
       const Eigen::Matrix4d transform = parent * matrix_of(node->mTransformation);
       for (unsigned i = 0; i < node->mNumMeshes; ++i) {
         const aiMesh& part = *scene->mMeshes[node->mMeshes[i]];
+        if (!selection.contains(*node, part)) continue;
         builder.add(part, transform, color_of(*scene, part, is_gltf), images.texture_of(part));
       }
       for (unsigned i = node->mNumChildren; i-- > 0;) waiting.push_back({node->mChildren[i], transform});
@@ -259,7 +297,9 @@ ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file
   } catch (const std::runtime_error& error) {
     throw std::runtime_error("'" + file.string() + "' is invalid: " + error.what());
   }
+  selection.expect_found(file);
   ImportedMesh mesh{builder.take(), images.take()};
+  if (which.is_centered) centre(mesh.vertices);
   if (mesh.triangles.empty()) throw std::runtime_error("'" + file.string() + "' has no triangles");
   return mesh;
 }

@@ -30,7 +30,14 @@ struct ImportedMesh : TriangleMesh {
   std::vector<MeshImage> images{};
 };
 
+/// The part of a mesh file that is read.
+struct MeshPart {
+  std::string submesh{};     ///< name of a node or a mesh in the file; empty for everything
+  bool is_centered = false;  ///< the centre of its bounding box is moved to the origin
+};
+
 /// Does the same as read_mesh in this process: a malicious file can crash Assimp, or make it exhaust the memory.
-ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale);
+ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale,
+                         const MeshPart& which = {});
 
 }  // namespace cohort::parsing

@@ -49,7 +49,6 @@ constexpr Unsupported unsupported[] = {
     {"bullet", "split_impulse"},
     {"bullet", "split_impulse_penetration_threshold"},
     {"surface", "soft_contact"},
-    {"mesh", "submesh", "; the whole mesh is read"},
 };
 
 // Elements whose children are checked; all others have no effect or are read elsewhere.

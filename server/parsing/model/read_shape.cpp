@@ -6,13 +6,14 @@
 
 #include "server/parsing/files/mesh_file.hpp"
 #include "server/parsing/model/read_model.hpp"
+#include "server/parsing/model/read_polylines.hpp"
 #include "server/parsing/model/terrain.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
 
 namespace cohort::parsing {
 namespace {
 
-constexpr const char* geometries = "box, sphere, cylinder, capsule, ellipsoid, mesh, plane or heightmap";
+constexpr const char* geometries = "box, sphere, cylinder, capsule, ellipsoid, mesh, polyline, plane or heightmap";
 
 constexpr const char* left_out = "the collision is left out";
 
@@ -32,6 +33,11 @@ bool check_size(const Element& shape, const char* size, double least, const SdfR
   return !is_wrong || !report.flaw(element != nullptr ? element : &shape, "expected a size > 0 m", left_out);
 }
 
+MeshPart part_of_mesh(const Element& mesh) {
+  const Element* const name = find(&mesh, {"submesh", "name"});
+  return is_written(name) ? MeshPart{name->text(), mesh.child("submesh")->flag("center")} : MeshPart{};
+}
+
 std::optional<Shape> read_mesh_shape(const Element& mesh, const ModelReading& reading) {
   const Eigen::Vector3d scale = mesh.vector("scale");
   if ((scale.array() == 0.0).any()) {
@@ -46,7 +52,7 @@ std::optional<Shape> read_mesh_shape(const Element& mesh, const ModelReading& re
   }
   if (!scale.allFinite()) return std::nullopt;  // has been reported
   try {
-    return Mesh{reading.shape_files.mesh(uri, scale, convex), convex};
+    return Mesh{reading.shape_files.mesh(uri, scale, convex, part_of_mesh(mesh)), convex};
   } catch (const ImporterFailed& error) {
     reading.report.stop(uri, error.what());
   } catch (const std::runtime_error& error) {
@@ -60,13 +66,35 @@ std::optional<Shape> read_visual_mesh(const Element& mesh, const ModelReading& r
   const Element* const uri = mesh.child("uri");
   if (!is_written(uri) || !scale.allFinite() || (scale.array() == 0.0).any()) return std::nullopt;
   try {
-    Mesh shape{reading.shape_files.mesh(uri, scale, false), false};
+    Mesh shape{reading.shape_files.mesh(uri, scale, false, part_of_mesh(mesh)), false};
     for (const std::string& warning : reading.shape_files.warnings_of(*shape.triangles))
       reading.report.warning_once(uri, warning);
     return shape;
   } catch (const ImporterFailed& error) {
     reading.report.stop(uri, error.what());
   } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<Shape> read_polyline_shape(const Element& geometry, const ModelReading& reading) {
+  const bool convex = !reading.is_static;
+  try {
+    std::optional<TriangleMesh> mesh = read_polylines(geometry, convex, &reading.report);
+    if (!mesh) return std::nullopt;
+    return Mesh{std::make_shared<const TriangleMesh>(*std::move(mesh)), convex};
+  } catch (const PolylineFlaw& flaw) {
+    report_lost(flaw.element, flaw.what(), reading);
+    return std::nullopt;
+  }
+}
+
+std::optional<Shape> read_visual_polyline(const Element& geometry) {
+  try {
+    std::optional<TriangleMesh> mesh = read_polylines(geometry, false, nullptr);
+    if (!mesh) return std::nullopt;
+    return Mesh{std::make_shared<const TriangleMesh>(*std::move(mesh)), false};
+  } catch (const PolylineFlaw&) {
     return std::nullopt;
   }
 }
@@ -143,6 +171,7 @@ std::optional<Shape> read_shape(const Element& geometry, const ModelReading& rea
       return check_sizes(*shape, reading.report) ? std::move(simple) : std::nullopt;
     if (shape->name() == "plane") return read_plane(*shape, reading);
     if (shape->name() == "mesh") return read_mesh_shape(*shape, reading);
+    if (shape->name() == "polyline") return read_polyline_shape(geometry, reading);
     if (shape->name() == "heightmap") return read_heightmap(*shape, reading);
   }
   const Element* const kind =
@@ -158,6 +187,7 @@ std::optional<Shape> read_visual_shape(const Element& geometry, const ModelReadi
   const Element* const shape = shape_in(geometry);
   if (shape == nullptr) return std::nullopt;
   if (shape->name() == "mesh") return read_visual_mesh(*shape, reading);
+  if (shape->name() == "polyline") return read_visual_polyline(geometry);
   std::optional<Shape> simple = shape_of(shape->name(), *shape);  // others are shown as what they collide as
   if (!simple) return std::nullopt;
   const auto is_size = [](double size) { return size > 0.0 && std::isfinite(size); };

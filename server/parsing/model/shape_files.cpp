@@ -47,22 +47,25 @@ TriangleMesh hull_of(const TriangleMesh& mesh, const std::filesystem::path& file
 
 }  // namespace
 
-std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const Element* uri, const Eigen::Vector3d& scale, bool convex) {
+std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const Element* uri, const Eigen::Vector3d& scale, bool convex,
+                                                     const MeshPart& which) {
   const std::filesystem::path file = files_.find_file(uri);
-  ReadMesh& mesh = meshes_[{file, scale.x(), scale.y(), scale.z(), convex}];
+  ReadMesh& mesh = meshes_[key_of(file, which, scale, convex)];
   if (mesh.triangles) return mesh.triangles;
-  ImportedMesh read = read_mesh(files_.input(), file, scale);
+  ImportedMesh read = read_mesh(files_.input(), file, scale, which);
   TriangleMesh triangles = convex ? hull_of(read, file, uri->node().file->is_foreign)
                                   : TriangleMesh(std::move(static_cast<TriangleMesh&>(read)));
   triangles.file = file;
   triangles.scale = scale;
+  triangles.submesh = which.submesh;
+  triangles.is_centered = which.is_centered;
   if (!convex) mesh.warnings = add_images(read.images, triangles);
   mesh.triangles = std::make_shared<const TriangleMesh>(std::move(triangles));
   return mesh.triangles;
 }
 
 const std::vector<std::string>& ShapeFiles::warnings_of(const TriangleMesh& mesh) const {
-  return meshes_.at({mesh.file, mesh.scale.x(), mesh.scale.y(), mesh.scale.z(), false}).warnings;
+  return meshes_.at(key_of(mesh.file, {mesh.submesh, mesh.is_centered}, mesh.scale, false)).warnings;
 }
 
 // Returns warnings for images that cannot be shown.

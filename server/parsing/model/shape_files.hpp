@@ -31,7 +31,8 @@ class ShapeFiles {
 
   /// Returns the mesh that `uri` names, or its convex hull; in a file from another source, a flat hull gets a thickness
   /// of 1 mm. Throws std::runtime_error with the problem.
-  std::shared_ptr<const TriangleMesh> mesh(const Element* uri, const Eigen::Vector3d& scale, bool convex);
+  std::shared_ptr<const TriangleMesh> mesh(const Element* uri, const Eigen::Vector3d& scale, bool convex,
+                                           const MeshPart& which = {});
 
   /// Returns warnings for textures of a mesh from the function above, if it is not a convex hull.
   const std::vector<std::string>& warnings_of(const TriangleMesh& mesh) const;
@@ -52,8 +53,14 @@ class ShapeFiles {
 
   const SdfFiles& files_;
   ImageFiles images_;
-  /// Meshes by file, scale and whether convex.
-  std::map<std::tuple<std::filesystem::path, double, double, double, bool>, ReadMesh> meshes_;
+  /// A file, the part of it, its scale, and whether the mesh is convex.
+  using MeshKey = std::tuple<std::filesystem::path, std::string, bool, double, double, double, bool>;
+  static MeshKey key_of(const std::filesystem::path& file, const MeshPart& which, const Eigen::Vector3d& scale,
+                        bool convex) {
+    return {file, which.submesh, which.is_centered, scale.x(), scale.y(), scale.z(), convex};
+  }
+
+  std::map<MeshKey, ReadMesh> meshes_;
   /// Height maps by file and size.
   std::map<std::tuple<std::filesystem::path, double, double, double>, std::shared_ptr<const HeightGrid>> grids_;
   std::map<std::filesystem::path, std::shared_ptr<const Samples>> samples_;

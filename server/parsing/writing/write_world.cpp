@@ -21,9 +21,19 @@ struct ShapeWriter {
   void operator()(const Ellipsoid& ellipsoid) const { add_value(add(geometry, "ellipsoid"), "radii", ellipsoid.radii); }
   void operator()(const Plane& plane) const { add_value(add(geometry, "plane"), "normal", plane.normal); }
   void operator()(const Mesh& mesh) const {
+    for (const Polyline& polyline : mesh.triangles->polylines) {
+      XmlNode& element = add(geometry, "polyline");
+      for (const Eigen::Vector2d& point : polyline.points) add_value(element, "point", point);
+      add_value(element, "height", polyline.height);
+    }
+    if (!mesh.triangles->polylines.empty()) return;
     XmlNode& element = add(geometry, "mesh");
     add_value(element, "uri", relative(mesh.triangles->file));
     add_value(element, "scale", mesh.triangles->scale);
+    if (mesh.triangles->submesh.empty()) return;
+    XmlNode& submesh = add(element, "submesh");
+    add_value(submesh, "name", mesh.triangles->submesh);
+    add_value(submesh, "center", mesh.triangles->is_centered);
   }
   void operator()(const Heightmap& map) const {
     XmlNode& element = add(geometry, "heightmap");
@@ -82,6 +92,14 @@ class WorldWriter {
   }
 
  private:
+  bool has_friction_links() const {
+    for (const Instance& instance : world_.instances)
+      for (const Link& link : world_.models[instance.model].links)
+        for (const Collision& collision : link.collisions)
+          if (collision.surface.friction_link) return true;
+    return false;
+  }
+
   void write_breakable_joint(XmlNode& world, const BreakableJoint& joint) const {
     XmlNode& element = add_named(world, prefixed("breakable_joint"), joint.name);
     const auto add_end = [&](const std::string& key, std::size_t object, std::size_t link) {

@@ -193,11 +193,21 @@ TEST_F(Shapes, FindMeshesInModelFoldersAndBesideTheFile) {
   for (std::size_t model = 0; model < 3; ++model) EXPECT_EQ(&mesh_of(world, model), &mesh_of(world, 0));
 }
 
-TEST_F(Shapes, WarnOfSubmeshes) {
-  const World world = read(static_model_sdf(collision(mesh("box.obj", "\n<submesh><name>x</name></submesh>"))));
-  ASSERT_EQ(world.warnings.size(), 1u);
-  EXPECT_EQ(world.warnings[0].line, 4);
-  EXPECT_EQ(world.warnings[0].element, in_geometry + "/mesh/submesh");
+TEST_F(Shapes, ReadOneSubmeshOfAFile) {
+  write("parts.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 4 0 0\nv 6 0 0\nv 4 2 0\no first\nf 1 2 3\no second\nf 4 5 6\n");
+  const auto vertices = [&](const std::string& submesh) {
+    const World world = read(static_model_sdf(collision(mesh("parts.obj", submesh))));
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+    return std::get<Mesh>(collision_of(world).shape).triangles->vertices;
+  };
+  EXPECT_EQ(vertices("").size(), 6u);
+  EXPECT_EQ(vertices("<submesh><name>second</name></submesh>"),
+            (std::vector<Vector3d>{{4, 0, 0}, {6, 0, 0}, {4, 2, 0}}));
+  EXPECT_EQ(vertices("<submesh><name>second</name><center>true</center></submesh>"),
+            (std::vector<Vector3d>{{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}}));
+  const std::string missing = static_model_sdf(collision(mesh("parts.obj", "<submesh><name>x</name></submesh>")));
+  expect_only_flaw({missing, 3, in_geometry + "/mesh/uri", "has no submesh 'x'; expected one of 'first', 'second'"},
+                   write_world(missing));
 }
 
 TEST_F(Shapes, ReadAHeightForEachPixelOfAHeightmap) {
@@ -245,8 +255,8 @@ std::string still(const std::string& geometry) { return static_model_sdf(collisi
 INSTANTIATE_TEST_SUITE_P(
     Shapes, FlawOfAShape,
     testing::Values(
-        Flaw{still("<polyline><point>0 0</point><height>1</height></polyline>"), 2, in_geometry,
-             "<polyline> is not supported; expected box, sphere, cylinder, capsule, ellipsoid, mesh, plane "
+        Flaw{still("<image><uri>a.png</uri></image>"), 2, in_geometry,
+             "<image> is not supported; expected box, sphere, cylinder, capsule, ellipsoid, mesh, polyline, plane "
              "or heightmap"},
         Flaw{still("<capsule>\n<radius>0</radius><length>1</length></capsule>"), 3, in_geometry + "/capsule/radius",
              "expected a size > 0"},

@@ -254,6 +254,35 @@ TEST_F(ExportedWorlds, KeepTheFrameOfTheDirectionOfFriction) {
   expect_the_same_again(world);
 }
 
+TEST_F(ExportedWorlds, KeepSubmeshes) {
+  write("parts.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 4 0 0\nv 6 0 0\nv 4 2 0\no first\nf 1 2 3\no second\nf 4 5 6\n");
+  const auto part = [](const std::string& submesh) {
+    return static_model_sdf(collision("<mesh><uri>parts.obj</uri>" + submesh + "</mesh>"),
+                            "m" + std::to_string(submesh.size()));
+  };
+  const World world = read(part("") + part("<submesh><name>second</name></submesh>") +
+                           part("<submesh><name>second</name><center>1</center></submesh>"));
+  EXPECT_NE(text_of(world).find("<center>true</center>"), std::string::npos);
+  const World again = parsing::read_world(write_back(world), 1);
+  for (std::size_t model = 0; model < 3; ++model)
+    EXPECT_EQ(std::get<Mesh>(again.models[model].links[0].collisions[0].shape).triangles->vertices,
+              std::get<Mesh>(world.models[model].links[0].collisions[0].shape).triangles->vertices);
+  expect_the_same_again(world);
+}
+
+TEST_F(ExportedWorlds, KeepPolylines) {
+  const std::string bracket =
+      "<polyline><point>0 0</point><point>0.1 0.37</point><point>0.7 0</point><point>0.1 -0.1</point><height>0.31"
+      "</height></polyline><polyline><point>2 0</point><point>3 0</point><point>2 "
+      "1</point><height>1</height></polyline>";
+  std::string falling = links("a");
+  falling.insert(falling.find("</link>"), "<collision name=\"c\"><geometry>" + bracket + "</geometry></collision>");
+  const World world = read(static_model_sdf(collision(bracket)) + "<model name=\"n\"><pose>0 0 1 0.1 0.2 0.3</pose>" +
+                           falling + "</model>");
+  EXPECT_NE(text_of(world).find("<point>0.1 0.37</point>"), std::string::npos);
+  expect_the_same_again(world);
+}
+
 TEST_F(ExportedWorlds, KeepActionsAndBreakableJoints) {
   const auto hung = [](const std::string& name, const std::string& x) {
     return "<model name=\"" + name + "\"><pose>" + x + " 0 0.7 0.1 0.2 0.3</pose>" + links("ab") +

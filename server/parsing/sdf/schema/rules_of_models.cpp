@@ -163,7 +163,7 @@ geometry 1
   [image] ?
   [mesh] ?
   [plane] ?
-  [polyline] ?
+  [polyline] *
   [sphere] ?
 box ?
   size 1 vector3 "1 1 1"
@@ -211,7 +211,7 @@ image ?
   threshold 1 integer "200"
   height 1 real "1"
   granularity 1 integer "1"
-polyline ?
+polyline *
   point + vector2 "0 0"
   height 1 real "1.0"
 surface ?

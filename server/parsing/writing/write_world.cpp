@@ -104,14 +104,6 @@ class WorldWriter {
     XmlNode& element = add_named(world, prefixed("breakable_joint"), joint.name);
     const auto add_end = [&](const std::string& key, std::size_t object, std::size_t link) {
       const Instance& instance = world_.instances[object];
-      bool has_friction_links() const {
-        for (const Instance& instance : world_.instances)
-          for (const Link& link : world_.models[instance.model].links)
-            for (const Collision& collision : link.collisions)
-              if (collision.surface.friction_link) return true;
-        return false;
-      }
-
       add_key(element, key, instance.name);
       add_key(element, key + "_link", without_scope_marks(world_.models[instance.model].links[link].name));
     };

@@ -14,8 +14,6 @@
 namespace cohort::parsing {
 namespace {
 
-bool has_any_prefix(const std::string& name) { return name.find(':') != std::string::npos; }
-
 std::vector<std::string> names_of(const std::vector<AttributeRule>& attributes) {
   std::vector<std::string> names;
   for (const AttributeRule& attribute : attributes) names.push_back(attribute.name);

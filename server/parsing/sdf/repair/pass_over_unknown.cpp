@@ -11,8 +11,6 @@
 namespace cohort::parsing {
 namespace {
 
-bool has_any_prefix(const std::string& name) { return name.find(':') != std::string::npos; }
-
 std::string meant_by(const std::string& name, const std::vector<std::string>& known) {
   const auto meant = nearest(name, known);
   return meant ? "; did you mean '" + *meant + "'?" : "";

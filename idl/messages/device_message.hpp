@@ -28,12 +28,12 @@ struct PlaceOnLink {
 
 /// A ROS 2 message with the measurements of a device of the robots of one model.
 struct DeviceMessage {
-  std::string name;          ///< its topic below the robot's: `scan`, or `scan/front` if there are several such devices
-  std::string device;        ///< name of the device; empty if there are several
-  std::string frame;         ///< S, below the robot's: the device's name, or `proximity_3` on a ring;
-                             ///< `_frame` appended if a link has that name
-  const char* type = "";     ///< type of the message, such as `sensor_msgs/msg/LaserScan`
-  RosDefinition definition;  ///< definition of the message
+  std::string name;  ///< its topic below the robot's: `scan`, or `scan/front` if there are several such devices
+  std::vector<std::string> devices;    ///< names of the devices whose measurements it has
+  std::string frame;                   ///< S, below the robot's: the device's name, or `proximity_3` on a ring;
+                                       ///< `_frame` appended if a link has that name
+  const char* type = "";               ///< type of the message, such as `sensor_msgs/msg/LaserScan`
+  RosDefinition definition;            ///< definition of the message
   std::chrono::nanoseconds period{0};  ///< time between measurements; 0: every tick
 
   /// Writes the message for a robot's observation, which has the values of all channels.

@@ -9,10 +9,7 @@ namespace cohort::recording {
 MeasurementTimes::MeasurementTimes(const messages::DeviceMessage& message, const Simulation& simulation,
                                    std::uint32_t robot)
     : robot_(robot) {
-  std::set<std::string> devices = {message.device};
-  if (message.device.empty())
-    for (const description::Device& device : simulation.description().robot_model(robot).devices)
-      if (std::holds_alternative<description::JointEncoder>(device)) devices.insert(description::name_of(device));
+  std::set<std::string> devices(message.devices.begin(), message.devices.end());
   std::size_t place = 0;
   for (const cohort::Channel& channel : simulation.kinds()[simulation.kind_of(robot)].observation) {
     if (devices.erase(channel.name.substr(0, channel.name.find('/'))) > 0) places_.push_back(place);

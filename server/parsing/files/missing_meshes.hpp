@@ -8,7 +8,7 @@
 
 namespace cohort::parsing {
 
-/// What takes the place of a collision whose mesh file does not exist.
+/// The replacement of a collision whose mesh file does not exist.
 enum class MissingMesh : std::uint8_t {
   refused,  ///< nothing: it is an error
   box,      ///< a cube of `missing_mesh_size`

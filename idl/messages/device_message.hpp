@@ -28,9 +28,8 @@ struct PlaceOnLink {
 
 /// A ROS 2 message with the measurements of a device of the robots of one model.
 struct DeviceMessage {
-  std::string name;    ///< its topic below the robot's: `scan`, or `scan/front` if there are several such devices
-  std::string device;  ///< name of the device; empty if there are several
-  std::vector<std::string> devices;    ///< names of all devices whose measurements it contains
+  std::string name;  ///< its topic below the robot's: `scan`, or `scan/front` if there are several such devices
+  std::vector<std::string> devices;    ///< names of the devices whose measurements it has
   std::string frame;                   ///< S, below the robot's: the device's name, or `proximity_3` on a ring;
                                        ///< `_frame` appended if a link has that name
   const char* type = "";               ///< type of the message, such as `sensor_msgs/msg/LaserScan`

@@ -38,8 +38,8 @@ class DeviceMessageList {
   DeviceMessage& add(const Device& device, DeviceTopic topic, const Fill& fill_in) {
     topics_.emplace_back(std::move(topic), device.name);
     DeviceMessage& added = messages_.emplace_back();
-    added.device = added.frame = device.name;
     added.devices = {device.name};
+    added.frame = device.name;
     added.type = Message::type;
     added.definition = definition<Message>();
     added.period = device.readout.period;

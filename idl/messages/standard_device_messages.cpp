@@ -296,7 +296,7 @@ void add_joint_states(DeviceMessageList& list) {
     description::Readout readout{};
   } all;
   std::vector<Encoder> encoders;
-  std::vector<std::string> names;
+  std::vector<std::string> devices;
   for (const description::Device& device : list.model().devices) {
     const auto* const encoder = std::get_if<description::JointEncoder>(&device);
     if (encoder == nullptr) continue;
@@ -305,19 +305,18 @@ void add_joint_states(DeviceMessageList& list) {
       continue;  // the first one if there are two
     const std::chrono::nanoseconds period = encoder->readout.period;
     all.readout.period = encoders.empty() ? period : std::min(all.readout.period, period);
-    names.push_back(encoder->name);
+    devices.push_back(encoder->name);
     encoders.push_back({joint, list.offset(encoder->name + "/0/position"), list.offset(encoder->name + "/0/velocity")});
   }
   if (encoders.empty()) return;
-  DeviceMessage& states =
-      list.add<ros::JointState>(all, {"joint_states"}, [encoders](ros::JointState& state, Values values) {
-        for (const Encoder& encoder : encoders) {
-          state.name.push_back(encoder.joint);
-          state.position.push_back(values[encoder.position]);
-          state.velocity.push_back(values[encoder.velocity]);
-        }
-      });
-  states.devices = std::move(names);
+  const auto fill_in = [encoders](ros::JointState& state, Values values) {
+    for (const Encoder& encoder : encoders) {
+      state.name.push_back(encoder.joint);
+      state.position.push_back(values[encoder.position]);
+      state.velocity.push_back(values[encoder.velocity]);
+    }
+  };
+  list.add<ros::JointState>(all, {"joint_states"}, fill_in).devices = std::move(devices);
 }
 
 }  // namespace cohort::messages

@@ -225,14 +225,15 @@ struct Gripper {
   Readout readout{};
 };
 
-/// A joint that fixes a link of another object until a command detaches it. Command `NAME/0/attached`, initially 1.
+/// A joint that fixes a link of another object while a command attaches it. Command `NAME/0/attached`.
 struct DetachableJoint {
   std::string name;
   std::size_t link = 0;
-  std::string child;            ///< scoped name of the object
-  std::string child_link{};     ///< link of the object; empty for its root link
-  bool may_be_missing = false;  ///< a missing object is not an error
-  Problem child_place{};        ///< position in the file, without a message
+  std::string child;                  ///< scoped name of the object
+  std::string child_link{};           ///< link of the object; empty for its root link
+  bool may_be_missing = false;        ///< a missing object is not an error
+  Problem child_place{};              ///< position in the file, without a message
+  bool is_initially_attached = true;  ///< the command is 1 until a controller sets it, otherwise 0
 
   HeldChild held_child() const;
 };

@@ -131,6 +131,7 @@ struct World {
   std::vector<std::size_t> robots;  ///< indices into `instances`, in their order
   std::vector<Problem> warnings;    ///< features of the file that are not simulated
   std::size_t seed_warnings = 0;    ///< number of warnings at the end that depend on the seed
+  std::size_t replaced_meshes = 0;  ///< number of missing mesh files whose collisions were replaced or left out
 
   const Instance& robot(std::uint32_t id) const { return instances[robots[id]]; }
   const Model& robot_model(std::uint32_t id) const { return models[robot(id).model]; }

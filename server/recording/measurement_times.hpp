@@ -10,8 +10,7 @@
 
 namespace cohort::recording {
 
-/// The times of the measurements in one message of a robot, of which a recording has each one once. A message has the
-/// measurements of one device, or of all joint encoders.
+/// The times of the measurements in one message of a robot's devices, of which a recording has each one once.
 class MeasurementTimes {
  public:
   MeasurementTimes(const messages::DeviceMessage& message, const Simulation& simulation, std::uint32_t robot);

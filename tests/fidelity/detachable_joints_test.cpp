@@ -16,11 +16,13 @@ using Eigen::Vector3d;
 class DetachableJoints : public ::testing::TestWithParam<std::pair<Fidelity, Dynamics>> {
  protected:
   DetachableJoints() { put_together(world_); }
-  void put_together(SensingWorld& world) {
+  void put_together(SensingWorld& world, bool is_initially_attached = true) {
     world.world().physics.fidelity = GetParam().first;
     world.world().physics.dynamics = GetParam().second;
     description::Model model = tracked_robot();
-    model.devices.push_back(description::DetachableJoint{"hook", turret, "crate"});
+    description::DetachableJoint hook{"hook", turret, "crate"};
+    hook.is_initially_attached = is_initially_attached;
+    model.devices.push_back(hook);
     world.add(model, "robot", at(0, 0, 0));
     crate_ = world.add(loose("crate", description::Box{{0.04, 0.04, 0.04}}, solid_box(0.05, {0.04, 0.04, 0.04})),
                        "crate", at(0.2, 0, 0.1));
@@ -52,6 +54,17 @@ TEST_P(DetachableJoints, HoldFromTheStartWithoutACommand) {
   world_.step(100);
   EXPECT_LT((held_at() - before).norm(), 1e-3) << held_at().transpose();
   EXPECT_NEAR(crate().z(), 0.1, 2e-3);
+}
+
+TEST_P(DetachableJoints, HoldNothingUntilACommandIfTheyAreInitiallyDetached) {
+  SensingWorld world;
+  put_together(world, false);
+  world.step(5);
+  const Vector3d before = pose_of_crate(world).position;
+  EXPECT_NEAR(before.z(), 0.1 - 0.5 * g * 0.05 * 0.05, 0.003) << "it falls freely";
+  world.command(0, "hook/0/attached", {1.0});
+  world.step(100);
+  EXPECT_LT((pose_of_crate(world).position - before).norm(), 3e-3) << pose_of_crate(world).position.transpose();
 }
 
 TEST_P(DetachableJoints, ReleaseAndAttachAgainInTheNewRelativePose) {

@@ -92,17 +92,17 @@ friction along a track. A vehicle whose tracks are longer than the distance betw
 spot.
 )md"},
       {"detachable_joint", "model", R"md(
-Command `NAME/0/attached`: initially 1, and 1 as long as no controller sets it.
+Command `NAME/0/attached`: 1 as long as no controller sets it, or 0 if `initially_attached` is `false`.
 
 While the command is above 0.5, the two links are rigidly connected. The joint preserves the relative pose at
-the moment of attachment: at the start of the run, or when the command rises above 0.5 again. At 0.5 or less,
+the moment of attachment: at the start of the run, or when the command rises above 0.5. At 0.5 or less,
 the joint releases the child.
 
 After the child has left the world or has been moved by an event, the command must fall to 0.5 or less before
 the joint can attach it again. A child that an event adds later is attached when it appears. The command returns
-to 1 if the robot's battery is empty or its controller is lost. For a connection that breaks under load, use a
-[breakable joint](physics.md#cohortbreakable_joint-name-in-world). To grasp an object wherever the robot finds
-it, use a [gripper](#cohortgripper-name-in-model).
+to its initial value if the robot's battery is empty or its controller is lost. For a connection that breaks under
+load, use a [breakable joint](physics.md#cohortbreakable_joint-name-in-world). To grasp an object wherever the
+robot finds it, use a [gripper](#cohortgripper-name-in-model).
 )md"},
       {"rotor", "model", R"md(
 Command `NAME/0/velocity` [rad/s]. Observation `NAME/0/velocity`, the actual velocity.

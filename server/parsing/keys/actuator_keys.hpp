@@ -156,7 +156,7 @@ inline constexpr auto table_of<TrackedDrive> = KeyTable{
 
 template <>
 inline constexpr auto table_of<DetachableJoint> = KeyTable{
-    actuator("detachable_joint", "A joint that fixes a link of another object until a command detaches it."),
+    actuator("detachable_joint", "A joint that fixes a link of another object while a command attaches it."),
     link_key(&DetachableJoint::link, "link to which the object is attached"),
     key("child", &DetachableJoint::child, object, "", "", "scoped name of the attached object"),
     key("child_link", &DetachableJoint::child_link, object, "", no_value,
@@ -164,6 +164,8 @@ inline constexpr auto table_of<DetachableJoint> = KeyTable{
     key("may_be_missing", &DetachableJoint::may_be_missing, flag, "", "false",
         "`true` if the object may be missing from the world; nothing is then attached, without a warning",
         unless_default),
+    key("initially_attached", &DetachableJoint::is_initially_attached, flag, "", "true",
+        "`false` if nothing is attached until a command", unless_default),
 };
 
 /// In the order of Rotor::Direction.

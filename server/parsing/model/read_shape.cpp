@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "server/core/text.hpp"
 #include "server/parsing/files/mesh_file.hpp"
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/model/read_polylines.hpp"
@@ -38,6 +39,19 @@ MeshPart part_of_mesh(const Element& mesh) {
   return is_written(name) ? MeshPart{name->text(), mesh.child("submesh")->flag("center")} : MeshPart{};
 }
 
+// Returns the replacement of a mesh that cannot be read; nothing if it has none, or is left out.
+std::optional<Shape> replaced_mesh(const Element* uri, const std::string& problem, const ModelReading& reading) {
+  switch (reading.shape_files.replacement_of(uri)) {
+    case MissingMesh::box:
+      reading.report.warning_once(uri, problem + "; a cube of " + shortest_text(missing_mesh_size) + " m replaces it");
+      return Box{Eigen::Vector3d::Constant(missing_mesh_size)};
+    case MissingMesh::skip: reading.report.warning_once(uri, problem + "; " + left_out); return std::nullopt;
+    case MissingMesh::refused: break;
+  }
+  report_lost(uri, problem, reading);
+  return std::nullopt;
+}
+
 std::optional<Shape> read_mesh_shape(const Element& mesh, const ModelReading& reading) {
   const Eigen::Vector3d scale = mesh.vector("scale");
   if ((scale.array() == 0.0).any()) {
@@ -56,8 +70,7 @@ std::optional<Shape> read_mesh_shape(const Element& mesh, const ModelReading& re
   } catch (const ImporterFailed& error) {
     reading.report.stop(uri, error.what());
   } catch (const std::runtime_error& error) {
-    report_lost(uri, error.what(), reading);
-    return std::nullopt;
+    return replaced_mesh(uri, error.what(), reading);
   }
 }
 

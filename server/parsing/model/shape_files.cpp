@@ -64,6 +64,17 @@ std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const Element* uri, const E
   return mesh.triangles;
 }
 
+MissingMesh ShapeFiles::replacement_of(const Element* uri) {
+  try {
+    if (files_.input().is_file(files_.find_file(uri))) return MissingMesh::refused;
+  } catch (const std::runtime_error&) {  // no place is known for it
+  }
+  std::pair mesh(uri->node().file->path.parent_path(), uri->text());
+  const MissingMesh replacement = replacement_of_mesh(files_.input(), mesh.first, mesh.second);
+  if (replacement != MissingMesh::refused) replaced_.insert(std::move(mesh));
+  return replacement;
+}
+
 const std::vector<std::string>& ShapeFiles::warnings_of(const TriangleMesh& mesh) const {
   return meshes_.at(key_of(mesh.file, {mesh.submesh, mesh.is_centered}, mesh.scale, false)).warnings;
 }

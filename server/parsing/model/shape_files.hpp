@@ -3,13 +3,16 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "server/description/shape.hpp"
 #include "server/parsing/files/mesh_import.hpp"
+#include "server/parsing/files/missing_meshes.hpp"
 #include "server/parsing/files/sample_file.hpp"
 #include "server/parsing/model/image_files.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
@@ -33,6 +36,11 @@ class ShapeFiles {
   /// of 1 mm. Throws std::runtime_error with the problem.
   std::shared_ptr<const TriangleMesh> mesh(const Element* uri, const Eigen::Vector3d& scale, bool convex,
                                            const MeshPart& which = {});
+
+  /// Returns what takes the place of the mesh that `uri` names, which could not be read; always an error if it exists.
+  MissingMesh replacement_of(const Element* uri);
+  /// Returns the number of meshes with a replacement.
+  std::size_t replaced_meshes() const { return replaced_.size(); }
 
   /// Returns warnings for textures of a mesh from the function above, if it is not a convex hull.
   const std::vector<std::string>& warnings_of(const TriangleMesh& mesh) const;
@@ -64,6 +72,7 @@ class ShapeFiles {
   /// Height maps by file and size.
   std::map<std::tuple<std::filesystem::path, double, double, double>, std::shared_ptr<const HeightGrid>> grids_;
   std::map<std::filesystem::path, std::shared_ptr<const Samples>> samples_;
+  std::set<std::pair<std::filesystem::path, std::string>> replaced_;  ///< meshes by folder and URI
 };
 
 }  // namespace cohort::parsing

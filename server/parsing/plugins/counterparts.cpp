@@ -304,6 +304,7 @@ void detachable_joint(ModelPlugin& plugin) {
       .take("child", {"child_model"})
       .take("child_link", {"child_link"})
       .take("may_be_missing", {"suppress_child_warning"}, "false")
+      .take("initially_attached", {"initial_attach"}, "true")
       .finish(plugin.text_or("detachable_joint", {"child_model"}));
 }
 

@@ -130,7 +130,9 @@ std::optional<XmlNode> SourceReader::read_yaml(const std::string& text, const Sd
     problems_.push_back({file.shown, document.error->line, "", document.error->message});
     return std::nullopt;
   }
-  return sdf_of_yaml(*document.root, file.shown, problems_);
+  XmlNode sdf = sdf_of_yaml(*document.root, file.shown, problems_);
+  take_newer(sdf, file.shown, warnings_);
+  return sdf;
 }
 
 bool SourceReader::names_are_simple(const XmlNode& node, const std::string& path) {

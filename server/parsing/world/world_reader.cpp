@@ -69,6 +69,7 @@ World WorldReader::read_model_file() {
 
 World WorldReader::finished() {
   if (!problems_.empty()) throw InputError(std::move(problems_));
+  world_.replaced_meshes = shape_files_.replaced_meshes();
   placement::set_robots(world_);
   warn_of_mass_ratio(world_);
   warn_of_sizes(world_);

@@ -166,8 +166,14 @@ TEST(DeviceFrames, AreNotThoseOfLinks) {
   for (const DeviceMessage& message :
        device_messages(world.simulation().description().robot_model(0), world.simulation().kinds()[0].observation)) {
     EXPECT_NE(message.frame, "imu");
-    EXPECT_TRUE(message.device != "imu" || message.frame == "imu_frame") << message.frame;
+    EXPECT_TRUE(message.devices != std::vector<std::string>{"imu"} || message.frame == "imu_frame") << message.frame;
   }
+}
+
+TEST_F(DeviceMessages, NameTheDevicesWhoseMeasurementsTheyHave) {
+  EXPECT_EQ(find("scan/back").devices, (std::vector<std::string>{"back"}));
+  EXPECT_EQ(find("joint_states").devices, (std::vector<std::string>{"turret_encoder"}))
+      << "the first of two encoders of a joint";
 }
 
 TEST_F(DeviceMessages, HaveAllJointsWithEncodersInOneMessage) {

@@ -385,6 +385,15 @@ TEST_F(Plugins, ConvertDetachableJoint) {
   EXPECT_EQ(its.child, "crate");
   EXPECT_EQ(its.child_link, "y");
   EXPECT_FALSE(its.may_be_missing);
+  EXPECT_TRUE(its.is_initially_attached);
+}
+
+TEST_F(Plugins, LetDetachableJointsStartDetached) {
+  const World world =
+      read(with_crate("<parent_link>b</parent_link><child_model>crate</child_model>"
+                      "<child_link>y</child_link><initial_attach>false</initial_attach>"));
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  EXPECT_FALSE(std::get<DetachableJoint>(world.models.at(0).devices.at(0)).is_initially_attached);
 }
 
 TEST_F(Plugins, WarnOfMissingChildrenOfDetachableJoints) {

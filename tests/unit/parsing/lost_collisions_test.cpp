@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "tests/support/worlds/written_worlds.hpp"
 
 // Tests that every collision of a moving model is read, or that an error gives the reason and a remedy.
@@ -61,6 +62,37 @@ TEST_F(LostCollisions, SuggestARemedyForMissingMeshes) {
   expect_error(write_urdf("package://pkg/meshes/tip.stl"), 4,
                {"there is no 'pkg/meshes/tip.stl'", (folder_ / "urdf").string(), "--allow-files DIR"});
   expect_error(write_urdf("meshes/tip.stl"), 4, {"there is no such file", (folder_ / "urdf/meshes/tip.stl").string()});
+}
+
+TEST_F(LostCollisions, AreReplacedOrLeftOutOnRequestAlsoWhenReadAgain) {
+  const auto collisions_of = [](const World& world) { return world.models.at(0).links.at(0).collisions; };
+  for (const auto& [uri, shown] : {std::pair("package://pkg/meshes/tip.stl", "there is no 'pkg/meshes/tip.stl'"),
+                                   std::pair("meshes/tip.stl", "there is no such file")}) {
+    const auto file = write_urdf(uri);
+    setenv("COHORT_MISSING_MESHES", "box", 1);
+    const Experiment with_box = parsing::read_experiment(file);
+    setenv("COHORT_MISSING_MESHES", "skip", 1);
+    const Experiment without = parsing::read_experiment(file);
+    unsetenv("COHORT_MISSING_MESHES");
+
+    EXPECT_EQ(with_box.world.replaced_meshes, 1u);
+    ASSERT_FALSE(with_box.world.warnings.empty());
+    const std::string& warning = with_box.world.warnings[0].message;
+    EXPECT_NE(warning.find(shown), std::string::npos) << warning;
+    EXPECT_NE(warning.find("a cube of 0.1 m replaces it"), std::string::npos) << warning;
+    EXPECT_EQ(without.world.replaced_meshes, 1u);
+    for (const World& world : {with_box.world, parsing::read_experiment(with_box.inputs, {}, {}).world}) {
+      ASSERT_EQ(collisions_of(world).size(), 1u);
+      EXPECT_EQ(std::get<Box>(collisions_of(world)[0].shape).size, Eigen::Vector3d::Constant(0.1));
+    }
+    for (const World& world : {without.world, parsing::read_experiment(without.inputs, {}, {}).world})
+      EXPECT_TRUE(collisions_of(world).empty());
+    EXPECT_THROW(parsing::read_experiment(file), InputError);
+  }
+  write("urdf/damaged.obj", "v 0 0 0");
+  setenv("COHORT_MISSING_MESHES", "box", 1);
+  EXPECT_THROW(parsing::read_experiment(write_urdf("damaged.obj")), InputError);
+  unsetenv("COHORT_MISSING_MESHES");
 }
 
 TEST_F(LostCollisions, RejectMeshesOutsideOfTrustedFolders) {

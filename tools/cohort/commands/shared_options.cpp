@@ -3,6 +3,8 @@
 #include <cstdlib>
 
 #include "client_sdk/src/domains.hpp"
+#include "server/parsing/files/missing_meshes.hpp"
+#include "tools/cohort/cli/checks.hpp"
 
 namespace cohort::tool {
 
@@ -45,6 +47,13 @@ void add_reading_options(CommandLine line, bool& runs_xacro) {
           },  // the parser reads this variable
           "Additional folders from which the world may read files, separated by colons (default: $COHORT_ALLOW_FILES)")
       .type_name("DIR[:DIR...]");
+  line.add_option_function<std::string>(
+          "--missing-meshes",
+          [](const std::string& replacement) { ::setenv(parsing::missing_meshes_variable, replacement.c_str(), 1); },
+          "Replace collisions whose mesh file is missing by a cube of 0.1 m, or leave them out (default: "
+          "$COHORT_MISSING_MESHES, or an error)")
+      .check(one_of({"box", "skip"}))
+      .type_name("box|skip");
   line.add_flag("--xacro", runs_xacro,
                 "Expand FILE with xacro, which executes code in FILE: use this only for trusted files");
 }

@@ -50,6 +50,7 @@ void write_summary(const std::filesystem::path& file, const description::Experim
       {"real_time_factor", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0},
       {"state_hash", fmt::format("{:016x}", result.state_hash)},
       {"robots", result.robots},
+      {"missing_meshes", experiment.world.replaced_meshes},
       {"barrier_us", quantiles(result.barrier)},
       {"late", result.late},
       {"resent", result.resent},

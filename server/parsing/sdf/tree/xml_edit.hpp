@@ -30,6 +30,9 @@ inline void set_attribute(XmlNode& node, std::string_view name, const std::strin
   node.attributes.emplace_back(name, value);
 }
 
+/// Returns whether a name has the prefix of a program.
+inline bool has_any_prefix(const std::string& name) { return name.find(':') != std::string::npos; }
+
 /// Returns the name of the element, or the one that an <include> gives; empty if there is none.
 inline std::string name_of(const XmlNode& node) {
   if (const std::string* const name = node.attribute("name")) return *name;

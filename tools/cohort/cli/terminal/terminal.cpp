@@ -62,6 +62,8 @@ std::string summary_text(const description::Experiment& experiment, const sessio
   text += fmt::format("ticks             {} ({:.2f} s simulated, {})\n", result.ticks, seconds(result.sim_time),
                       counted_objects(experiment.world, result.robots));
   if (!result.stop_reason.empty()) text += fmt::format("stopped           by {}\n", result.stop_reason);
+  if (experiment.world.replaced_meshes > 0)
+    text += fmt::format("missing meshes    {}\n", experiment.world.replaced_meshes);
   if (!result.unrecorded.empty()) text += fmt::format("recording         INCOMPLETE: {}\n", result.unrecorded);
   text += fmt::format("real-time factor  {:.1f} ({:.2f} s wall, {:.2f} s CPU)\n",
                       wall > 0.0 ? seconds(result.sim_time) / wall : 0.0, wall, cpu_seconds);

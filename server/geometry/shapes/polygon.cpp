@@ -14,9 +14,8 @@ namespace {
 using Eigen::Vector2d;
 using Points = std::vector<Vector2d>;
 
-// A sum of numbers without rounding: a list of numbers in which each is smaller than the last bit of the next one
-// (Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", Discrete &
-// Computational Geometry 18(3), 1997).
+// A sum of numbers without rounding. It is a list of numbers, each smaller than the last bit of the next one. From
+// Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", 1997.
 class ExactSum {
  public:
   void add_product(double a, double b) {

@@ -9,7 +9,7 @@
 
 namespace cohort::parsing {
 
-/// What is wrong with a polyline.
+/// A mistake in a polyline.
 struct PolylineFlaw : std::runtime_error {
   PolylineFlaw(const Element* where, const std::string& message) : std::runtime_error(message), element(where) {}
   const Element* element;

@@ -21,7 +21,7 @@ std::array<double, 9> not_measured() { return {-1.0}; }
 // Returns the covariance of a vector whose elements have independent errors.
 std::array<double, 9> covariance_of(const description::Readout& readout, const std::string& quantity) {
   std::array<double, 9> covariance{};
-  for (std::uint32_t i = 0; i < 3; ++i) covariance[4 * i] = variance_of(readout, quantity, i);
+  for (std::uint32_t i = 0; i < 3; ++i) covariance[std::size_t{4} * i] = variance_of(readout, quantity, i);
   return covariance;
 }
 

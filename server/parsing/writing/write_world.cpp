@@ -257,7 +257,7 @@ class WorldWriter {
     if (joint.type == JointType::screw) add_value(element, "thread_pitch", -2.0 * M_PI / joint.thread_pitch);
     for (const Coupling& coupling : model.couplings) {
       if (&model.joints[coupling.follower] != &joint) continue;
-      XmlNode& mimic = add(element, prefixed("mimic").c_str());
+      XmlNode& mimic = add(element, prefixed("mimic"));
       add_key(mimic, "joint", without_scope_marks(model.joints[coupling.leader].name));
       add_key(mimic, "multiplier", coupling.multiplier);
       add_key(mimic, "offset", coupling.offset);

@@ -52,6 +52,18 @@ std::optional<Shape> replaced_mesh(const Element* uri, const std::string& proble
   return std::nullopt;
 }
 
+// Returns the whole mesh, in a third-party file whose <submesh> cannot be read: the names of its parts may be lost in
+// the file. Returns nothing if this is not so, or if the file cannot be read at all.
+std::optional<Mesh> whole_mesh(const Element& mesh, const Eigen::Vector3d& scale, bool convex,
+                               const ModelReading& reading) {
+  if (!is_written(find(&mesh, {"submesh", "name"})) || !SdfReport::is_foreign(&mesh)) return std::nullopt;
+  try {
+    return Mesh{reading.shape_files.mesh(mesh.child("uri"), scale, convex, {}), convex};
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+}
+
 std::optional<Shape> read_mesh_shape(const Element& mesh, const ModelReading& reading) {
   const Eigen::Vector3d scale = mesh.vector("scale");
   if ((scale.array() == 0.0).any()) {
@@ -70,6 +82,10 @@ std::optional<Shape> read_mesh_shape(const Element& mesh, const ModelReading& re
   } catch (const ImporterFailed& error) {
     reading.report.stop(uri, error.what());
   } catch (const std::runtime_error& error) {
+    if (std::optional<Mesh> whole = whole_mesh(mesh, scale, convex, reading)) {
+      reading.report.warning(uri, std::string(error.what()) + "; the whole mesh is used");
+      return whole;
+    }
     return replaced_mesh(uri, error.what(), reading);
   }
 }
@@ -86,7 +102,7 @@ std::optional<Shape> read_visual_mesh(const Element& mesh, const ModelReading& r
   } catch (const ImporterFailed& error) {
     reading.report.stop(uri, error.what());
   } catch (const std::runtime_error&) {
-    return std::nullopt;
+    return whole_mesh(mesh, scale, false, reading);
   }
 }
 

@@ -270,5 +270,16 @@ TEST_F(MendedFiles, ReadTheEncodingAscii) {
   EXPECT_EQ(parsing::read_world_or_model(file, 1).models[0].name, "m");
 }
 
+TEST_F(MendedFiles, UseTheWholeMeshForASubmeshThatItsFileDoesNotName) {
+  write("tip.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const auto file = write("m.sdf",
+                          "<sdf version=\"1.9\"><model name=\"m\"><link name=\"a\"><collision name=\"c\"><geometry>\n"
+                          "<mesh><uri>tip.obj</uri><submesh><name>lost</name></submesh></mesh></geometry></collision>"
+                          "</link></model></sdf>");
+  const World world = parsing::read_world_or_model(file, 1);
+  EXPECT_EQ(world.models[0].links[0].collisions.size(), 1u);
+  expect_warnings(world, {"has no submesh 'lost'", "the whole mesh is used"});
+}
+
 }  // namespace
 }  // namespace cohort::description

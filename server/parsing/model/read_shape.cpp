@@ -145,9 +145,10 @@ std::optional<Shape> read_heightmap(const Element& map, const ModelReading& read
   if (!reading.is_static) report_lost(&map, "a heightmap requires <static>true</static> in its model", reading);
   if (!check_size(map, "size", size.minCoeff(), reading.report)) return std::nullopt;
   const Element* const terrain = map.child("cohort:terrain");
-  if (terrain && size.minCoeff() > 0.0 && size.allFinite()) return read_terrain(terrain, size, reading.report);
+  if (terrain != nullptr && size.minCoeff() > 0.0 && size.allFinite())
+    return read_terrain(terrain, size, reading.report);
   const Element* const uri = map.child("uri");
-  if (uri == nullptr || terrain || !(size.minCoeff() > 0.0)) return std::nullopt;  // has been reported
+  if (uri == nullptr || terrain != nullptr || !(size.minCoeff() > 0.0)) return std::nullopt;  // has been reported
   try {
     return Heightmap{reading.shape_files.height_grid(uri, size)};
   } catch (const std::runtime_error& error) {

@@ -13,8 +13,8 @@ namespace cohort::geometry {
 inline constexpr std::size_t most_polygon_points = 1000;
 
 /// Returns the polygon extruded along z, from 0 to `height`, as a closed mesh. Points on a straight line between others
-/// are left out. Throws std::invalid_argument with the flaw of a polygon that is not simple, has no
-/// area or more than `most_polygon_points`.
+/// are left out. Throws std::invalid_argument with the flaw of a polygon that is not simple, has no area, or has
+/// more than `most_polygon_points`.
 ///
 /// Ear clipping (Meisters, "Polygons have ears", American Mathematical Monthly 82(6), 1975).
 description::TriangleMesh extruded(const std::vector<Eigen::Vector2d>& polygon, double height);

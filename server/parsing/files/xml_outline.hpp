@@ -26,7 +26,8 @@ struct XmlNode {
   std::vector<std::pair<std::string, std::string>> attributes;
   std::string text;  ///< all text directly inside, without white space at the ends
   std::vector<XmlNode> children;
-  /// For a part of a link that the URDF converter has moved or renamed: its path below the model in the URDF.
+  /// The path in the file, of an element that has another name there or has been moved. For a part of a link from a
+  /// URDF it starts below the model; otherwise it starts with the world.
   std::string written = {};
 
   /// Returns the child of this name; nullptr if there is none.
@@ -48,8 +49,8 @@ struct XmlOutline {
 
 XmlOutline outline_xml(std::string_view text);
 
-/// Does the same for invalid XML that other programs accept: with "--" in comments, text around the root, a bare "&", or
-/// the encoding "ASCII".
+/// Does the same for invalid XML that other programs accept: with "--" in comments, text around the root, a bare "&",
+/// or the encoding "ASCII".
 XmlOutline outline_loose_xml(std::string_view text);
 
 /// Returns whether the text can be the name of an element or an attribute.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -45,9 +44,6 @@ struct SdfFile : SourceFile {
   /// Returns the first element of this kind below the root; nullptr if there is none.
   const Element* first(std::string_view kind) const { return elements ? elements->root().child(kind) : nullptr; }
   const Element* model() const { return first("model"); }
-  bool is_include(const std::string& name) const {
-    return std::ranges::any_of(includes, [&](const Include& include) { return include.name == name; });
-  }
 };
 
 }  // namespace cohort::parsing

@@ -5,6 +5,7 @@
 
 #include "server/parsing/sdf/include_rules.hpp"
 #include "server/parsing/sdf/included_model.hpp"
+#include "server/parsing/sdf/schema/value_text.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 #include "server/parsing/sdf/world_joints.hpp"
@@ -14,8 +15,6 @@ namespace {
 
 // The tree of a model is copied into each model that includes it.
 constexpr std::size_t most_elements = 50'000;
-
-bool is_true(const XmlNode* flag) { return flag != nullptr && (flag->text == "true" || flag->text == "1"); }
 
 // Returns the names of models and frames.
 std::set<std::string> names_in(const XmlNode& world) {
@@ -276,7 +275,8 @@ bool SdfFiles::replace_in_world(const XmlNode& include, const std::string& path,
   const XmlNode* const pose = include.child("pose") != nullptr ? include.child("pose") : own_pose;
   const XmlNode* const is_static =
       include.child("static") != nullptr ? include.child("static") : found.model.child("static");
-  file.includes.push_back({found.name, &found.file, is_true(is_static), place_after(children), {}});
+  file.includes.push_back(
+      {found.name, &found.file, is_static != nullptr && is_true(is_static->text), place_after(children), {}});
   const std::string* const placement = model.attribute("placement_frame");
   if (named.scopes.contains(found.name) || (placement != nullptr && !placement->empty())) {
     children.push_back(as_included(frames_of(found.model), include));

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/keys/choices.hpp"
 #include "server/parsing/writing/write_values.hpp"
 
@@ -67,7 +68,7 @@ class WorldWriter {
   XmlNode write() const {
     XmlNode root;
     root.name = "sdf";
-    root.attributes = {{"version", "1.9"}, {"xmlns:cohort", "https://cohort-sim.org/sdf/1"}};
+    root.attributes = {{"version", std::string(converted_version)}, {"xmlns:cohort", "https://cohort-sim.org/sdf/1"}};
     XmlNode& world = add_named(root, "world", world_.name);
     add_value(world, "gravity", world_.gravity);
     add_value(world, "magnetic_field", world_.magnetic_field);

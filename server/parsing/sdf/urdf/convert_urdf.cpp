@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/core/text.hpp"
+#include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/keys/extensions.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 #include "server/parsing/sdf/urdf/urdf_file.hpp"
@@ -262,7 +263,7 @@ std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& f
   check_urdf(robot, file, problems, warnings);
   if (problems.size() > before) return std::nullopt;
   XmlNode sdf = element_at(robot, "sdf");
-  sdf.attributes = {{"version", "1.9"}, {"xmlns:cohort", "https://cohort-sim.org/sdf/1"}};
+  sdf.attributes = {{"version", std::string(converted_version)}, {"xmlns:cohort", "https://cohort-sim.org/sdf/1"}};
   sdf.children.push_back(UrdfConverter(robot, file, warnings).convert());
   return sdf;
 }

@@ -155,7 +155,8 @@ TEST(Ros2Replay, PublishesTheOdometryAndTheScansOfTheRun) {
                     .server = {"--record", file, "--record-observations", "100"}});
   run.start();
   const auto live = run.start_node(jazzy(), "watcher.py", watched);
-  ASSERT_TRUE(live->wait_for_output("ready"));
+  // First, as it hears nothing after the run.
+  ASSERT_TRUE(live->wait_for_output("found"));
   const auto commander = run.start_node(jazzy(), "commander.py", {"/", "scan", "Twist"});
   run.summary();
   for (const std::string from : {"0", "1"}) {

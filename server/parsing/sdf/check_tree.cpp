@@ -16,12 +16,14 @@ namespace {
 
 std::vector<std::string> names_of(const std::vector<AttributeRule>& attributes) {
   std::vector<std::string> names;
+  names.reserve(attributes.size());
   for (const AttributeRule& attribute : attributes) names.push_back(attribute.name);
   return names;
 }
 
 std::vector<std::string> names_of(const std::vector<ChildRule>& children) {
   std::vector<std::string> names;
+  names.reserve(children.size());
   for (const ChildRule& child : children) names.push_back(child.element->name);
   return names;
 }

@@ -1,8 +1,8 @@
 #include "server/parsing/sdf/element.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/schema/value_text.hpp"
@@ -39,7 +39,8 @@ Eigen::Vector3d vector_in(const std::string& text, const ValueRule& rule) {
 }
 
 const ValueRule& no_rule() {
-  static const ValueRule none{ValueType::text, "", -INFINITY, INFINITY};
+  static const ValueRule none{ValueType::text, "", -std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::infinity()};
   return none;
 }
 
@@ -88,7 +89,7 @@ Eigen::Vector4d Element::color() const {
   return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
-ValueRule Element::value_rule(std::string_view child) const {
+const ValueRule& Element::value_rule(std::string_view child) const {
   const ElementRule* const rule = rule_ != nullptr ? rule_->child(child) : nullptr;
   return rule != nullptr ? rule->value : no_rule();
 }

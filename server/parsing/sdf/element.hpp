@@ -49,15 +49,15 @@ class Element {
   /// Returns red, green, blue and opacity, from 0 to 1, in single precision as in SDF.
   Eigen::Vector4d color() const;
 
-  /// These return the value of a child, also if it is not written.
-  std::string text(std::string_view child) const;
-  double real(std::string_view child) const;
-  bool flag(std::string_view child) const;
-  Eigen::Vector3d vector(std::string_view child) const;
+  /// These return the value of the child of this name, also if it is not written.
+  std::string text(std::string_view name) const;
+  double real(std::string_view name) const;
+  bool flag(std::string_view name) const;
+  Eigen::Vector3d vector(std::string_view name) const;
 
  private:
   friend class ElementTree;
-  ValueRule value_rule(std::string_view child) const;
+  const ValueRule& value_rule(std::string_view child) const;
 
   const XmlNode& node_;
   const ElementRule* rule_;

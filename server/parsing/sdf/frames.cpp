@@ -98,27 +98,27 @@ std::optional<Pose> Frames::pose(const Element& posed, const std::string& in) co
   const std::string target = in.empty() ? around : in;
   const std::string written_in_name = relative_to(posed);
   const Element* const pose = posed.child("pose");
-  const std::optional<Pose> written = pose != nullptr ? written_pose(pose->node()) : Pose{};
+  std::optional<Pose> written = pose != nullptr ? written_pose(pose->node()) : Pose{};
   if (!written) return std::nullopt;
   const bool is_placed = posed.name() == "model" && !posed.attribute("placement_frame").empty();
   if (in.empty() && written_in_name.empty() && !is_placed && posed.name() != "joint" && posed.name() != "frame")
     return written;
   std::optional<Pose> X = has_frame(posed) ? pose_at({this, &posed}) : std::nullopt;
   if (!has_frame(posed)) {
-    const std::optional<Pose> X_from = pose_of(written_in_name.empty() ? around : written_in_name);
-    if (X_from) X = *X_from * *written;
+    const std::optional<Pose> from_pose = pose_of(written_in_name.empty() ? around : written_in_name);
+    if (from_pose) X = *from_pose * *written;
   }
   if (!X || target == own_frame) return X;
-  const std::optional<Pose> X_in = pose_of(target);
-  return X_in ? std::optional(X_in->inverse() * *X) : std::nullopt;
+  const std::optional<Pose> in_pose = pose_of(target);
+  return in_pose ? std::optional(in_pose->inverse() * *X) : std::nullopt;
 }
 
 std::optional<Eigen::Vector3d> Frames::direction(const Eigen::Vector3d& vector, const std::string& from,
                                                  const std::string& in) const {
-  const std::optional<Pose> X_from = pose_of(from);
-  const std::optional<Pose> X_in = pose_of(in);
-  if (!X_from || !X_in) return std::nullopt;
-  return (X_in->inverse() * *X_from).orientation * vector;
+  const std::optional<Pose> from_pose = pose_of(from);
+  const std::optional<Pose> in_pose = pose_of(in);
+  if (!from_pose || !in_pose) return std::nullopt;
+  return (in_pose->inverse() * *from_pose).orientation * vector;
 }
 
 std::optional<Frames::Place> Frames::attached_to(const Place& place) const {

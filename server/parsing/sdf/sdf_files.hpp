@@ -68,6 +68,7 @@ class SdfFiles {
   struct Named;
   /// Replaces each include. Returns false if the rest cannot be used.
   bool replace_includes(XmlNode& node, const std::string& path, SdfFile& file);
+  bool replace_in_children_of_world(XmlNode& world, const std::string& path, SdfFile& file);
   /// Returns the replacement of an include; nothing if there is none.
   std::optional<Found> follow(const XmlNode& include, const std::string& path, SdfFile& file);
   /// Renames an include in a world from another source if another model has its name.

@@ -45,6 +45,12 @@ void move_joints(HoldingJoints& holding, const std::string& model, std::string_v
   holding.erase(begin, end);
 }
 
+void report_lost_models(const HoldingJoints& holding, const std::string& path, std::vector<Problem>& problems) {
+  for (const auto& [model, joint] : holding)
+    problems.push_back({joint.file->shown, joint.line, path_below(path, joint),
+                        "the world has no model '" + model + "' that the joint could hold"});
+}
+
 // Returns the number of models and frames before the next child.
 std::size_t place_after(const std::vector<XmlNode>& children) {
   return static_cast<std::size_t>(std::ranges::count_if(
@@ -80,48 +86,62 @@ struct SdfFiles::Found {
 };
 
 bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile& file) {
-  const bool is_world = node.name == "world";
-  if (is_world && !merge_in_world(node, path, file)) return false;
-  HoldingJoints holding;
-  if (is_world) holding = take_world_joints(node, path, warnings_);
-  Named named;
-  if (is_world) named.collect(node);
-  if (is_world) named.repeated = repeated_names_in(node);
-  std::set<std::string> names = is_world ? names_in(node) : std::set<std::string>{};  // including those of includes
+  if (node.name == "world") return replace_in_children_of_world(node, path, file);
   bool usable = true;
   std::vector<XmlNode> children;
   children.reserve(node.children.size());
   for (XmlNode& child : node.children) {
     const std::string child_path = path_below(path, child);
-    if (child.name != "include" || (!is_world && node.name != "model" && node.name != "sdf")) {
-      if (child.name == "world" || child.name == "model") usable = replace_includes(child, child_path, file) && usable;
-      if (is_world && child.name == "model") move_joints(holding, name_of(child), "joint", child);
-      if (is_world && child.name == "model" && set_apart(child, named, place_after(children), file)) continue;
+    if (child.name == "world" || child.name == "model") usable = replace_includes(child, child_path, file) && usable;
+    if (child.name != "include" || (node.name != "model" && node.name != "sdf")) {
       children.push_back(std::move(child));
       continue;
     }
-    std::optional<Found> found = follow(child, child_path, file);
+    const std::optional<Found> found = follow(child, child_path, file);
     if (!found) continue;
-    if (is_world && file.is_foreign && names.contains(found->name)) rename_include(child, child_path, names, *found);
-    if (is_world) move_joints(holding, found->name, added_joint, child);
-    if (is_world && !names.insert(found->name).second) {
-      problems_.push_back({file.shown, child.line, "world/include[" + found->name + "]",
-                           "another model has the name '" + found->name + "'"});
-    } else if (is_world) {
-      if (!replace_in_world(child, child_path, *found, named, children, file)) return false;
-    } else if (!fits(child, child_path, found->file, file)) {
-      return false;
-    } else if (node.name == "sdf") {
+    if (!fits(child, child_path, found->file, file)) return false;
+    if (node.name == "sdf")
       children.push_back(as_included(found->model, child));
-    } else {
+    else
       replace_in_model(child, *found, children);
-    }
   }
   node.children = std::move(children);
-  for (const auto& [model, joint] : holding)
-    if (file.complete)
-      problems_.push_back({joint.file->shown, joint.line, path_below(path, joint),
-                           "the world has no model '" + model + "' that the joint could hold"});
+  return usable;
+}
+
+bool SdfFiles::replace_in_children_of_world(XmlNode& world, const std::string& path, SdfFile& file) {
+  if (!merge_in_world(world, path, file)) return false;
+  HoldingJoints holding = take_world_joints(world, path, warnings_);
+  Named named;
+  named.collect(world);
+  named.repeated = repeated_names_in(world);
+  std::set<std::string> names = names_in(world);  // including those of includes
+  bool usable = true;
+  std::vector<XmlNode> children;
+  children.reserve(world.children.size());
+  for (XmlNode& child : world.children) {
+    const std::string child_path = path_below(path, child);
+    if (child.name == "include") {
+      std::optional<Found> found = follow(child, child_path, file);
+      if (!found) continue;
+      if (file.is_foreign && names.contains(found->name)) rename_include(child, child_path, names, *found);
+      move_joints(holding, found->name, added_joint, child);
+      if (!names.insert(found->name).second)
+        problems_.push_back({file.shown, child.line, "world/include[" + found->name + "]",
+                             "another model has the name '" + found->name + "'"});
+      else if (!replace_in_world(child, child_path, *found, named, children, file))
+        return false;
+      continue;
+    }
+    if (child.name == "model") {
+      usable = replace_includes(child, child_path, file) && usable;
+      move_joints(holding, name_of(child), "joint", child);
+      if (set_apart(child, named, place_after(children), file)) continue;
+    }
+    children.push_back(std::move(child));
+  }
+  world.children = std::move(children);
+  if (file.complete) report_lost_models(holding, path, problems_);
   return usable;
 }
 

@@ -37,6 +37,10 @@ class UrdfConverter {
   XmlNode axis_of(const XmlNode& joint) const;
   XmlNode link_of(const UrdfLink& link) const;
   void add_collisions_and_visuals(const UrdfLink& link, XmlNode& node) const;
+  /// Adds what <gazebo> blocks of any of the links, and materials and surfaces, say of a collision or visual of
+  /// `owner`.
+  void complete_part(const std::vector<const UrdfLink*>& links, const UrdfLink& owner, const XmlNode& source,
+                     GazeboTarget target, XmlNode& part) const;
   void add_blocks(const UrdfLink& link, XmlNode& node) const;
   /// Returns an element of SDF in a <gazebo> block for use in a link that others are merged with.
   XmlNode adjusted(XmlNode element) const;
@@ -167,7 +171,7 @@ XmlNode UrdfConverter::axis_of(const XmlNode& joint) const {
   XmlNode axis = element_at(direction != nullptr ? *direction : joint, "axis");
   const std::string xyz = direction != nullptr ? value_of(*direction, "xyz") : "";
   axis.children.push_back(element_at(axis, "xyz", xyz.empty() ? "1 0 0" : xyz));
-  const auto set = [&](const std::string& name, const XmlNode& source, std::string text) {
+  const auto set = [&](const std::string& name, const XmlNode& source, const std::string& text) {
     set_at(axis, name, text.empty() ? "0" : text, source);
   };
   if (const XmlNode* const limit = joint.child("limit")) {
@@ -209,16 +213,20 @@ void UrdfConverter::add_collisions_and_visuals(const UrdfLink& link, XmlNode& no
     for (const UrdfLink* const owner : link.parts())
       for (const XmlNode& source : owner->node->children) {
         if (source.name != (target == GazeboTarget::collision ? "collision" : "visual")) continue;
-        XmlNode& part = node.children.emplace_back(part_of(*owner, source, count++));
-        for (const UrdfLink* const named : referred)
-          if (belongs_to(*named, part))
-            for (const XmlNode* const block : tree_.blocks(named->name)) set_gazebo_properties(*block, target, part);
-        if (target == GazeboTarget::collision)
-          add_surface(*owner, part);
-        else
-          add_material(robot_, source, part);
+        complete_part(referred, *owner, source, target, node.children.emplace_back(part_of(*owner, source, count++)));
       }
   }
+}
+
+void UrdfConverter::complete_part(const std::vector<const UrdfLink*>& links, const UrdfLink& owner,
+                                  const XmlNode& source, GazeboTarget target, XmlNode& part) const {
+  for (const UrdfLink* const named : links)
+    if (belongs_to(*named, part))
+      for (const XmlNode* const block : tree_.blocks(named->name)) set_gazebo_properties(*block, target, part);
+  if (target == GazeboTarget::collision)
+    add_surface(owner, part);
+  else
+    add_material(robot_, source, part);
 }
 
 void UrdfConverter::add_blocks(const UrdfLink& link, XmlNode& node) const {

@@ -10,6 +10,7 @@
 #include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/files/xacro.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
+#include "server/parsing/sdf/missing_effects.hpp"
 #include "server/parsing/sdf/repair/mend_sdf.hpp"
 #include "server/parsing/sdf/repair/newer_sdf.hpp"
 #include "server/parsing/sdf/repair/older_sdf.hpp"
@@ -47,6 +48,7 @@ bool SourceReader::read(SdfFile& file, bool is_included) {
   set_file(*source, &file);
   file.tree = *std::move(source);
   if (!convert(file)) return false;
+  tell_of_missing_effects(file.tree, warnings_);
   if (file.is_foreign) make_readable(file, is_included);
   warn_of_repeated(file.tree, ElementSchema::root(), "");
   name_terrains(file.tree);

@@ -25,7 +25,8 @@ bool is_bullets_beside_ode(const Element* element) {
   constexpr std::string_view names[] = {"friction", "friction2", "fdir1", "kp", "kd"};
   const Element* const parent = element->parent();
   return parent && parent->name() == "bullet" && parent->parent()->child("ode") &&
-         std::ranges::find(names, element->name()) != std::end(names) && !is_standard(element->rule()->value, element->text());
+         std::ranges::find(names, element->name()) != std::end(names) &&
+         !is_standard(element->rule()->value, element->text());
 }
 
 }  // namespace

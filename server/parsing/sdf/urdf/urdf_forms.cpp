@@ -47,7 +47,8 @@ const std::vector<UrdfForm>& urdf_forms() {
       {"joint", "calibration", {{"rising", 1}, {"falling", 1}, {"reference_position", 1}}, false},
       {"joint",
        "safety_controller",
-       {{"soft_lower_limit", 1}, {"soft_upper_limit", 1}, {"k_position", 1}, {"k_velocity", 1}}, false},
+       {{"soft_lower_limit", 1}, {"soft_upper_limit", 1}, {"k_position", 1}, {"k_velocity", 1}},
+       false},
   };
   return all;
 }

@@ -95,7 +95,8 @@ class SdfSections {
   std::string text() {
     add(parsing::sdf_rule());
     for (std::size_t next = 0; next < found_.size(); ++next) write(*found_[next]);
-    return fmt::format("{}\n# Elements of SDFormat\n{}{}", made_from("server/parsing/sdf/schema"), sdf_introduction, text_);
+    return fmt::format("{}\n# Elements of SDFormat\n{}{}", made_from("server/parsing/sdf/schema"), sdf_introduction,
+                       text_);
   }
 
  private:
@@ -109,8 +110,8 @@ class SdfSections {
   void write_below(const ElementRule& rule, const std::string& path) {
     for (const AttributeRule& attribute : rule.attributes)
       text_ += bullet_of(fmt::format("`{}@{}`{}{}{}", path, attribute.name, value_text(attribute.value),
-                                   attribute.is_required ? " · required" : "",
-                                   effect_text(attribute.effect, attribute.remark)));
+                                     attribute.is_required ? " · required" : "",
+                                     effect_text(attribute.effect, attribute.remark)));
     if (rule.takes_anything && rule.children.empty()) text_ += bullet_of("any other elements");
     for (const ChildRule& child : rule.children) write_child(child, path);
   }
@@ -121,8 +122,8 @@ class SdfSections {
     const bool has_own_section = is_followed && rule.is_shared;
     const std::string shown = has_own_section ? fmt::format("[{}](#{})", name, rule.name) : name;
     const bool has_more = !is_followed && !(rule.children.empty() && rule.attributes.empty());
-    text_ += bullet_of(shown + (has_own_section ? "" : value_text(rule.value)) + (has_more ? " and everything in it" : "") +
-                     effect_text(child.effect, child.remark));
+    text_ += bullet_of(shown + (has_own_section ? "" : value_text(rule.value)) +
+                       (has_more ? " and everything in it" : "") + effect_text(child.effect, child.remark));
     if (!is_followed) return;
     if (has_own_section)
       add(rule);
@@ -135,10 +136,10 @@ class SdfSections {
 };
 
 std::string value_text(const UrdfAttribute& attribute) {
-  const std::string kind = attribute.numbers == 0   ? "text"
-                           : attribute.numbers == 1 ? (attribute.positive ? "number > 0" : "number")
-                                                    : fmt::format("{} numbers{}", attribute.numbers,
-                                                                  attribute.positive ? " > 0" : "");
+  const std::string kind = attribute.numbers == 0 ? "text"
+                           : attribute.numbers == 1
+                               ? (attribute.positive ? "number > 0" : "number")
+                               : fmt::format("{} numbers{}", attribute.numbers, attribute.positive ? " > 0" : "");
   return kind + (attribute.required ? " · required" : "");
 }
 
@@ -167,8 +168,9 @@ std::string urdf_elements() {
     for (const UrdfAttribute& attribute : form.attributes)
       text += bullet_of(fmt::format("`{}@{}` · {}", form.name, attribute.name, value_text(attribute)));
   }
-  text += "\n## In `<gazebo>`\n\nElements that set an [element of SDFormat](sdf-elements.md). All others are added to the "
-          "link or the model.\n\n";
+  text +=
+      "\n## In `<gazebo>`\n\nElements that set an [element of SDFormat](sdf-elements.md). All others are added to the "
+      "link or the model.\n\n";
   for (const parsing::GazeboProperty& property : parsing::gazebo_properties())
     if (!property.path.empty())
       text += bullet_of(fmt::format("`{}` sets `{}/{}`", property.name, name_of(property.target), property.path));

@@ -1,4 +1,4 @@
-#include "server/parsing/sdf/missing_effects.hpp"
+#include "server/parsing/sdf/schema/missing_effects.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -107,7 +107,7 @@ joint * @name! text @type! text
       velocity ? real "inf"
       stiffness ? real "1e8"
       dissipation ? real "1.0"
-    [mimic] ?
+    [mimic] ? !"a warning; only <axis> can have a <mimic>"
   physics ? x
     simbody ?
       must_be_loop_joint ? flag "false"
@@ -129,7 +129,7 @@ joint * @name! text @type! text
     provide_feedback ? flag "false"
   [pose] ?
   [sensor] *
-mimic ? @joint! text @axis text "axis"
+mimic ? @joint! text @axis text "axis" !"`axis2` causes a warning, and the <mimic> is ignored"
   multiplier 1 real "1.0"
   offset 1 real "0"
   reference 1 real "0"
@@ -137,11 +137,11 @@ collision * @name! text
   laser_retro ? real "0" x"; lidars measure no intensity"
   max_contacts ? integer "10" ~
   density ? real "1000.0"
-  auto_inertia_params ? ~
+  auto_inertia_params ? -
   [pose] ?
   [geometry] 1
   [surface] ?
-visual * @name! text
+visual * @name! text -
   cast_shadows ? flag "true" -
   laser_retro ? real "0.0" x"; lidars measure no intensity"
   transparency ? real "0.0"
@@ -221,7 +221,7 @@ surface ?
   friction ?
     torsional ?
       coefficient ? real >=0 "1.0"
-      use_patch_radius ? flag "true"
+      use_patch_radius ? flag "true" !"`false` causes a warning, and the friction is 0; set <patch_radius>"
       patch_radius ? real >=0 "0"
       surface_radius ? real >=0 "0.0" x
       ode ? x

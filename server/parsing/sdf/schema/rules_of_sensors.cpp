@@ -4,7 +4,7 @@ namespace cohort::parsing {
 
 const char* const rules_of_sensors = R"(
 sensor ? @name! text @type! text
-  always_on ? flag "false"
+  always_on ? flag "false" -
   update_rate ? real "0"
   visualize ? flag "false" -
   topic ? text -

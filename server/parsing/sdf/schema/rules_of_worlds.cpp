@@ -34,9 +34,9 @@ world * @name! text
 include * @merge flag "false"
   uri 1 text
   name ? text
-  namespace ? text x"; topics have the name of the robot"
+  namespace ? text !"a warning; topics have the name of the robot"
   static ? flag "false"
-  model_state ? ... x
+  model_state ? ... !"an error"
   [pose] ?
   [plugin] *
   placement_frame ? text
@@ -79,7 +79,7 @@ gui ? @fullscreen flag "false"
     [pose] ?
 light * @name! text @type! text "point"
   cast_shadows ? flag "false" -
-  light_on ? flag "true"
+  light_on ? flag "true" x"; set <intensity> to 0 for a light that is off"
   visualize ? flag "true" -
   intensity ? real "1"
   [pose] ?

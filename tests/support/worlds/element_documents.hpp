@@ -67,16 +67,15 @@ inline std::string scanner(const std::string& name) {
                           "<noise><type>gaussian</type><mean>0.1</mean><stddev>0.1</stddev></noise></" +
                           name + ">");
 }
-inline std::string noisy(const std::string& type, const std::string& name) { return sensor(type, "<" + name + "/>"); }
+inline std::string bare_sensor(const std::string& type) { return sensor(type, "<" + type + "/>"); }
 
 /// The content of a world with an element, for the parts below it. The longest path counts; the element is the first of
 /// its name.
 inline const Texts& bases() {
-  static const std::string three = link("a") + link("b", "") + link("c", "");
-  static const std::string first = turning("j", "revolute", "a", "b", axis("axis", "0 0 1"));
-  static const std::string paint = "<material><diffuse>1 0 0 1</diffuse></material>";
-  static const std::string image = "<pbr><metal><albedo_map>wood.png</albedo_map></metal></pbr>";
-  static const std::string visual = named("visual", "v", "<geometry><box/></geometry>" + paint);
+  static const std::string three = link("a") + link("b") + link("c");
+  static const std::string revolute = turning("j", "revolute", "a", "b", axis("axis", "0 0 1"));
+  static const std::string visual = model(
+      link("a", named("visual", "v", "<geometry><box/></geometry><material><diffuse>1 0 0 1</diffuse></material>")));
   static const std::string screw = model(three + turning("j", "screw", "a", "b", axis("axis", "0 0 1")));
   static const std::string box = model(link("a", shape("<box><size>1 1 1</size></box>")));
   static const std::string mesh = "<mesh><uri>parts.obj</uri>";
@@ -95,14 +94,14 @@ inline const Texts& bases() {
       {"link", box},
       {"inertial", box},
       {"inertial/density", model(named("link", "a", "<inertial auto=\"true\"/>" + shape("<box/>")))},
-      {"joint", model(three + first)},
+      {"joint", model(three + revolute)},
       {"joint/axis2",
        model(three + turning("j", "universal", "a", "b", axis("axis", "1 0 0") + axis("axis2", "0 1 0")))},
       {"joint/gearbox_ratio",
        model(three +
              turning("g", "gearbox", "b", "c",
                      "<gearbox_reference_body>a</gearbox_reference_body>" + axis("axis", "0 0 1")) +
-             first + turning("k", "revolute", "a", "c", axis("axis", "0 0 1")))},
+             revolute + turning("k", "revolute", "a", "c", axis("axis", "0 0 1")))},
       {"joint/thread_pitch", screw},
       {"joint/screw_thread_pitch", screw},
       {"mimic", model(three + link("d") +
@@ -110,11 +109,11 @@ inline const Texts& bases() {
                               axis("axis", "0 0 1",
                                    "<mimic joint=\"j\"><multiplier>2</multiplier><offset>1</offset>"
                                    "<reference>1</reference></mimic>")) +
-                      first + turning("k", "revolute", "a", "c", axis("axis", "0 0 1")))},
+                      revolute + turning("k", "revolute", "a", "c", axis("axis", "0 0 1")))},
       {"collision", box},
       {"collision/density", model(named("link", "a", "<inertial auto=\"true\"/>" + shape("<box/>")))},
-      {"visual", model(link("a", visual))},
-      {"material", model(link("a", visual))},
+      {"visual", visual},
+      {"material", visual},
       {"geometry", box},
       {"box", box},
       {"sphere", solid("<sphere/>")},
@@ -150,24 +149,24 @@ inline const Texts& bases() {
               "<bias_mean>1</bias_mean><bias_stddev>1</bias_stddev><dynamic_bias_stddev>1</dynamic_bias_stddev>"
               "<dynamic_bias_correlation_time>1</dynamic_bias_correlation_time><precision>1</precision></noise>"
               "</vertical_position></altimeter>")},
-      {"air_pressure", noisy("air_pressure", "air_pressure")},
-      {"altimeter", noisy("altimeter", "altimeter")},
+      {"air_pressure", bare_sensor("air_pressure")},
+      {"altimeter", bare_sensor("altimeter")},
       {"contact", sensor("contact", "<contact><collision>c</collision></contact>")},
       {"force_torque",
        model(link("a") + link("b") +
              turning("j", "revolute", "a", "b",
                      axis("axis", "0 0 1") +
                          named("sensor", "s", "<pose>1 0 0 1 0 0</pose><force_torque/>", " type=\"force_torque\"")))},
-      {"gps", noisy("gps", "gps")},
-      {"imu", noisy("imu", "imu")},
+      {"gps", bare_sensor("gps")},
+      {"imu", bare_sensor("imu")},
       {"imu/orientation_reference_frame/custom_rpy",
        sensor("imu",
               "<imu><orientation_reference_frame><custom_rpy>1 0 0</custom_rpy></orientation_reference_frame>"
               "</imu>")},
       {"lidar", scanner("lidar")},
-      {"logical_camera", noisy("logical_camera", "logical_camera")},
-      {"magnetometer", noisy("magnetometer", "magnetometer")},
-      {"navsat", noisy("navsat", "navsat")},
+      {"logical_camera", bare_sensor("logical_camera")},
+      {"magnetometer", bare_sensor("magnetometer")},
+      {"navsat", bare_sensor("navsat")},
       {"ray", scanner("ray")},
   };
   return all;

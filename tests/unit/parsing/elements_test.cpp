@@ -245,6 +245,14 @@ TEST_P(Elements, HaveTheEffectsThatTheRulesName) {
     if (!exceptions().contains(part.path)) check(part);
 }
 
+TEST(ElementTables, NameElementsThatExist) {
+  std::vector<Part> parts;
+  for (const auto& [name, rule] : definitions()) add_parts(*rule, name, parts);
+  for (const Texts* const table : {&values(), &exceptions()})
+    for (const auto& [path, text] : *table)
+      EXPECT_TRUE(std::ranges::find(parts, path, &Part::path) != parts.end()) << path;
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, Elements, ::testing::ValuesIn(names_of_definitions()),
                          [](const auto& each) { return each.param; });
 

@@ -84,9 +84,9 @@ void TreeChecker::check_children(XmlNode& node, const ElementRule& rule, const s
   }
   // Other required elements have standard values.
   if (node.name == "joint" && value_of(node, "type") != "ball")
-    for (const auto& [child, presence] : rule.children)
-      if (presence == Presence::once && node.child(child->name) == nullptr)
-        problem(node, path, "missing: <" + child->name + ">");
+    for (const ChildRule& child : rule.children)
+      if (child.presence == Presence::once && node.child(child.element->name) == nullptr)
+        problem(node, path, "missing: <" + child.element->name + ">");
 }
 
 void TreeChecker::check(XmlNode& node, const ElementRule& rule, const std::string& path) {

@@ -16,6 +16,7 @@
 #include "server/parsing/sdf/repair/pass_over_unknown.hpp"
 #include "server/parsing/sdf/repair/scoped_names.hpp"
 #include "server/parsing/sdf/repair/what_is_seen.hpp"
+#include "server/parsing/sdf/schema/missing_effects.hpp"
 #include "server/parsing/sdf/schema/yaml_sdf.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 #include "server/parsing/sdf/urdf/urdf_file.hpp"
@@ -47,6 +48,7 @@ bool SourceReader::read(SdfFile& file, bool is_included) {
   set_file(*source, &file);
   file.tree = *std::move(source);
   if (!convert(file)) return false;
+  tell_of_missing_effects(file.tree, warnings_);
   if (file.is_foreign) make_readable(file, is_included);
   warn_of_repeated(file.tree, ElementSchema::root(), "");
   name_terrains(file.tree);

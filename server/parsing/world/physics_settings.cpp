@@ -27,10 +27,6 @@ std::optional<std::chrono::nanoseconds> read_step(const Element& world, const Sd
   const auto chosen =
       std::ranges::find_if(all, [](const Element* each) { return is_true(each->attribute("default")); });
   const Element* const physics = chosen == all.end() ? all.front() : *chosen;
-  if (const std::string engine = physics->attribute("type");
-      physics->has_attribute("type") && engine != "bullet" && engine != "ignored")
-    report.warning(physics, "the engine '" + engine +
-                                "' is not supported; Cohort uses Bullet's rigid bodies with its own solvers");
   const Element* const step = physics->child("max_step_size");
   if (step == nullptr) return std::nullopt;
   constexpr double nanoseconds = 1e9;

@@ -3,7 +3,7 @@
 namespace cohort::parsing {
 
 const char* const rules_of_models = R"(
-model * @name! text @namespace text @canonical_link text @placement_frame text
+model * @name! text @namespace text x"; topics have the name of the robot" @canonical_link text @placement_frame text
   static ? flag "false"
   self_collide ? flag "false"
   allow_auto_disable ? flag "true"
@@ -12,18 +12,18 @@ model * @name! text @namespace text @canonical_link text @placement_frame text
   [link] *
   [joint] *
   [plugin] *
-  [gripper] *
+  [gripper] * x
   [include] *
   [model] *
-  model_state ? ...
+  model_state ? ... x
   enable_wind ? flag "false"
 link * @name! text
   gravity ? flag "true"
   enable_wind ? flag "false"
-  self_collide ? flag "false"
+  self_collide ? flag "false" x"; <self_collide> of the model applies to all of its links"
   kinematic ? flag "false"
-  must_be_base_link ? flag "false"
-  velocity_decay ?
+  must_be_base_link ? flag "false" ~
+  velocity_decay ? x
     linear ? real "0.0"
     angular ? real "0.0"
   [pose] ?
@@ -31,16 +31,16 @@ link * @name! text
   [collision] *
   [visual] *
   [sensor] *
-  [projector] *
-  [audio_sink] *
-  [audio_source] *
-  [battery] *
+  [projector] * x
+  [audio_sink] * x
+  [audio_source] * x
+  [battery] * x
   [light] *
-  [particle_emitter] *
+  [particle_emitter] * ~
 inertial ? @auto flag "false"
   mass ? real "1.0"
   density ? real "1000.0"
-  auto_inertia_params ?
+  auto_inertia_params ? ~
   pose ? pose "0 0 0 0 0 0" @rotation_format text "euler_rpy" @degrees flag "false"
   inertia ?
     ixx 1 real "1.0"
@@ -49,7 +49,7 @@ inertial ? @auto flag "false"
     iyy 1 real "1.0"
     iyz 1 real "0.0"
     izz 1 real "1.0"
-  fluid_added_mass ?
+  fluid_added_mass ? x
     xx ? real "0.0"
     xy ? real "0.0"
     xz ? real "0.0"
@@ -107,8 +107,8 @@ joint * @name! text @type! text
       velocity ? real "inf"
       stiffness ? real "1e8"
       dissipation ? real "1.0"
-    [mimic] ?
-  physics ?
+    [mimic] ? !"a warning; only <axis> can have a <mimic>"
+  physics ? x
     simbody ?
       must_be_loop_joint ? flag "false"
     ode ?
@@ -129,29 +129,29 @@ joint * @name! text @type! text
     provide_feedback ? flag "false"
   [pose] ?
   [sensor] *
-mimic ? @joint! text @axis text "axis"
+mimic ? @joint! text @axis text "axis" !"`axis2` causes a warning, and the <mimic> is ignored"
   multiplier 1 real "1.0"
   offset 1 real "0"
   reference 1 real "0"
 collision * @name! text
-  laser_retro ? real "0"
-  max_contacts ? integer "10"
+  laser_retro ? real "0" x"; lidars measure no intensity"
+  max_contacts ? integer "10" ~
   density ? real "1000.0"
-  auto_inertia_params ?
+  auto_inertia_params ? -
   [pose] ?
   [geometry] 1
   [surface] ?
-visual * @name! text
-  cast_shadows ? flag "true"
-  laser_retro ? real "0.0"
+visual * @name! text -
+  cast_shadows ? flag "true" -
+  laser_retro ? real "0.0" x"; lidars measure no intensity"
   transparency ? real "0.0"
-  visibility_flags ? count "4294967295"
-  meta ?
+  visibility_flags ? count "4294967295" -
+  meta ? -
     layer ? integer "0"
   [pose] ?
   [material] ?
   [geometry] 1
-  [plugin] *
+  [plugin] * -
 geometry 1
   empty ?
   [box] ?
@@ -160,7 +160,7 @@ geometry 1
   [cylinder] ?
   [ellipsoid] ?
   [heightmap] ?
-  [image] ?
+  [image] ? !"a collision with it is an error, and is left out of third-party static models"
   [mesh] ?
   [plane] ?
   [polyline] *
@@ -182,9 +182,9 @@ ellipsoid ?
   radii 1 vector3 "1 1 1"
 plane ?
   normal 1 vector3 "0 0 1"
-  size 1 vector2 "1 1"
-mesh ? @optimization text
-  convex_decomposition ?
+  size 1 vector2 "1 1" -
+mesh ? @optimization text x"; a mesh that moves is replaced by its convex hull"
+  convex_decomposition ? x"; a mesh that moves is replaced by its convex hull"
     max_convex_hulls ? count "16"
     voxel_resolution ? count "200000"
   uri 1 text
@@ -196,15 +196,15 @@ heightmap ?
   uri 1 text
   size ? vector3 "1 1 1"
   pos ? vector3 "0 0 0"
-  texture *
+  texture * -
     size 1 real "10"
     diffuse 1 text
     normal 1 text
-  blend *
+  blend * -
     min_height 1 real "0"
     fade_dist 1 real "0"
-  use_terrain_paging ? flag "false"
-  sampling ? count "1"
+  use_terrain_paging ? flag "false" -
+  sampling ? count "1" ~
 image ?
   uri 1 text
   scale 1 real "1"
@@ -221,44 +221,44 @@ surface ?
   friction ?
     torsional ?
       coefficient ? real >=0 "1.0"
-      use_patch_radius ? flag "true"
+      use_patch_radius ? flag "true" !"`false` causes a warning, and the friction is 0; set <patch_radius>"
       patch_radius ? real >=0 "0"
-      surface_radius ? real >=0 "0.0"
-      ode ?
+      surface_radius ? real >=0 "0.0" x
+      ode ? x
         slip ? real "0.0"
     ode ?
       mu ? real >=0 "1"
       mu2 ? real >=0 "1"
       fdir1 ? vector3 "0 0 0"
-      slip1 ? real "0.0"
-      slip2 ? real "0.0"
+      slip1 ? real "0.0" x
+      slip2 ? real "0.0" x
     bullet ?
       friction ? real >=0 "1"
       friction2 ? real >=0 "1"
       fdir1 ? vector3 "0 0 0"
       rolling_friction ? real "1"
   contact ?
-    collide_without_contact ? flag "false"
-    collide_without_contact_bitmask ? count "1"
+    collide_without_contact ? flag "false" x
+    collide_without_contact_bitmask ? count "1" x
     collide_bitmask ? count "65535"
     category_bitmask ? count "65535"
-    poissons_ratio ? real "0.3"
-    elastic_modulus ? real "-1"
+    poissons_ratio ? real "0.3" x
+    elastic_modulus ? real "-1" x"; <kp> and <kd> define soft contacts"
     ode ?
-      soft_cfm ? real "0"
-      soft_erp ? real "0.2"
+      soft_cfm ? real "0" x"; <kp> and <kd> define soft contacts"
+      soft_erp ? real "0.2" x"; <kp> and <kd> define soft contacts"
       kp ? real "1000000000000.0"
       kd ? real "1.0"
-      max_vel ? real "0.01"
-      min_depth ? real "0"
+      max_vel ? real "0.01" x
+      min_depth ? real "0" x
     bullet ?
-      soft_cfm ? real "0"
-      soft_erp ? real "0.2"
+      soft_cfm ? real "0" x"; <kp> and <kd> define soft contacts"
+      soft_erp ? real "0.2" x"; <kp> and <kd> define soft contacts"
       kp ? real "1000000000000.0"
       kd ? real "1.0"
-      split_impulse 1 flag "true"
-      split_impulse_penetration_threshold 1 real "-0.01"
-  soft_contact ?
+      split_impulse 1 flag "true" x
+      split_impulse_penetration_threshold 1 real "-0.01" x
+  soft_contact ? x
     dart ?
       bone_attachment 1 real "100.0"
       stiffness 1 real "100.0"

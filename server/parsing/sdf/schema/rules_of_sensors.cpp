@@ -4,18 +4,18 @@ namespace cohort::parsing {
 
 const char* const rules_of_sensors = R"(
 sensor ? @name! text @type! text
-  always_on ? flag "false"
+  always_on ? flag "false" -
   update_rate ? real "0"
-  visualize ? flag "false"
-  topic ? text
-  enable_metrics ? flag "false"
-  frame_id ? text
+  visualize ? flag "false" -
+  topic ? text -
+  enable_metrics ? flag "false" -
+  frame_id ? text x
   [pose] ?
   [plugin] *
   [air_pressure] ?
-  [air_speed] ?
+  [air_speed] ? !"a sensor of this type is left out, with a warning"
   [altimeter] ?
-  [camera] ?
+  [camera] ? !"a sensor of this type is left out, with a warning"
   [contact] ?
   [force_torque] ?
   [gps] ?
@@ -25,10 +25,10 @@ sensor ? @name! text @type! text
   [magnetometer] ?
   [navsat] ?
   [ray] ?
-  [rfidtag] ?
-  [rfid] ?
-  [sonar] ?
-  [transceiver] ?
+  [rfidtag] ? !"a sensor of this type is left out, with a warning"
+  [rfid] ? !"a sensor of this type is left out, with a warning"
+  [sonar] ? !"a sensor of this type is left out, with a warning"
+  [transceiver] ? !"a sensor of this type is left out, with a warning"
 noise 1 @type! text "none"
   mean ? real "0.0"
   stddev ? real >=0 "0.0"
@@ -106,12 +106,12 @@ camera ? @name text
       p_cy ? real "120"
       tx ? real "0.0"
       ty ? real "0.0"
-  visibility_mask ? count "4294967295"
+  visibility_mask ? count "4294967295" x
   optical_frame_id - text
   [pose] ?
 contact ?
   collision 1 text
-  topic 1 text "__default_topic__"
+  topic 1 text "__default_topic__" -
 force_torque ?
   frame ? text "child"
   measure_direction ? text "child_to_parent"
@@ -144,7 +144,7 @@ imu ?
   orientation_reference_frame ?
     localization 1 text "CUSTOM"
     custom_rpy ? vector3 "0 0 0" @parent_frame text
-    grav_dir_x ? vector3 "1 0 0" @parent_frame text
+    grav_dir_x ? vector3 "1 0 0" x @parent_frame text
   angular_velocity ?
     x ?
       [noise] ?
@@ -175,12 +175,12 @@ lidar ?
   range 1
     min 1 real "0"
     max 1 real "0"
-    resolution ? real "0"
+    resolution ? real "0" -
   noise ?
     type 1 text "gaussian"
     mean ? real "0.0"
     stddev ? real "0.0"
-  visibility_mask ? count "4294967295"
+  visibility_mask ? count "4294967295" x
 logical_camera ?
   near 1 real "0"
   far 1 real "1"
@@ -219,12 +219,12 @@ ray ?
   range 1
     min 1 real "0"
     max 1 real "0"
-    resolution ? real "0"
+    resolution ? real "0" -
   noise ?
     type 1 text "gaussian"
     mean ? real "0.0"
     stddev ? real "0.0"
-  visibility_mask ? count "4294967295"
+  visibility_mask ? count "4294967295" x
 rfidtag ?
 rfid ?
 sonar ?

@@ -6,11 +6,11 @@ const char* const rules_of_worlds = R"(
 sdf 1 @version! text
   [world] *
   [model] ?
-  [actor] ?
+  [actor] ? x
   [light] ?
   [include] *
 world * @name! text
-  audio ?
+  audio ? ~
     device 1 text "default"
   wind ?
     linear_velocity ? vector3 "0 0 0"
@@ -18,25 +18,25 @@ world * @name! text
   gravity 1 vector3 "0 0 -9.8"
   magnetic_field 1 vector3 "5.5645e-6 22.8758e-6 -42.3884e-6"
   [atmosphere] 1
-  [gui] ?
+  [gui] ? -
   [physics] +
-  [scene] 1
+  [scene] 1 -
   [light] *
   [frame] *
   [joint] *
   [model] *
-  [actor] *
+  [actor] * x
   [plugin] *
-  [road] *
-  [spherical_coordinates] ?
-  state * ... @world_name! text
-  [population] *
+  [road] * ~
+  [spherical_coordinates] ? x"; a navsat measures in metres from the origin of the world"
+  state * ... x @world_name! text
+  [population] * x"; use <cohort:population>"
 include * @merge flag "false"
   uri 1 text
   name ? text
-  namespace ? text
+  namespace ? text !"a warning; topics have the name of the robot"
   static ? flag "false"
-  model_state ? ...
+  model_state ? ... !"an error"
   [pose] ?
   [plugin] *
   placement_frame ? text
@@ -78,13 +78,13 @@ gui ? @fullscreen flag "false"
       inherit_yaw ? flag "false"
     [pose] ?
 light * @name! text @type! text "point"
-  cast_shadows ? flag "false"
-  light_on ? flag "true"
-  visualize ? flag "true"
+  cast_shadows ? flag "false" -
+  light_on ? flag "true" x"; set <intensity> to 0 for a light that is off"
+  visualize ? flag "true" -
   intensity ? real "1"
   [pose] ?
   diffuse ? color "1 1 1 1"
-  specular ? color ".1 .1 .1 1"
+  specular ? color ".1 .1 .1 1" -
   attenuation ?
     range 1 real "10"
     linear ? real "1"
@@ -126,16 +126,16 @@ population * @name! text
     step ? vector3 "0.5 0.5 0"
   [pose] ?
   [model] 1
-physics 1 @name text "default_physics" @default flag "false" @type! text "ode"
+physics 1 @name text "default_physics" - @default flag "false" @type! text "ode" -
   max_step_size 1 real "0.001"
-  real_time_factor 1 real "1.0"
-  real_time_update_rate 1 real "1000"
-  max_contacts ? integer "20"
-  dart ?
+  real_time_factor 1 real "1.0" ~
+  real_time_update_rate 1 real "1000" ~
+  max_contacts ? integer "20" ~
+  dart ? ~
     solver 1
       solver_type 1 text "dantzig"
     collision_detector ? text "fcl"
-  simbody ?
+  simbody ? ~
     min_step_size ? real "0.0001"
     accuracy ? real "1e-3"
     max_transient_velocity ? real "0.01"
@@ -149,7 +149,7 @@ physics 1 @name text "default_physics" @default flag "false" @type! text "ode"
       viscous_friction ? real "0.0"
       override_impact_capture_velocity ? real "0.001"
       override_stiction_transition_velocity ? real "0.001"
-  bullet ?
+  bullet ? ~
     solver 1
       type 1 text "sequential_impulse"
       min_step_size ? real "0.0001"
@@ -161,7 +161,7 @@ physics 1 @name text "default_physics" @default flag "false" @type! text "ode"
       contact_surface_layer 1 real "0.001"
       split_impulse 1 flag "true"
       split_impulse_penetration_threshold 1 real "-0.01"
-  ode ?
+  ode ? ~
     solver 1
       type 1 text "quick"
       min_step_size ? real "0.0001"
@@ -177,10 +177,10 @@ physics 1 @name text "default_physics" @default flag "false" @type! text "ode"
       erp 1 real "0.2"
       contact_max_correcting_vel 1 real "100.0"
       contact_surface_layer 1 real "0.001"
-atmosphere 1 @type! text "adiabatic"
-  temperature ? real "288.15"
-  pressure ? real "101325"
-  temperature_gradient ? real "-0.0065"
+atmosphere 1 @type! text "adiabatic" x
+  temperature ? real "288.15" x
+  pressure ? real "101325" x
+  temperature_gradient ? real "-0.0065" x
 road * @name! text
   width 1 real "1.0"
   point + vector3 "0 0 0"
@@ -212,32 +212,32 @@ particle_emitter * @name! text @type! text "point"
   [pose] ?
   [material] ?
 material ?
-  script ?
+  script ? -
     uri + text
     name 1 text
-  shader ? @type! text "pixel"
+  shader ? - @type! text "pixel"
     normal_map ? text
-  render_order ? real "0.0"
-  lighting ? flag "true"
-  ambient ? color "0 0 0 1"
+  render_order ? real "0.0" -
+  lighting ? flag "true" -
+  ambient ? color "0 0 0 1" -
   diffuse ? color "0 0 0 1"
-  specular ? color "0 0 0 1"
-  shininess ? real "0"
-  emissive ? color "0 0 0 1"
-  double_sided ? flag "false"
+  specular ? color "0 0 0 1" -
+  shininess ? real "0" -
+  emissive ? color "0 0 0 1" -
+  double_sided ? flag "false" -
   pbr ?
     metal ?
       albedo_map ? text
-      roughness_map ? text
-      roughness ? text "0.5"
-      metalness_map ? text
-      metalness ? text "0.5"
-      environment_map ? text
-      ambient_occlusion_map ? text
-      normal_map ? text @type text "tangent"
-      emissive_map ? text
-      light_map ? text @uv_set count "0"
-    specular ?
+      roughness_map ? text -
+      roughness ? text "0.5" -
+      metalness_map ? text -
+      metalness ? text "0.5" -
+      environment_map ? text -
+      ambient_occlusion_map ? text -
+      normal_map ? text - @type text "tangent"
+      emissive_map ? text -
+      light_map ? text - @uv_set count "0"
+    specular ? -
       albedo_map ? text
       specular_map ? text
       glossiness_map ? text

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -32,6 +33,24 @@ Presence presence_of(std::string_view word) {
   }
 }
 
+std::optional<Effect> effect_of(std::string_view word) {
+  if (word.size() > 1 && word[1] != '"') return std::nullopt;
+  switch (word.front()) {
+    case '-': return Effect::appearance;
+    case '~': return Effect::none;
+    case 'x': return Effect::missing;
+    case '!': return Effect::told;
+    default: return std::nullopt;
+  }
+}
+
+// Sets the effect and the remark of an element or an attribute.
+template <class Rule>
+void set_effect(std::string_view word, Rule& rule) {
+  rule.effect = effect_of(word).value();
+  if (word.size() > 2) rule.remark = word.substr(2, word.size() - 3);
+}
+
 /// Reads the text of the rules.
 class RuleReader {
  public:
@@ -51,7 +70,7 @@ class RuleReader {
 
   void read(std::string_view text);
   void read_line(std::string_view line, std::size_t level);
-  void read_rest(ElementRule& rule, std::string_view rest);
+  void read_rest(ElementRule& rule, ChildRule& place, std::string_view rest);
 
   std::deque<ElementRule> rules_;
   std::map<std::string, ElementRule*> named_;
@@ -59,11 +78,12 @@ class RuleReader {
   std::vector<ElementRule*> open_;  // the last element of each level
 };
 
-// Removes the first word, or the first text in quotation marks, from `rest`.
+// Removes the first word from `rest`. A word ends at a space that is not between quotation marks.
 std::string_view next_word(std::string_view& rest) {
   rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
-  const bool is_quoted = rest.starts_with('"');
-  const std::size_t end = is_quoted ? rest.find('"', 1) + 1 : std::min(rest.find(' '), rest.size());
+  std::size_t end = 0;
+  for (bool is_quoted = false; end < rest.size() && (is_quoted || rest[end] != ' '); ++end)
+    if (rest[end] == '"') is_quoted = !is_quoted;
   const std::string_view word = rest.substr(0, end);
   rest.remove_prefix(end);
   return word;
@@ -79,37 +99,42 @@ void RuleReader::read(std::string_view text) {
 }
 
 void RuleReader::read_line(std::string_view line, std::size_t level) {
-  if (line.starts_with('@')) return read_rest(*open_.back(), line);
+  ChildRule unplaced{};
+  if (line.starts_with('@')) return read_rest(*open_.back(), unplaced, line);
   open_.resize(level);
   ElementRule* const parent = level == 0 ? nullptr : open_.back();
-  if (line.starts_with('[')) {
-    const std::size_t end = line.find(']');
-    references_.push_back({parent, parent->children.size(), line.substr(1, end - 1)});
-    parent->children.push_back({nullptr, presence_of(line.substr(end + 2))});
+  ChildRule& place = parent != nullptr ? parent->children.emplace_back() : unplaced;
+  std::string_view name = next_word(line);
+  place.presence = presence_of(next_word(line));
+  if (name.starts_with('[')) {
+    name = name.substr(1, name.size() - 2);
+    references_.push_back({parent, parent->children.size() - 1, name});
+    if (!line.empty()) set_effect(next_word(line), place);
     return;
   }
   ElementRule& rule = rules_.emplace_back();
-  rule.name = next_word(line);
-  const Presence presence = presence_of(next_word(line));
-  read_rest(rule, line);
+  rule.name = name;
+  place.element = &rule;
+  read_rest(rule, place, line);
   open_.push_back(&rule);
-  if (parent != nullptr)
-    parent->children.push_back({&rule, presence});
-  else
-    named_.emplace(rule.name, &rule);
+  rule.is_shared = parent == nullptr;
+  if (rule.is_shared) named_.emplace(rule.name, &rule);
 }
 
-void RuleReader::read_rest(ElementRule& rule, std::string_view rest) {
+void RuleReader::read_rest(ElementRule& rule, ChildRule& place, std::string_view rest) {
   ValueRule* value = &rule.value;
+  AttributeRule* attribute = nullptr;
   for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
     if (word == "...") {
       rule.takes_anything = true;
     } else if (word.starts_with('@')) {
       word.remove_prefix(1);
-      AttributeRule& attribute = rule.attributes.emplace_back();
-      attribute.is_required = word.ends_with('!');
-      attribute.name = word.substr(0, word.size() - (attribute.is_required ? 1 : 0));
-      value = &attribute.value;
+      attribute = &rule.attributes.emplace_back();
+      attribute->is_required = word.ends_with('!');
+      attribute->name = word.substr(0, word.size() - (attribute->is_required ? 1 : 0));
+      value = &attribute->value;
+    } else if (effect_of(word)) {
+      attribute != nullptr ? set_effect(word, *attribute) : set_effect(word, place);
     } else if (word.starts_with('"')) {
       value->standard = word.substr(1, word.size() - 2);
     } else if (word.starts_with(">=")) {
@@ -142,9 +167,14 @@ std::size_t count_of_numbers(ValueType type) {
 }
 
 const ElementRule* ElementRule::child(std::string_view child_name) const {
+  const ChildRule* const found = child_rule(child_name);
+  return found == nullptr ? nullptr : found->element;
+}
+
+const ChildRule* ElementRule::child_rule(std::string_view child_name) const {
   const auto found = std::ranges::find(children, child_name,
                                        [](const ChildRule& child) -> std::string_view { return child.element->name; });
-  return found == children.end() ? nullptr : found->element;
+  return found == children.end() ? nullptr : &*found;
 }
 
 const AttributeRule* ElementRule::attribute(std::string_view attribute_name) const {

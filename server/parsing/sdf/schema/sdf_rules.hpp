@@ -21,10 +21,21 @@ struct ValueRule {
   double greatest = std::numeric_limits<double>::infinity();
 };
 
+/// The effect of an element or an attribute that is not at its standard value.
+enum class Effect {
+  full,        ///< as SDF defines it
+  appearance,  ///< on appearance or names in other simulators, none on what is simulated
+  none,        ///< on how other simulators compute or look, none here
+  missing,     ///< on motion or measurements in other simulators, none here
+  told         ///< none; the reader of its parent tells of it
+};
+
 struct AttributeRule {
   std::string name;
   ValueRule value;
   bool is_required = false;
+  Effect effect = Effect::full;
+  std::string remark;  ///< follows the message about a missing effect
 };
 
 struct ElementRule;
@@ -32,6 +43,8 @@ struct ElementRule;
 struct ChildRule {
   const ElementRule* element;
   Presence presence;
+  Effect effect = Effect::full;  ///< also of everything below it, if not `full`
+  std::string remark;            ///< follows the message about a missing effect; says what is told
 };
 
 /// The content that SDF 1.12 allows in an element (http://sdformat.org/spec, version 1.12).
@@ -39,11 +52,13 @@ struct ElementRule {
   std::string name;
   ValueRule value;
   bool takes_anything = false;  ///< as in <plugin>
+  bool is_shared = false;       ///< defined at the left margin, for use in several places
   std::vector<AttributeRule> attributes;
   std::vector<ChildRule> children;
 
   /// Returns the rule of a child; nullptr if SDF knows none of this name here.
   const ElementRule* child(std::string_view child_name) const;
+  const ChildRule* child_rule(std::string_view child_name) const;
   /// Returns the rule of an attribute; nullptr if SDF knows none of this name here.
   const AttributeRule* attribute(std::string_view attribute_name) const;
 };
@@ -56,11 +71,14 @@ std::size_t count_of_numbers(ValueType type);
 
 /// The rules as text, a line for each element, indented below its parent:
 ///
-///     NAME PRESENCE [TYPE [>=LEAST] [<=GREATEST] ["STANDARD"]] [...] [@ATTRIBUTE[!] TYPE ["STANDARD"]]...
+///     NAME PRESENCE [TYPE [>=LEAST] [<=GREATEST] ["STANDARD"]] [...] [EFFECT] [@ATTRIBUTE[!] TYPE ["STANDARD"]
+///         [EFFECT]]...
 ///
 /// PRESENCE is `1`, `?` (at most once), `*` (any number), `+` (at least once) or `-` (deprecated). `...` allows any
 /// children, and `!` marks a required attribute. A line that begins with `@` continues the element above it.
-/// `[NAME] PRESENCE` is the element that is defined at the left margin.
+/// `[NAME] PRESENCE [EFFECT]` is the element that is defined at the left margin. EFFECT is `-`
+/// (appearance), `~` (none), `x` (missing) or `!` (told), with a remark in quotation marks directly after it; `full` is
+/// not written.
 extern const char* const rules_of_worlds;
 extern const char* const rules_of_models;
 extern const char* const rules_of_sensors;

@@ -31,11 +31,10 @@ ElementSchema ElementSchema::child(const std::string& name) const {
     if (extension_ != nullptr) schema.key_ = find_key(*extension_, schema.name_);
     schema.unknown_extension_ = schema.extension_ == nullptr && schema.key_ == nullptr;
   } else if (rule_ != nullptr && !rule_->takes_anything) {
-    for (const auto& [element, presence] : rule_->children)
-      if (element->name == name) {
-        schema.rule_ = element;
-        schema.presence_ = presence;
-      }
+    if (const ChildRule* const child = rule_->child_rule(name)) {
+      schema.rule_ = child->element;
+      schema.presence_ = child->presence;
+    }
   }
   return schema;
 }

@@ -54,6 +54,14 @@ long long leading_whole(std::string_view text) {
 
 bool is_true(std::string_view text) { return text == "1" || lower_case(text) == "true"; }
 
+bool is_standard(const ValueRule& rule, std::string_view text) {
+  if (rule.type == ValueType::flag) return is_true(text) == is_true(rule.standard);
+  return std::ranges::equal(words(text), words(rule.standard), [](std::string_view written, std::string_view standard) {
+    const std::optional<double> number = parse_real(written);
+    return number ? number == parse_real(standard) : written == standard;
+  });
+}
+
 bool allows(const ValueRule& rule, std::string_view text) {
   text = trimmed(text);
   if (rule.type == ValueType::flag) return is_flag(text);

@@ -24,6 +24,9 @@ bool is_true(std::string_view text);
 /// Returns whether SDF allows this text as a value of the rule. For a pose, use `written_pose`.
 bool allows(const ValueRule& rule, std::string_view text);
 
+/// Returns whether a text means the same as the standard value of the rule.
+bool is_standard(const ValueRule& rule, std::string_view text);
+
 /// Returns the pose that a <pose> contains, by its attributes `degrees` and `rotation_format`; the identity if it has
 /// no text, nothing if it is no pose. A quaternion of unit length is taken as it is written, others are normalised.
 /// Angles are roll, pitch and yaw about fixed axes, x first (http://sdformat.org/tutorials?tut=specify_pose).

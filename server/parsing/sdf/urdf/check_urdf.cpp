@@ -79,7 +79,7 @@ void Checker::check_top(const XmlNode& node) {
     warning(node, path, "<transmission> is not supported and is ignored; define motors with cohort: elements");
   } else if (node.name == "gazebo") {
     check_gazebo(node);
-  } else if (node.name != "material" && node.name != "origin") {
+  } else if (form_of("robot", node.name) == nullptr) {
     warning(node, path, "<" + node.name + "> is not supported and is ignored");
   }
 }
@@ -134,9 +134,9 @@ void Checker::check_joint(const XmlNode& joint, const std::string& path) {
   }
   for (const char* const end : {"parent", "child"})
     if (joint.child(end) == nullptr) problem(joint, path, "missing: <" + std::string(end) + " link=\"NAME\"/>");
-  for (const char* const ignored : {"safety_controller", "calibration"})
-    if (const XmlNode* const node = joint.child(ignored))
-      warning(*node, path + "/" + ignored, "<" + std::string(ignored) + "> is not supported and is ignored");
+  for (const XmlNode& child : joint.children)
+    if (const UrdfForm* const form = form_of("joint", child.name); form != nullptr && !form->has_effect)
+      warning(child, path + "/" + child.name, "<" + child.name + "> is not supported and is ignored");
 }
 
 void Checker::check_end(const XmlNode& joint, const std::string& path, const char* end) {

@@ -10,6 +10,12 @@ namespace cohort::parsing {
 
 const std::vector<UrdfForm>& urdf_forms() {
   static const std::vector<UrdfForm> all = {
+      {"robot", "origin", {{"xyz", 3}, {"rpy", 3}}},
+      {"robot", "link", {{"name", 0, true}}},
+      {"robot", "joint", {{"name", 0, true}, {"type", 0, true}}},
+      {"robot", "material", {{"name", 0, true}}},
+      {"robot", "gazebo", {{"reference"}}},
+      {"robot", "transmission", {}, false},
       {"link", "inertial"},
       {"inertial", "origin", {{"xyz", 3}, {"rpy", 3}}},
       {"inertial", "mass", {{"value", 1, true}}},
@@ -17,6 +23,11 @@ const std::vector<UrdfForm>& urdf_forms() {
        "inertia",
        {{"ixx", 1, true}, {"ixy", 1, true}, {"ixz", 1, true}, {"iyy", 1, true}, {"iyz", 1, true}, {"izz", 1, true}}},
       {"link", "visual", {{"name"}}},
+      {"visual", "origin", {{"xyz", 3}, {"rpy", 3}}},
+      {"visual", "geometry"},
+      {"visual", "material", {{"name"}}},
+      {"material", "color", {{"rgba", 4, true}}},
+      {"material", "texture", {{"filename", 0, true}}},
       {"link", "collision", {{"name"}}},
       {"collision", "origin", {{"xyz", 3}, {"rpy", 3}}},
       {"collision", "geometry"},
@@ -33,10 +44,11 @@ const std::vector<UrdfForm>& urdf_forms() {
       {"joint", "limit", {{"lower", 1}, {"upper", 1}, {"effort", 1, true}, {"velocity", 1, true}}},
       {"joint", "dynamics", {{"damping", 1}, {"friction", 1}}},
       {"joint", "mimic", {{"joint", 0, true}, {"multiplier", 1}, {"offset", 1}}},
-      {"joint", "calibration", {{"rising", 1}, {"falling", 1}, {"reference_position", 1}}},
+      {"joint", "calibration", {{"rising", 1}, {"falling", 1}, {"reference_position", 1}}, false},
       {"joint",
        "safety_controller",
-       {{"soft_lower_limit", 1}, {"soft_upper_limit", 1}, {"k_position", 1}, {"k_velocity", 1}}},
+       {{"soft_lower_limit", 1}, {"soft_upper_limit", 1}, {"k_position", 1}, {"k_velocity", 1}},
+       false},
   };
   return all;
 }

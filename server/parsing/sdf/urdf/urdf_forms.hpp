@@ -21,9 +21,10 @@ struct UrdfForm {
   std::string_view parent;
   std::string_view name;
   std::vector<UrdfAttribute> attributes{};
+  bool has_effect = true;  ///< otherwise it is ignored with a warning
 };
 
-/// Returns the elements of links and joints in URDF (http://wiki.ros.org/urdf/XML), except visual ones.
+/// Returns the elements of URDF (http://wiki.ros.org/urdf/XML).
 const std::vector<UrdfForm>& urdf_forms();
 
 /// Returns the form of an element in its parent; nullptr if it is unknown there.

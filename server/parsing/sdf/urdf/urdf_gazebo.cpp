@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <initializer_list>
-#include <span>
 
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
@@ -11,15 +10,31 @@
 namespace cohort::parsing {
 namespace {
 
-enum class GazeboKind { number, flag, inverted_flag, text };
+bool is_one_of(const XmlNode& element, std::initializer_list<std::string_view> values) {
+  std::string value = gazebo_value(element);
+  std::ranges::transform(value, value.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::ranges::find(values, value) != values.end();
+}
 
-/// An element of <gazebo>, and the path of the element of SDF that it sets. Without a path it sets nothing.
-struct GazeboProperty {
-  std::string_view name;
-  GazeboTarget target;
-  GazeboKind kind;
-  std::string_view path;
-};
+std::string sdf_value(const XmlNode& element, GazeboKind kind) {
+  if (kind == GazeboKind::flag) return is_true(element) ? "true" : "false";
+  if (kind == GazeboKind::inverted_flag) return is_one_of(element, {"false", "no", "0"}) ? "true" : "false";
+  return gazebo_value(element);
+}
+
+// Adds the elements that a block has for all collisions or visuals. A <surface> or <material> replaces the whole one.
+void add_content_for(const XmlNode& block, XmlNode& part) {
+  for (const XmlNode& child : block.children) {
+    if (child.name != part.name) continue;
+    for (const XmlNode& added : child.children) {
+      if (added.name == "surface" || added.name == "material")
+        std::erase_if(part.children, [&](const XmlNode& old) { return old.name == added.name; });
+      part.children.push_back(added);
+    }
+  }
+}
+
+}  // namespace
 
 std::span<const GazeboProperty> gazebo_properties() {
   using enum GazeboTarget;
@@ -62,32 +77,6 @@ std::span<const GazeboProperty> gazebo_properties() {
   };
   return all;
 }
-
-bool is_one_of(const XmlNode& element, std::initializer_list<std::string_view> values) {
-  std::string value = gazebo_value(element);
-  std::ranges::transform(value, value.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::ranges::find(values, value) != values.end();
-}
-
-std::string sdf_value(const XmlNode& element, GazeboKind kind) {
-  if (kind == GazeboKind::flag) return is_true(element) ? "true" : "false";
-  if (kind == GazeboKind::inverted_flag) return is_one_of(element, {"false", "no", "0"}) ? "true" : "false";
-  return gazebo_value(element);
-}
-
-// Adds the elements that a block has for all collisions or visuals. A <surface> or <material> replaces the whole one.
-void add_content_for(const XmlNode& block, XmlNode& part) {
-  for (const XmlNode& child : block.children) {
-    if (child.name != part.name) continue;
-    for (const XmlNode& added : child.children) {
-      if (added.name == "surface" || added.name == "material")
-        std::erase_if(part.children, [&](const XmlNode& old) { return old.name == added.name; });
-      part.children.push_back(added);
-    }
-  }
-}
-
-}  // namespace
 
 std::string gazebo_value(const XmlNode& element) {
   const std::string* const value = element.attribute("value");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,19 @@ namespace cohort::parsing {
 
 /// An element of SDF that an element of <gazebo> can belong to.
 enum class GazeboTarget { robot, link, collision, visual, joint };
+
+enum class GazeboKind { number, flag, inverted_flag, text };
+
+/// An element of <gazebo>, and the path of the element of SDF that it sets. Without a path it sets nothing.
+struct GazeboProperty {
+  std::string_view name;
+  GazeboTarget target;
+  GazeboKind kind;
+  std::string_view path;
+};
+
+/// Returns the elements for which <gazebo> has a meaning of its own.
+std::span<const GazeboProperty> gazebo_properties();
 
 /// Returns the value of an element of <gazebo>: its attribute `value`, or else its text.
 std::string gazebo_value(const XmlNode& element);

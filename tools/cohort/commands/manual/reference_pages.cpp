@@ -10,7 +10,9 @@
 
 #include "server/parsing/keys/details.hpp"
 #include "server/parsing/keys/extensions.hpp"
+#include "tools/cohort/commands/manual/element_pages.hpp"
 #include "tools/cohort/commands/manual/entries.hpp"
+#include "tools/cohort/commands/manual/page_text.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -18,8 +20,6 @@ namespace {
 using parsing::Extension;
 using parsing::ExtensionKey;
 using parsing::ExtensionValue;
-
-constexpr std::size_t longest_line = 116;
 
 struct Page {
   std::string_view file;
@@ -36,36 +36,6 @@ const Page pages[] = {
     {"events.md", "Events and stop conditions", {"events", "stop"}},
     {"ros2.md", "ROS 2", {"ros2"}},
 };
-
-constexpr std::string_view made_by =
-    "<!-- `cohort help --markdown docs/reference` writes this page. Edit the tables in server/parsing/keys instead. "
-    "-->\n";
-
-// Breaks lines at spaces outside of code. Lines after the first begin with `indent`.
-std::string wrapped(std::string_view text, std::string_view indent) {
-  std::string result;
-  std::size_t begin = 0;
-  std::size_t column = 0;
-  while (begin < text.size()) {
-    std::size_t end = begin;
-    for (bool in_code = false; end < text.size() && (in_code || text[end] != ' '); ++end)
-      if (text[end] == '`') in_code = !in_code;
-    const std::string_view word = text.substr(begin, end - begin);
-    const auto width = static_cast<std::size_t>(
-        std::ranges::count_if(word, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-    if (column > 0 && column + 1 + width > longest_line) {
-      result += fmt::format("\n{}", indent);
-      column = indent.size();
-    } else if (column > 0) {
-      result += ' ';
-      ++column;
-    }
-    result += word;
-    column += width;
-    begin = end + 1;
-  }
-  return result;
-}
 
 // As a sentence: with a capital letter, unless it begins with the name of a quantity, and a full stop.
 std::string sentence(std::string_view doc) {
@@ -135,17 +105,6 @@ std::string heading_of(const Extension& entry) {
   return fmt::format("`{}` in `{}`", entry.name, entry.parent);
 }
 
-// As GitHub makes them of headings.
-std::string anchor_of(std::string_view title) {
-  std::string anchor;
-  for (const char c : title) {
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-') anchor += c;
-    if (c >= 'A' && c <= 'Z') anchor += static_cast<char>(c - 'A' + 'a');
-    if (c == ' ') anchor += '-';
-  }
-  return anchor;
-}
-
 bool has_keys_of_sensors(const Extension& entry) {
   return entry.keys.size() >= parsing::sensor_keys().size() &&
          std::ranges::equal(entry.keys.last(parsing::sensor_keys().size()), parsing::sensor_keys(), {},
@@ -175,7 +134,7 @@ std::string entry_text(const Extension& entry, const Page& page) {
 }
 
 std::string page_text(const Page& page) {
-  std::string text = fmt::format("{}\n# {}\n", made_by, page.title);
+  std::string text = fmt::format("{}\n# {}\n", made_from("server/parsing/keys"), page.title);
   for (const std::string_view topic : page.topics) {
     const std::string_view details = parsing::details_of_topic(topic);
     if (topic != *page.topics.begin() && !details.empty()) {
@@ -198,7 +157,7 @@ std::string index_text() {
       "terminal.\n"
       "[Worlds and experiments](../worlds.md) and [devices](../devices.md) are the guides.\n\n"
       "## Values\n\n{}",
-      made_by, parsing::details_of_topic("values"));
+      made_from("server/parsing/keys"), parsing::details_of_topic("values"));
   for (const Page& page : pages) {
     text += fmt::format("\n## [{}]({})\n\n", page.title, page.file);
     for (const std::string_view topic : page.topics)
@@ -207,7 +166,9 @@ std::string index_text() {
         text += wrapped(fmt::format("- [{}]({}#{}): {}", title, page.file, anchor_of(title), entry->doc), "  ") + "\n";
       }
   }
-  return text;
+  return text +
+         "\n## Elements of other formats\n\n- [Every element of SDFormat](sdf-elements.md), with its effect in Cohort\n"
+         "- [Every element of URDF](urdf-elements.md), with its effect in Cohort\n";
 }
 
 }  // namespace
@@ -215,6 +176,8 @@ std::string index_text() {
 std::vector<ReferencePage> reference_pages() {
   std::vector<ReferencePage> all = {{"README.md", index_text()}};
   for (const Page& page : pages) all.push_back({std::string(page.file), page_text(page)});
+  all.push_back({"sdf-elements.md", sdf_elements()});
+  all.push_back({"urdf-elements.md", urdf_elements()});
   return all;
 }
 

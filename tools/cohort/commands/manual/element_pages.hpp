@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace cohort::tool {
+
+/// Returns the page of docs/reference about the elements of SDFormat, made from the rules that files are checked
+/// against.
+std::string sdf_elements();
+
+/// Returns the page of docs/reference about the elements of URDF.
+std::string urdf_elements();
+
+}  // namespace cohort::tool

@@ -117,11 +117,14 @@ MeshSurface::MeshSurface(const description::Mesh& mesh) {
 
 void MeshSurface::make_half_spaces(const description::TriangleMesh& hull) {
   is_closed_ = true;
+  const auto count = static_cast<Eigen::Index>(hull.vertices.size());
+  Eigen::ArrayX3d vertices(count, 3);  // a column for each coordinate, for vector instructions
+  for (Eigen::Index i = 0; i < count; ++i) vertices.row(i) = hull.vertices[static_cast<std::size_t>(i)].transpose();
+  half_spaces_.reserve(hull.triangles.size());
   for (const Triangle& triangle : hull.triangles) {
     const Vector3d normal = scaled_normal(hull.vertices, triangle).normalized();
-    double offset = -infinity;
-    for (const Vector3d& vertex : hull.vertices) offset = std::max(offset, normal.dot(vertex));
-    half_spaces_.push_back({normal, offset});
+    const auto along = normal.x() * vertices.col(0) + (normal.y() * vertices.col(1) + normal.z() * vertices.col(2));
+    half_spaces_.push_back({normal, along.maxCoeff()});
   }
 }
 

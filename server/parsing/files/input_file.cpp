@@ -133,6 +133,12 @@ const std::string& InputFiles::read(const fs::path& file) {
   return files_.emplace(key, read_bounded(key, most_bytes_of_file)).first->second;
 }
 
+std::string InputFiles::content(const fs::path& file) const {
+  const std::string key = key_of(file);
+  const std::string* const known = find(key);
+  return known != nullptr ? *known : read_bounded(key, most_bytes_of_file);
+}
+
 std::uintmax_t InputFiles::size(const fs::path& file) const {
   const std::string key = key_of(file);
   if (const std::string* const known = find(key)) return known->size();
@@ -155,6 +161,33 @@ bool InputFiles::is_folder(const fs::path& folder) {
   if (source_ || !fs::is_directory(key, none)) return false;
   folders_.insert(std::move(key));
   return true;
+}
+
+std::vector<fs::path> InputFiles::files_below(const fs::path& folder, const std::string& name) const {
+  constexpr int most_entries = 100'000;
+  const fs::path top = key_of(folder);
+  std::vector<fs::path> found;
+  if (source_) {
+    for (const auto& [key, bytes] : kept_) {
+      const fs::path file = key;
+      if (file.filename() == name && !file.lexically_relative(top).native().starts_with("..")) found.push_back(file);
+    }
+    return found;
+  }
+  std::error_code error;
+  int count = 0;
+  if (fs::is_regular_file(top / name, error)) return {top / name};
+  for (fs::recursive_directory_iterator each(top, fs::directory_options::skip_permission_denied, error);
+       !error && each != fs::recursive_directory_iterator(); each.increment(error)) {
+    if (++count > most_entries) return {};
+    std::error_code none;
+    if (!each->is_directory(none) || each->is_symlink(none) || !fs::is_regular_file(each->path() / name, none))
+      continue;
+    found.push_back(each->path() / name);
+    each.disable_recursion_pending();
+  }
+  std::ranges::sort(found);
+  return found;
 }
 
 KeptFiles InputFiles::kept() const {

@@ -50,10 +50,15 @@ class InputFiles {
   /// Returns the content, whose address does not change during the lifetime of this. Throws std::runtime_error with the
   /// reason if it cannot be read.
   const std::string& read(const std::filesystem::path& file);
+  /// Returns the content of a file that can be read, and does not keep it.
+  std::string content(const std::filesystem::path& file) const;
   /// Returns the number of bytes of a file that can be read.
   std::uintmax_t size(const std::filesystem::path& file) const;
   bool is_file(const std::filesystem::path& file) const;
   bool is_folder(const std::filesystem::path& folder);
+  /// Returns the files of this name in a folder and the folders in it, sorted, but none below a folder that has one.
+  /// Returns nothing for a folder with more than 100,000 files and folders. Links are not followed.
+  std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder, const std::string& name) const;
 
   /// Returns whether files are read from the disk.
   bool is_disk() const { return !source_; }

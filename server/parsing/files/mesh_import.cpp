@@ -11,6 +11,7 @@
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstring>
@@ -20,6 +21,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -153,6 +155,19 @@ class Images {
   std::map<std::string, std::uint32_t> indices_;
 };
 
+// Equal for 0 and -0, which are equal.
+struct HashOfPlace {
+  std::size_t operator()(const std::array<double, 3>& place) const {
+    constexpr std::uint64_t odd = 0x9e3779b97f4a7c15;  // 2^64 / golden ratio
+    std::uint64_t hash = 0;
+    for (const double part : place) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(part + 0.0)) * odd;
+      hash ^= hash >> 32U;
+    }
+    return hash;
+  }
+};
+
 // Adds triangles to a mesh and merges equal vertices, which formats such as STL repeat for each triangle.
 class MeshBuilder {
  public:
@@ -206,7 +221,7 @@ class MeshBuilder {
   std::uint32_t place_of(const Eigen::Vector3d& vertex) {
     if (!vertex.allFinite()) throw std::runtime_error("a vertex is not finite");
     const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
-    const auto [entry, is_new] = places_.emplace(std::array{vertex.x(), vertex.y(), vertex.z()}, next);
+    const auto [entry, is_new] = places_.try_emplace(std::array{vertex.x(), vertex.y(), vertex.z()}, next);
     if (is_new) mesh_.vertices.push_back(vertex);
     return entry->second;
   }
@@ -217,7 +232,7 @@ class MeshBuilder {
   bool has_colors_ = false;
   bool has_coordinates_ = false;
   bool has_textures_ = false;
-  std::map<std::array<double, 3>, std::uint32_t> places_;
+  std::unordered_map<std::array<double, 3>, std::uint32_t, HashOfPlace> places_;
 };
 
 // Colours in glTF files are linear.

@@ -40,6 +40,14 @@ std::string best_file(const XmlNode& model) {
   return file;
 }
 
+// Returns nothing for a file that cannot be read.
+std::string name_of_package(const InputFiles& input, const fs::path& file) {
+  if (input.why_unreadable(file)) return "";
+  const XmlOutline outline = outline_xml(input.content(file));
+  const XmlNode* const name = outline.root.child("name");
+  return name != nullptr ? name->text : "";
+}
+
 std::string in_small_letters(std::string text) {
   for (char& each : text)
     if (each >= 'A' && each <= 'Z') each = static_cast<char>(each - 'A' + 'a');
@@ -107,6 +115,7 @@ std::optional<fs::path> ModelSearch::look_for(const std::string& name, const fs:
     for (const fs::path& place : {above / name, above / "models" / name})
       if (is_signed(place) ? has_it(place) : !inside.empty() && input_.is_file(place / inside)) return place;
   }
+  if (auto package = find_package(name); package && has_it(*package)) return package;
   return first;
 }
 
@@ -172,10 +181,22 @@ std::optional<fs::path> ModelSearch::find_file_above(const std::string& path, fs
 
 bool ModelSearch::is_package(const fs::path& folder, const std::string& name) const {
   const fs::path package = folder / "package.xml";
-  if (!input_.is_file(package) || input_.why_unreadable(package)) return false;
-  const XmlOutline outline = outline_xml(input_.read(package));
-  const XmlNode* const written = outline.root.child("name");
-  return written != nullptr && written->text == name;
+  if (!input_.is_file(package) || name_of_package(input_, package) != name) return false;
+  input_.read(package);  // so that it is kept
+  return true;
+}
+
+std::optional<fs::path> ModelSearch::find_package(const std::string& name) const {
+  if (!packages_) {
+    packages_.emplace();
+    for (const fs::path& folder : others_)
+      for (const fs::path& package : input_.files_below(folder, "package.xml"))
+        packages_->emplace(name_of_package(input_, package), package.parent_path());
+  }
+  const auto found = packages_->find(name);
+  if (found == packages_->end()) return std::nullopt;
+  input_.read(found->second / "package.xml");  // so that it is kept
+  return found->second;
 }
 
 // Finds `https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION/files/PATH` as SERVER/OWNER/models/NAME/VERSION/PATH

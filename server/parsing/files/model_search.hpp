@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,8 @@ class ModelSearch {
   bool is_signed(const std::filesystem::path& folder) const;
   std::optional<std::filesystem::path> find_file_above(const std::string& path, std::filesystem::path folder) const;
   bool is_package(const std::filesystem::path& folder, const std::string& name) const;
+  /// Finds a package whose folder has another name, at any depth below the folders of Gazebo and ROS.
+  std::optional<std::filesystem::path> find_package(const std::string& name) const;
   std::filesystem::path find_fetched(const std::string& uri) const;
   std::string newest_version(const std::filesystem::path& model) const;
 
@@ -59,7 +62,8 @@ class ModelSearch {
   InputFiles& input_;
   std::filesystem::path world_folder_;
   std::vector<std::filesystem::path> folders_;
-  std::vector<std::filesystem::path> others_;  // folders of Gazebo and ROS
+  std::vector<std::filesystem::path> others_;                                     // folders of Gazebo and ROS
+  mutable std::optional<std::map<std::string, std::filesystem::path>> packages_;  // below them, by name
 };
 
 }  // namespace cohort::parsing

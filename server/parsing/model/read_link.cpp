@@ -76,6 +76,10 @@ Inertial inertial_of_shapes(const Link& link) {
   return {whole.mass, {whole.centre, Eigen::Quaterniond::Identity()}, whole.inertia};
 }
 
+// A repaired moment of inertia is at least that of the collisions with this part of the mass. A smaller one, such as
+// that of a grain in place of 0, would let a link of everyday size spin about one axis without end.
+constexpr double least_density = 1e-3;
+
 // NaN passes here and below, since check_numbers has reported it.
 Inertial read_written_inertial(const Element* element, const Link& link, const SdfReport& report) {
   const Element* const mass = find(element, {"inertial", "mass"});
@@ -118,7 +122,10 @@ Inertial read_written_inertial(const Element* element, const Link& link, const S
     flaw = "no physical body has this inertia: one principal moment exceeds the sum of the other two";
   if (flaw != nullptr && report.flaw(inertia, flaw, "the nearest physically possible inertia is used instead")) {
     const Eigen::Matrix3d& axes = solver.eigenvectors();
-    const Eigen::Matrix3d nearest = axes * nearest_moments(moments, inertial.mass).asDiagonal() * axes.transpose();
+    Eigen::Vector3d usable = nearest_moments(moments, inertial.mass);
+    if (const auto solid = inertia_of_collisions(link, least_density * inertial.mass))
+      usable = usable.cwiseMax((axes.transpose() * *solid * axes).diagonal());
+    const Eigen::Matrix3d nearest = axes * usable.asDiagonal() * axes.transpose();
     inertial.inertia = 0.5 * (nearest + nearest.transpose());
   }
   return inertial;
@@ -151,7 +158,7 @@ std::optional<Inertial> read_inertial_from_density(const Element* element, const
   const Element* const mass = find(element, {"inertial", "mass"});
   const auto is_given = [&](const char* part) { return is_written(find(element, {"inertial", part})); };
   if (const Element* const written = element->child("inertial");
-      written != nullptr && (!is_written(mass) || is_given("pose") || is_given("inertia")))
+      written != nullptr && (written->children().empty() || is_given("pose") || is_given("inertia")))
     report.problem(written, "expected either <inertial> or <cohort:density>, not both, unless it has only a <mass>");
   MassProperties whole = together(parts);
   if (is_written(mass) && whole.mass > 0.0) {

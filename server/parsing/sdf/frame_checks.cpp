@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "server/parsing/sdf/frames.hpp"
 
@@ -31,6 +34,34 @@ void check_parts(const Element& around, std::vector<Frames::Flaw>& flaws) {
 }
 
 }  // namespace
+
+/// Steps from frame to frame.
+class Frames::Steps {
+ public:
+  using IsEnd = std::function<bool(const Place&)>;
+  using Next = std::function<std::optional<Place>(const Place&)>;
+
+  Steps(IsEnd is_end, Next next) : is_end_(std::move(is_end)), next_(std::move(next)) {}
+
+  /// Returns whether the steps from a place reach an end. Takes no step twice.
+  bool end(Place place) {
+    std::set<Key> passed;
+    while (!is_end_(place) && !ending_.contains({place.scope, place.element})) {
+      const std::optional<Place> next = next_(place);
+      if (!passed.insert({place.scope, place.element}).second || !next) return false;
+      place = *next;
+    }
+    ending_.merge(passed);
+    return true;
+  }
+
+ private:
+  using Key = std::pair<const Frames*, const Element*>;
+
+  IsEnd is_end_;
+  Next next_;
+  std::set<Key> ending_;
+};
 
 std::vector<Frames::Flaw> Frames::flaws() const {
   std::vector<Flaw> found;
@@ -108,10 +139,16 @@ void Frames::check_joint(const Element& joint, std::vector<Flaw>& flaws) const {
 
 // All names are right, so what cannot be resolved is a cycle.
 void Frames::check_resolution(std::vector<Flaw>& flaws) const {
+  Steps posed([this](const Place& place) { return place.element == nullptr && place.scope == this; },
+              [](const Place& place) { return place.scope->posed_in(place); });
+  Steps attached(
+      [](const Place& place) {
+        return place.element == nullptr ? place.scope->is_world() : place.element->name() == "link";
+      },
+      [](const Place& place) { return place.scope->attached_to(place); });
   for (const Element* const element : elements_) {
-    const bool is_frame = element->name() == "frame";
-    const bool is_attached = !is_frame || element->attribute("attached_to").empty() || link_of(name_of(*element));
-    if (pose_at({this, element}) && is_attached) continue;
+    const bool is_attached = element->name() == "frame" && !element->attribute("attached_to").empty();
+    if (posed.end({this, element}) && (!is_attached || attached.end({this, element}))) continue;
     flaws.emplace_back(element, "frames refer to each other in a cycle");
     return;
   }

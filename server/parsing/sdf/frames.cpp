@@ -1,6 +1,6 @@
 #include "server/parsing/sdf/frames.hpp"
 
-#include <algorithm>
+#include <utility>
 
 #include "server/parsing/sdf/schema/value_text.hpp"
 
@@ -69,6 +69,19 @@ std::optional<Pose> Frames::written_pose_of(const Place& place) const {
   return X_MP ? std::optional(written * X_MP->inverse()) : std::nullopt;
 }
 
+const Frames::Step& Frames::step_from(const Place& place) const {
+  auto& steps = place.scope->steps_;
+  const auto known = steps.find(place.element);
+  if (known != steps.end()) return known->second;
+  Step step{written_pose_of(place), written_in(place)};
+  return steps.emplace(place.element, std::move(step)).first->second;
+}
+
+std::optional<Frames::Place> Frames::posed_in(const Place& place) const {
+  if (place.element != nullptr) return step_from(place).written ? step_from(place).next : std::nullopt;
+  return outer_ == nullptr ? std::nullopt : std::optional(Place{outer_, &owner_});
+}
+
 // Goes from the frame to the one in which it is written, and so on, out of nested models.
 std::optional<Pose> Frames::pose_at(Place place) const {
   Pose X;
@@ -78,11 +91,10 @@ std::optional<Pose> Frames::pose_at(Place place) const {
       if (place.scope->outer_ == nullptr) return std::nullopt;
       place = {place.scope->outer_, &place.scope->owner_};
     }
-    const std::optional<Pose> written = written_pose_of(place);
-    const std::optional<Place> next = written_in(place);
-    if (!written || !next) return std::nullopt;
-    X = *written * X;
-    place = *next;
+    const Step& step = step_from(place);
+    if (!step.written || !step.next) return std::nullopt;
+    X = *step.written * X;
+    place = *step.next;
   }
   return std::nullopt;
 }

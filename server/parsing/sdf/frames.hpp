@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace cohort::parsing {
 
 /// The frames of a world or a model: itself, its links, joints, <frame> elements and nested models, and those in nested
 /// models, by names such as `arm::palm` (http://sdformat.org/tutorials?tut=pose_frame_semantics_proposal). Poses are
-/// given in the frame of the world or the model. The elements must outlive this.
+/// given in the frame of the world or the model. The elements must outlive this. For use by one thread.
 class Frames {
  public:
   /// An element with a mistake, and the mistake.
@@ -50,6 +51,12 @@ class Frames {
     const Frames* scope;
     const Element* element;
   };
+  class Steps;
+  /// What leads from a frame to the one in which its pose is written.
+  struct Step {
+    std::optional<Pose> written;
+    std::optional<Place> next;
+  };
 
   bool is_world() const { return owner_.name() == "world"; }
   std::optional<Place> find(std::string_view name) const;
@@ -57,6 +64,10 @@ class Frames {
   std::optional<Place> written_in(const Place& place) const;
   /// Returns the pose in the frame in which it is written.
   std::optional<Pose> written_pose_of(const Place& place) const;
+  /// Returns the frame in which a pose is written, also of a nested model itself; nothing if there is none.
+  std::optional<Place> posed_in(const Place& place) const;
+  /// Returns the step, which is found once for each frame.
+  const Step& step_from(const Place& place) const;
   std::optional<Place> attached_to(const Place& place) const;
   std::optional<Pose> pose_at(Place place) const;
   /// Returns the name of a place in nested models, as seen from here.
@@ -76,6 +87,7 @@ class Frames {
   std::vector<const Element*> elements_;  // that have a frame, in document order
   std::map<std::string, const Element*, std::less<>> by_name_;
   std::map<const Element*, std::unique_ptr<Frames>> nested_;
+  mutable std::unordered_map<const Element*, Step> steps_;
 };
 
 /// Returns `relative_to` of the pose of an element; empty if it has none.

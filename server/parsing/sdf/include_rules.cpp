@@ -19,6 +19,7 @@ std::optional<std::string> flaw_of_part(const XmlNode& part, const XmlNode& incl
       {"static", {}},
       {"placement_frame", {}},
       {"namespace", {}},
+      {"model_state", {"name"}},
       {"pose", {"relative_to", "degrees", "rotation_format"}},
       {"plugin", {"name", "filename"}}};
   const auto known = attributes_of.find(part.name);
@@ -33,7 +34,7 @@ std::optional<std::string> flaw_of_part(const XmlNode& part, const XmlNode& incl
     if (std::find(known->second.begin(), known->second.end(), attribute) == known->second.end())
       return "unknown attribute '" + attribute + "'" + suggestion(attribute, known->second);
   if (is_plugin) return part.text.empty() ? std::nullopt : std::optional<std::string>("unexpected text");
-  if (part.name != "pose" && part.text.empty()) return "expected a value";
+  if (part.name != "pose" && part.name != "model_state" && part.text.empty()) return "expected a value";
   constexpr std::string_view flags[] = {"true", "false", "1", "0"};
   if (part.name == "static" && std::find(std::begin(flags), std::end(flags), part.text) == std::end(flags))
     return "expected true or false, not '" + part.text + "'";

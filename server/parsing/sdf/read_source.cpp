@@ -13,6 +13,7 @@
 #include "server/parsing/sdf/repair/mend_sdf.hpp"
 #include "server/parsing/sdf/repair/newer_sdf.hpp"
 #include "server/parsing/sdf/repair/older_sdf.hpp"
+#include "server/parsing/sdf/repair/oldest_sdf.hpp"
 #include "server/parsing/sdf/repair/pass_over_unknown.hpp"
 #include "server/parsing/sdf/repair/scoped_names.hpp"
 #include "server/parsing/sdf/repair/what_is_seen.hpp"
@@ -119,6 +120,8 @@ std::optional<XmlNode> SourceReader::read_xml(const std::string& text, SdfFile& 
                                "\"> as the root element, not <" + root.name + ">");
   if (version_of(*version) > newest_version || version_of(*version) == std::pair{0, 0})
     return fail(root.line, "SDF version '" + *version + "' is not supported; expected a version up to 1.12");
+  if (version_of(*version) < version_of(first_with_elements) && make_attributes_elements(outline.root))
+    set_attribute(outline.root, "version", std::string(first_with_elements));
   take_newer(outline.root, file.shown, warnings_);
   if (version_of(*version) > version_of(converted_version))
     set_attribute(outline.root, "version", std::string(converted_version));

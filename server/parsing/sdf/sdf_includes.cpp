@@ -255,9 +255,6 @@ std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const st
   if (const XmlNode* const parameters = include.child("experimental:params"))
     warnings_.push_back({file.shown, parameters->line, path + "/experimental:params",
                          "parameters of an include are not supported and are ignored"});
-  if (const XmlNode* const name_space = include.child("namespace"))
-    warnings_.push_back({file.shown, name_space->line, path + "/namespace",
-                         "<namespace> is not supported and is ignored; topics have the name of the robot"});
   const XmlNode* const uri = include.child("uri");
   if (uri == nullptr) return problem(include, "expected <uri>model://NAME</uri>");
   FoundModel found;

@@ -1,6 +1,7 @@
 #include "server/physics/contact/bullet_shape.hpp"
 
 #include <algorithm>
+#include <mutex>
 
 #include "server/physics/contact/bullet.hpp"
 
@@ -72,6 +73,7 @@ struct BulletShape::Data {
   std::shared_ptr<const TriangleMesh> mesh;  // Bullet's shapes point into these
   std::shared_ptr<const HeightGrid> grid;
   std::unique_ptr<btTriangleMesh> triangles;
+  std::once_flag is_made;
   std::unique_ptr<btCollisionShape> shape;
 };
 
@@ -100,7 +102,7 @@ struct Make {
     return std::make_unique<EllipsoidShape>(ellipsoid.radii);
   }
   std::unique_ptr<btCollisionShape> operator()(const description::Mesh& mesh) const {
-    if (mesh.convex) return rounded_hull(mesh.triangles->vertices);
+    if (mesh.convex) return nullptr;  // made by the first get()
     triangles = std::make_unique<btTriangleMesh>();
     for (const auto& corners : mesh.triangles->triangles)
       triangles->addTriangle(to_bullet(mesh.triangles->vertices[corners[0]]),
@@ -133,12 +135,16 @@ BulletShape::BulletShape(const geometry::Shape& shape)
   if (const auto* mesh = std::get_if<description::Mesh>(&shape)) data_->mesh = mesh->triangles;
   if (const auto* map = std::get_if<description::Heightmap>(&shape)) data_->grid = map->grid;
   data_->shape = std::visit(Make{data_->triangles, offset_}, shape);
+  if (data_->shape && data_->shape->isConcave()) skin_ = data_->shape->getMargin();
 }
 
 BulletShape::~BulletShape() = default;
 
-btCollisionShape* BulletShape::get() const { return data_->shape.get(); }
-
-double BulletShape::skin() const { return data_->shape->isConcave() ? data_->shape->getMargin() : 0.0; }
+btCollisionShape* BulletShape::get() const {
+  std::call_once(data_->is_made, [&] {
+    if (!data_->shape) data_->shape = rounded_hull(data_->mesh->vertices);
+  });
+  return data_->shape.get();
+}
 
 }  // namespace cohort::physics

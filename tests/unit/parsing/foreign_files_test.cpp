@@ -84,6 +84,18 @@ TEST_F(ForeignFiles, ReplaceImpossibleInertiaByTheNearestPossible) {
   EXPECT_EQ(problems_of([&] { read(heavy); }).size(), 1u);
 }
 
+TEST_F(ForeignFiles, RaiseAMomentOfInertiaOf0ToAThousandthOfThatOfTheCollisions) {
+  const std::string flat =
+      "<model name=\"m\"><link name=\"l\"><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>0</izz>"
+      "</inertia></inertial><collision name=\"c\"><geometry><box><size>0.3 0.6 0.1</size></box></geometry></collision>"
+      "</link></model>";
+  const World world = read_foreign(flat);
+  const double of_box = 1.0 / 12.0 * (0.3 * 0.3 + 0.6 * 0.6);
+  EXPECT_LT((world.models[0].links[0].inertial.inertia.diagonal() - Eigen::Vector3d(1, 1, 1e-3 * of_box)).norm(), 1e-12)
+      << world.models[0].links[0].inertial.inertia;
+  expect_warning(world, "the nearest physically possible inertia");
+}
+
 TEST_F(ForeignFiles, MakeEachFreeRootASeparateBody) {
   const World world = read("<model name=\"m\"><pose>1 0 0 0 0 0</pose>" + links("abc") + joint("j", "a", "c") +
                            "<model name=\"n\"><pose>0 0 2 0 0 0</pose>" + links("de") + joint("k", "d", "e") +

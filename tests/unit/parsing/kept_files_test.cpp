@@ -209,6 +209,27 @@ TEST_F(KeptFilesOfAllKinds, SufficeToReadTheExperimentAgain) {
   EXPECT_EQ(hashes_at_0_and_100(again), hashes);
 }
 
+TEST_F(KeptFilesOfAllKinds, ContainTheFileThatNamesAPackageInADeepFolder) {
+  write("ros/src/stack/robot_v2/package.xml", "<package><name>robot</name></package>");
+  write("ros/src/stack/robot_v2/stone.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  write("ros/src/stack/other/package.xml", "<package><name>other</name></package>");
+  write("ros/src/broken/package.xml", "<package><name>robot");
+  write("robot.urdf",
+        "<robot name='r'><link name='l'><inertial><mass value='1'/></inertial><collision><geometry>"
+        "<mesh filename='package://robot/stone.obj'/></geometry></collision></link></robot>");
+  write("arena.yaml", "world: {name: w, include: [{uri: robot.urdf}]}\n");
+  write("run.yaml", "world: arena.yaml\nduration: 1\nteams: []\n");
+  setenv("ROS_PACKAGE_PATH", (folder_ / "ros").c_str(), 1);
+  const Experiment first = read();
+  unsetenv("ROS_PACKAGE_PATH");
+  EXPECT_EQ(names_of(first.inputs->files),
+            (std::vector<std::string>{"arena.yaml", "robot.urdf", "ros/src/stack/robot_v2/package.xml",
+                                      "ros/src/stack/robot_v2/stone.obj", "run.yaml"}));
+  const auto hashes = hashes_at_0_and_100(first);
+  fs::remove_all(folder_);
+  EXPECT_EQ(hashes_at_0_and_100(read_experiment(first.inputs, first.seed, first.duration)), hashes);
+}
+
 TEST_F(KeptFilesOfAllKinds, HavePriorityOverFilesOnTheDisk) {
   const Experiment first = read();
   const auto hashes = hashes_at_0_and_100(first);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/parsing/files/xml_outline.hpp"
+#include "server/parsing/sdf/repair/oldest_sdf.hpp"
 
 // Tests of the spellings of older versions of SDF.
 namespace cohort::parsing {
@@ -55,6 +56,41 @@ TEST(OlderSdf, KeepsWhatNewerVersionsSpellAlike) {
       "</samples></horizontal></scan></ray></sensor></link>");
   for (const char* const version : {"1.0", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7", "1.8"})
     EXPECT_EQ(converted(version, ray), newest(ray)) << version;
+}
+
+TEST(OldestSdf, HasMostValuesInAttributes) {
+  XmlNode oldest = outline_xml(in_version("1.0", R"(
+    <world name='w'><physics type='ode'><gravity xyz='0 0 -9'/></physics>
+      <light name='sun' type='directional' cast_shadows='1'><diffuse rgba='1 0 0 1'/><direction xyz='0 1 -1'/></light>
+      <model name='m' static='0'><origin pose='1 2 3 0 0 0'/>
+        <link name='l' gravity='1'><damping linear='0.1'/>
+          <inertial mass='2'><inertia ixx='1' iyy='2' izz='3'/></inertial>
+          <collision name='c'><origin pose='0 0 1 0 0 0'/><geometry><box size='1 2 3'/></geometry>
+            <surface><friction><ode mu='0.5'/></friction></surface></collision>
+          <visual name='v'><geometry><mesh filename='a.dae' scale='1 1 1'/></geometry></visual>
+        </link>
+        <joint name='j' type='revolute'><parent link='l'/><child link='k'/><axis xyz='0 0 1'><limit lower='-1'/></axis>
+        </joint>
+        <plugin name='p' filename='f' key='x'/></model></world>)"))
+                       .root;
+  EXPECT_TRUE(make_attributes_elements(oldest));
+  XmlNode newer = outline_xml(in_version("1.0", R"(
+    <world name='w'><physics type='ode'><gravity>0 0 -9</gravity></physics>
+      <light name='sun' type='directional'><diffuse>1 0 0 1</diffuse><direction>0 1 -1</direction>
+        <cast_shadows>1</cast_shadows></light>
+      <model name='m'><pose>1 2 3 0 0 0</pose>
+        <link name='l'><velocity_decay><linear>0.1</linear></velocity_decay>
+          <inertial><inertia><ixx>1</ixx><iyy>2</iyy><izz>3</izz></inertia><mass>2</mass></inertial>
+          <collision name='c'><pose>0 0 1 0 0 0</pose><geometry><box><size>1 2 3</size></box></geometry>
+            <surface><friction><ode><mu>0.5</mu></ode></friction></surface></collision>
+          <visual name='v'><geometry><mesh><filename>a.dae</filename><scale>1 1 1</scale></mesh></geometry></visual>
+          <gravity>1</gravity></link>
+        <joint name='j' type='revolute'><parent>l</parent><child>k</child><axis><limit><lower>-1</lower></limit>
+          <xyz>0 0 1</xyz></axis></joint>
+        <plugin name='p' filename='f' key='x'/><static>0</static></model></world>)"))
+                      .root;
+  EXPECT_EQ(text_of(oldest), text_of(newer));
+  EXPECT_FALSE(make_attributes_elements(newer)) << "of a newer file with the wrong version";
 }
 
 TEST(OlderSdf, RenamesStepSizesUpToVersion1_3) {

@@ -55,6 +55,15 @@ std::string chain(const std::string& of_mid, const std::string& of_tip = "") {
          of_mid + "</link>\n<link name=\"tip\">\n" + of_tip + "</link>\n";
 }
 
+TEST_F(UrdfMessages, NameCollisionsThatABlockOfGazeboDoesNotReach) {
+  const std::string friction = "<gazebo reference=\"mid\"><mu1>0.5</mu1></gazebo>\n";
+  expect_message(messages_of(chain(inertial("1") + box("collision", " name=\"foot\"")) + friction),
+                 "14: robot/link[mid]/collision[foot]: <gazebo reference=\"mid\"> has no effect on it, as in Gazebo");
+  for (const std::string& content :
+       {chain(inertial("1") + box("collision", " name=\"foot\"")), chain(inertial("1") + box("collision")) + friction})
+    EXPECT_EQ(messages_of(content).find("has no effect on it"), std::string::npos);
+}
+
 TEST_F(UrdfMessages, BlameTheMergedLinkForItsMassAndInertia) {
   expect_message(messages_of(chain(inertial("-1"))),
                  "11: robot/link[mid]/inertial/mass: expected a mass > 0 kg, not -1");

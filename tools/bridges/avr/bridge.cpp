@@ -26,32 +26,52 @@ void in_parallel(std::size_t count, unsigned threads, const Work& work) {
   take();
 }
 
-// A barrier whose threads spin for a while before they sleep: the others are a few microseconds late, and sleeping
-// takes longer. Where there are fewer cores than threads they do sleep.
-class SpinBarrier {
+// Windows of time in each of which every robot runs once, on any thread. A window ends when all robots have run, so
+// that nobody waits for a thread that has no robot, because the system has not run it yet.
+class Windows {
  public:
-  explicit SpinBarrier(unsigned threads) : threads_(threads) {}
+  Windows(std::size_t robots, std::size_t windows) : robots_(robots), windows_(windows) {}
 
-  // Returns when all threads have arrived; the last one calls `completion` first.
-  template <class Completion>
-  void arrive_and_wait(const Completion& completion) {
-    constexpr int spins = 4000;
-    const unsigned phase = phase_.load(std::memory_order_acquire);
-    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
-      arrived_.store(0, std::memory_order_relaxed);
-      completion();
-      phase_.store(phase + 1, std::memory_order_release);
-      phase_.notify_all();
-      return;
+  // Takes robots until the last window has ended, on several threads at once. `run(robot, window)` runs one, and
+  // `end(window)` ends a window; neither throws.
+  template <class Run, class End>
+  void work(const Run& run, const End& end) {
+    std::uint64_t state = state_.load(std::memory_order_acquire);
+    while (window_of(state) < windows_) {
+      const std::size_t robot = state & most_robots;
+      if (robot >= robots_) {
+        state = changed_from(state);
+      } else if (state_.compare_exchange_weak(state, state + 1, std::memory_order_acq_rel)) {
+        run(robot, window_of(state));
+        if (ran_.fetch_add(1, std::memory_order_acq_rel) + 1 == robots_) {
+          ran_.store(0, std::memory_order_relaxed);
+          end(window_of(state));
+          state_.store((window_of(state) + 1) << bits_of_robot, std::memory_order_release);
+          state_.notify_all();
+        }
+        state = state_.load(std::memory_order_acquire);
+      }
     }
-    for (int i = 0; i < spins; ++i)
-      if (phase_.load(std::memory_order_acquire) != phase) return;
-    phase_.wait(phase, std::memory_order_acquire);
   }
 
  private:
-  unsigned threads_;
-  std::atomic<unsigned> arrived_ = 0, phase_ = 0;
+  static constexpr unsigned bits_of_robot = 32;
+  static constexpr std::uint64_t most_robots = 0xffffffff;
+
+  static std::size_t window_of(std::uint64_t state) { return state >> bits_of_robot; }
+
+  // Spins for a while before it sleeps: the others take a few microseconds longer, and sleeping takes more.
+  std::uint64_t changed_from(std::uint64_t state) const {
+    constexpr int spins = 4000;
+    for (int i = 0; i < spins; ++i)
+      if (const std::uint64_t now = state_.load(std::memory_order_acquire); now != state) return now;
+    state_.wait(state, std::memory_order_acquire);
+    return state_.load(std::memory_order_acquire);
+  }
+
+  std::size_t robots_, windows_;
+  std::atomic<std::uint64_t> state_ = 0;  // the window, and the next robot in it
+  std::atomic<std::size_t> ran_ = 0;      // robots in this window
 };
 
 template <class Action>
@@ -122,33 +142,35 @@ void Bridge::start(const LeaseStart& lease) {
   }
 }
 
-// Each thread has robots of its own for the whole frame, and waits for the others after each window.
 void Bridge::step_in_windows(const Frame& frame, std::vector<std::exception_ptr>& failures) {
   const std::size_t count = frame.robots.size();
+  if (count == 0) return;
   std::vector<Robot*> robots;
-  std::chrono::nanoseconds end = frame.time;
+  std::chrono::nanoseconds longest{0};
   for (const FrameRobot& robot : frame.robots) {
     robots.push_back(robots_.at(robot.robot->start.robot).get());
-    end = std::max(end, frame.time + robots.back()->period());
+    longest = std::max(longest, robots.back()->period());
   }
-  const std::size_t team = std::clamp<std::size_t>(count, 1, options_.threads);
-  SpinBarrier barrier(static_cast<unsigned>(team));
-  const auto work = [&](std::size_t member) {
-    const auto each = [&](const auto& action) {
-      for (std::size_t i = member; i < count; i += team)
-        if (!failures[i]) guard(failures[i], [&] { action(*robots[i], frame.robots[i]); });
+  const std::chrono::nanoseconds length = options_.medium->window();
+  const auto count_of_windows = static_cast<std::size_t>((longest + length - std::chrono::nanoseconds(1)) / length);
+  const auto run = [&](std::size_t i, std::size_t window) {
+    const auto its = [&](const auto& action) {
+      if (!failures[i]) guard(failures[i], action);
     };
-    each([&](Robot& robot, FrameRobot& its) { robot.begin(its, frame.time); });
-    for (std::chrono::nanoseconds time = frame.time; time < end;) {
-      time = std::min(time + options_.medium->window(), end);
-      each([&](Robot& robot, FrameRobot&) { robot.run_until(std::min(time, frame.time + robot.period())); });
-      barrier.arrive_and_wait([this]() noexcept { options_.medium->exchange(); });
-    }
-    each([](Robot& robot, FrameRobot& its) { robot.end(its); });
+    Robot& robot = *robots[i];
+    if (window == 0) its([&] { robot.begin(frame.robots[i], frame.time); });
+    if (window == count_of_windows) return its([&] { robot.end(frame.robots[i]); });
+    its([&] { robot.run_until(frame.time + std::min(length * static_cast<int>(window + 1), robot.period())); });
+  };
+  Windows windows(count, count_of_windows + 1);  // the last one is only for ends
+  const auto work = [&] {
+    windows.work(run, [&](std::size_t window) noexcept {
+      if (window < count_of_windows) options_.medium->exchange();
+    });
   };
   std::vector<std::jthread> helpers;
-  for (std::size_t member = 1; member < team; ++member) helpers.emplace_back(work, member);
-  work(0);
+  for (std::size_t member = 1; member < options_.threads && member < count; ++member) helpers.emplace_back(work);
+  work();
 }
 
 void Bridge::step(const Frame& frame) {

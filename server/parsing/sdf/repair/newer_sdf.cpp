@@ -57,8 +57,7 @@ void NewerSdf::change_link(XmlNode& link) {
     if (collision.name != "collision") continue;
     const XmlNode* const density = collision.child("density");
     const std::optional<std::string> text = density != nullptr ? std::optional(density->text) : std::nullopt;
-    std::erase_if(collision.children,
-                  [](const XmlNode& child) { return child.name == "density" || child.name == "auto_inertia_params"; });
+    std::erase_if(collision.children, [](const XmlNode& child) { return child.name == "density"; });
     if (is_auto && text) collision.children.push_back(density_from(collision, *text));
   }
   if (!is_auto) return;
@@ -66,7 +65,9 @@ void NewerSdf::change_link(XmlNode& link) {
   XmlNode ours = density_from(*inertial, density != nullptr ? density->text : density_of_water);
   XmlNode& rest = *child_of(link, "inertial");
   rest.attributes.clear();
-  std::erase_if(rest.children, [](const XmlNode& child) { return child.name != "mass"; });
+  std::erase_if(rest.children, [](const XmlNode& child) {
+    return child.name == "density" || child.name == "pose" || child.name == "inertia";
+  });
   if (rest.children.empty())
     std::erase_if(link.children, [](const XmlNode& child) { return child.name == "inertial"; });
   link.children.push_back(std::move(ours));

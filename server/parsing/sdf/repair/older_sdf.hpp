@@ -5,7 +5,7 @@
 namespace cohort::parsing {
 
 /// Converts an <sdf> element of SDF 1.2 to 1.8 to `converted_version`: replaces older spellings by newer ones. In files
-/// of SDF 1.0, it only changes the version and the frames of includes.
+/// with an older version, it only changes the version and the frames of includes.
 void convert_older(XmlNode& sdf);
 
 }  // namespace cohort::parsing

@@ -137,7 +137,7 @@ collision * @name! text
   laser_retro ? real "0" x"; lidars measure no intensity"
   max_contacts ? integer "10" ~
   density ? real "1000.0"
-  auto_inertia_params ? -
+  auto_inertia_params ? ~
   [pose] ?
   [geometry] 1
   [surface] ?

@@ -34,9 +34,9 @@ world * @name! text
 include * @merge flag "false"
   uri 1 text
   name ? text
-  namespace ? text !"a warning; topics have the name of the robot"
+  namespace ? text x"; topics have the name of the robot"
   static ? flag "false"
-  model_state ? ... !"an error"
+  model_state ? ... x
   [pose] ?
   [plugin] *
   placement_frame ? text

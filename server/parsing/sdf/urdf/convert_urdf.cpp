@@ -9,6 +9,7 @@
 #include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/keys/extensions.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
+#include "server/parsing/sdf/urdf/mend_urdf.hpp"
 #include "server/parsing/sdf/urdf/urdf_file.hpp"
 #include "server/parsing/sdf/urdf/urdf_gazebo.hpp"
 #include "server/parsing/sdf/urdf/urdf_parts.hpp"
@@ -41,6 +42,7 @@ class UrdfConverter {
   /// `owner`.
   void complete_part(const std::vector<const UrdfLink*>& links, const UrdfLink& owner, const XmlNode& source,
                      GazeboTarget target, XmlNode& part) const;
+  void warn_of_lost_properties(const UrdfLink& owner, const XmlNode& source, const XmlNode& part) const;
   void add_blocks(const UrdfLink& link, XmlNode& node) const;
   /// Returns an element of SDF in a <gazebo> block for use in a link that others are merged with.
   XmlNode adjusted(XmlNode element) const;
@@ -223,10 +225,24 @@ void UrdfConverter::complete_part(const std::vector<const UrdfLink*>& links, con
   for (const UrdfLink* const named : links)
     if (belongs_to(*named, part))
       for (const XmlNode* const block : tree_.blocks(named->name)) set_gazebo_properties(*block, target, part);
-  if (target == GazeboTarget::collision)
+  if (target == GazeboTarget::collision) {
+    warn_of_lost_properties(owner, source, part);
     add_surface(owner, part);
-  else
+  } else {
     add_material(robot_, source, part);
+  }
+}
+
+void UrdfConverter::warn_of_lost_properties(const UrdfLink& owner, const XmlNode& source, const XmlNode& part) const {
+  if (belongs_to(owner, part)) return;
+  XmlNode properties;
+  for (const XmlNode* const block : tree_.blocks(owner.name))
+    set_gazebo_properties(*block, GazeboTarget::collision, properties);
+  if (properties.children.empty()) return;
+  warnings_.push_back({file_, source.line, "robot/link[" + owner.name + "]/" + urdf_step(source),
+                       "<gazebo reference=\"" + owner.name +
+                           "\"> has no effect on it, as in Gazebo, since it has a name of "
+                           "its own; remove its name"});
 }
 
 void UrdfConverter::add_blocks(const UrdfLink& link, XmlNode& node) const {

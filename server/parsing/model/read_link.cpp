@@ -84,17 +84,18 @@ constexpr double least_density = 1e-3;
 Inertial read_written_inertial(const Element* element, const Link& link, const SdfReport& report) {
   const Element* const mass = find(element, {"inertial", "mass"});
   const Element* const inertia = find(element, {"inertial", "inertia"});
-  if (mass && mass->real() == 0.0 && report.is_foreign(mass)) return inertial_of_shapes(link);  // already reported
-  if (!mass) report.warning(element, "has no mass; SDF's default of 1 kg is used");
-  if (!inertia) report.warning(element, "has no inertia; SDF's default of 1 kg m^2 about each axis is used");
+  if (mass != nullptr && mass->real() == 0.0 && report.is_foreign(mass))
+    return inertial_of_shapes(link);  // already reported
+  if (mass == nullptr) report.warning(element, "has no mass; SDF's default of 1 kg is used");
+  if (inertia == nullptr) report.warning(element, "has no inertia; SDF's default of 1 kg m^2 about each axis is used");
 
   Inertial inertial;
   if (const Element* const pose = find(element, {"inertial", "pose"}))
     inertial.X_LI = written_pose(pose->node()).value_or(Pose{});
-  if (mass) inertial.mass = mass->real();
+  if (mass != nullptr) inertial.mass = mass->real();
   if (inertial.mass <= 0.0 || std::isinf(inertial.mass))
     report.problem(mass, "expected a mass > 0 kg, not " + mass->text());
-  if (!inertia) return inertial;
+  if (inertia == nullptr) return inertial;
 
   const auto component = [&](const char* name) { return inertia->real(name); };
   const double xx = component("ixx"), yy = component("iyy"), zz = component("izz");
@@ -134,7 +135,7 @@ Inertial read_written_inertial(const Element* element, const Link& link, const S
 // Returns <cohort:density> of a link or a collision; nothing if it has none.
 std::optional<double> read_density(const Element* parent, const SdfReport& report) {
   const Element* const element = parent->child("cohort:density");
-  if (!element) return std::nullopt;
+  if (element == nullptr) return std::nullopt;
   if (const Element* const again = element->next_alike()) report.problem(again, "<cohort:density> is given twice");
   const auto values = ExtensionValues::read(element, *find_extension("density", parent->name()), report);
   return values ? std::optional(values->real("density")) : std::nullopt;
@@ -177,7 +178,7 @@ std::optional<Inertial> read_inertial_from_density(const Element* element, const
 
 double read_coefficient(const Element* element, double by_default, double greatest, const char* expected,
                         const SdfReport& report) {
-  if (!element) return by_default;
+  if (element == nullptr) return by_default;
   const auto value = element->real();
   if (!(value < 0.0) && !(value > greatest)) return value;
   const double nearest = value < 0.0 ? 0.0 : greatest;
@@ -188,14 +189,14 @@ double read_coefficient(const Element* element, double by_default, double greate
 double read_friction_coefficient(const Element* element, const SdfReport& report) {
   constexpr double as_if_glued = 1e3;
   const char* const expected = "expected a coefficient >= 0";
-  if (element && element->real() < 0.0 && report.flaw(element, expected, "unlimited friction is used"))
+  if (element != nullptr && element->real() < 0.0 && report.flaw(element, expected, "unlimited friction is used"))
     return as_if_glued;
   return read_coefficient(element, 1.0, std::numeric_limits<double>::max(), expected, report);
 }
 
 std::uint32_t read_material(const Element* collision, const ModelReading& reading) {
   const Element* const element = collision->child("cohort:material");
-  if (!element) return 0;
+  if (element == nullptr) return 0;
   if (const Element* const again = element->next_alike())
     reading.report.problem(again, "<cohort:material> is given twice");
   const auto values = ExtensionValues::read(element, *find_extension("material", "collision"), reading.report);
@@ -209,7 +210,7 @@ std::uint32_t read_material(const Element* collision, const ModelReading& readin
 
 bool read_grippable(const Element* collision, const SdfReport& report) {
   const Element* const element = collision->child("cohort:grippable");
-  if (!element) return false;
+  if (element == nullptr) return false;
   const auto values = ExtensionValues::read(element, *find_extension("grippable", "collision"), report);
   return values && values->flag("grippable");
 }
@@ -233,7 +234,7 @@ void read_friction(const Element& collision, const SdfReport& report, Surface& s
 
 // Reads softness from <ode> or, without it, from <bullet>.
 void read_softness(const Element* contact, const SdfReport& report, Surface& surface) {
-  const Element* const element = find(contact, {find(contact, {"ode"}) ? "ode" : "bullet"});
+  const Element* const element = find(contact, {find(contact, {"ode"}) != nullptr ? "ode" : "bullet"});
   const Element* const stiffness = find(element, {"kp"});
   if (is_written(stiffness)) surface.stiffness = stiffness->real();
   if (!(surface.stiffness > 0.0) && !std::isnan(surface.stiffness) &&

@@ -52,7 +52,7 @@ class Frames {
     const Element* element;
   };
   class Steps;
-  /// What leads from a frame to the one in which its pose is written.
+  /// The step from a frame to the one in which its pose is written.
   struct Step {
     std::optional<Pose> written;
     std::optional<Place> next;

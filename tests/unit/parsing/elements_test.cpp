@@ -52,7 +52,7 @@ std::string other_value(const ValueRule& rule, const std::string& value, const s
 struct Part {
   std::string path;
   Effect effect = Effect::full;
-  const ValueRule* value = nullptr;      ///< of an attribute, and of an element with a full effect
+  const ValueRule* value = nullptr;      ///< for an attribute, or an element with a full effect
   const ElementRule* element = nullptr;  ///< written with all of its content
 };
 
@@ -162,7 +162,7 @@ void change(const Part& part, XmlNode& root) {
   }
 }
 
-/// What users see of a document.
+/// The visible result of reading a document.
 struct Outcome {
   bool is_refused = false;
   std::string world;              ///< as exported and shown

@@ -26,8 +26,8 @@ void in_parallel(std::size_t count, unsigned threads, const Work& work) {
   take();
 }
 
-// Windows of time in each of which every robot runs once, on any thread. A window ends when all robots have run, so
-// that nobody waits for a thread that has no robot, because the system has not run it yet.
+// Windows of time in each of which every robot runs once, on any thread. A window ends when all robots have run. So no
+// thread waits for one that the system has suspended, unless that one has a robot.
 class Windows {
  public:
   Windows(std::size_t robots, std::size_t windows) : robots_(robots), windows_(windows) {}

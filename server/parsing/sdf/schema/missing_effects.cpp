@@ -38,8 +38,8 @@ class MissingEffects {
   void note(const Rule& rule, const std::string& name, const XmlNode& where, const std::string& path);
 
   UnknownNames missing_;
-  std::optional<Problem> first_;    // position of the first without any effect
-  std::vector<std::string> names_;  // of those without any effect
+  std::optional<Problem> first_;    // the position of the first one without any effect
+  std::vector<std::string> names_;  // all names without any effect
 };
 
 template <class Rule>

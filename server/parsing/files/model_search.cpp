@@ -1,6 +1,7 @@
 #include "server/parsing/files/model_search.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -110,13 +111,19 @@ std::optional<fs::path> ModelSearch::look_for(const std::string& name, const fs:
       if (input_.is_folder(each / name) && has_it(each / name)) return each / name;
       if (each.filename() == name && input_.is_folder(each) && has_it(each)) return each;
     }
-  for (fs::path above = folder; above != above.parent_path(); above = above.parent_path()) {
-    if ((above.filename() == name || is_package(above, name)) && has_it(above)) return above;
-    for (const fs::path& place : {above / name, above / "models" / name})
-      if (is_signed(place) ? has_it(place) : !inside.empty() && input_.is_file(place / inside)) return place;
-  }
+  for (fs::path above = folder; above != above.parent_path(); above = above.parent_path())
+    if (auto place = look_in(above, name, inside, has_it)) return place;
   if (auto package = find_package(name); package && has_it(*package)) return package;
   return first;
+}
+
+// Looks for the folder of a model or package in one above the file: itself, or one in it.
+std::optional<fs::path> ModelSearch::look_in(const fs::path& above, const std::string& name, const fs::path& inside,
+                                             const std::function<bool(const fs::path&)>& has_it) const {
+  if ((above.filename() == name || is_package(above, name)) && has_it(above)) return above;
+  for (const fs::path& place : {above / name, above / "models" / name})
+    if (is_signed(place) ? has_it(place) : !inside.empty() && input_.is_file(place / inside)) return place;
+  return std::nullopt;
 }
 
 std::string ModelSearch::searched_folders() const {
@@ -164,12 +171,12 @@ void ModelSearch::fail_to_find(const std::string& name) const {
 
 // Returns whether a folder is marked as a model or a package.
 bool ModelSearch::is_signed(const fs::path& folder) const {
-  for (const char* const sign : {"model.config", "package.xml"}) {
-    if (!input_.is_folder(folder) || !input_.is_file(folder / sign)) continue;
-    if (!input_.why_unreadable(folder / sign)) input_.read(folder / sign);  // so that it is kept
-    return true;
-  }
-  return false;
+  constexpr const char* signs[] = {"model.config", "package.xml"};
+  if (!input_.is_folder(folder)) return false;
+  const auto* const sign = std::ranges::find_if(signs, [&](const char* each) { return input_.is_file(folder / each); });
+  if (sign == std::end(signs)) return false;
+  if (!input_.why_unreadable(folder / *sign)) input_.read(folder / *sign);  // so that it is kept
+  return true;
 }
 
 // Finds a path without its package, like PyBullet.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -48,6 +49,9 @@ class ModelSearch {
   /// `folder` is that of the file that contains the name.
   std::optional<std::filesystem::path> look_for(const std::string& name, const std::filesystem::path& folder,
                                                 const std::filesystem::path& inside) const;
+  std::optional<std::filesystem::path> look_in(const std::filesystem::path& above, const std::string& name,
+                                               const std::filesystem::path& inside,
+                                               const std::function<bool(const std::filesystem::path&)>& has_it) const;
   bool is_signed(const std::filesystem::path& folder) const;
   std::optional<std::filesystem::path> find_file_above(const std::string& path, std::filesystem::path folder) const;
   bool is_package(const std::filesystem::path& folder, const std::string& name) const;

@@ -15,16 +15,16 @@ namespace {
 // in every direction. It matters only if it differs from the first.
 bool is_second_friction_without_direction(const Element* element) {
   const bool is_ode = element->name() == "mu2";
-  if ((!is_ode && element->name() != "friction2") || element->parent()->child("fdir1")) return false;
+  if ((!is_ode && element->name() != "friction2") || element->parent()->child("fdir1") != nullptr) return false;
   const Element* const first = element->parent()->child(is_ode ? "mu" : "friction");
-  return element->real() != (first ? first->real() : 1.0);
+  return element->real() != (first != nullptr ? first->real() : 1.0);
 }
 
 // Returns whether the element of <bullet> is replaced by one of <ode> beside it.
 bool is_bullets_beside_ode(const Element* element) {
   constexpr std::string_view names[] = {"friction", "friction2", "fdir1", "kp", "kd"};
   const Element* const parent = element->parent();
-  return parent && parent->name() == "bullet" && parent->parent()->child("ode") &&
+  return parent != nullptr && parent->name() == "bullet" && parent->parent()->child("ode") != nullptr &&
          std::ranges::find(names, element->name()) != std::end(names) &&
          !is_standard(element->rule()->value, element->text());
 }

@@ -84,7 +84,7 @@ constexpr double least_density = 1e-3;
 Inertial read_written_inertial(const Element* element, const Link& link, const SdfReport& report) {
   const Element* const mass = find(element, {"inertial", "mass"});
   const Element* const inertia = find(element, {"inertial", "inertia"});
-  if (mass != nullptr && mass->real() == 0.0 && report.is_foreign(mass))
+  if (mass != nullptr && mass->real() == 0.0 && SdfReport::is_foreign(mass))
     return inertial_of_shapes(link);  // already reported
   if (mass == nullptr) report.warning(element, "has no mass; SDF's default of 1 kg is used");
   if (inertia == nullptr) report.warning(element, "has no inertia; SDF's default of 1 kg m^2 about each axis is used");
@@ -92,9 +92,11 @@ Inertial read_written_inertial(const Element* element, const Link& link, const S
   Inertial inertial;
   if (const Element* const pose = find(element, {"inertial", "pose"}))
     inertial.X_LI = written_pose(pose->node()).value_or(Pose{});
-  if (mass != nullptr) inertial.mass = mass->real();
-  if (inertial.mass <= 0.0 || std::isinf(inertial.mass))
-    report.problem(mass, "expected a mass > 0 kg, not " + mass->text());
+  if (mass != nullptr) {
+    inertial.mass = mass->real();
+    if (inertial.mass <= 0.0 || std::isinf(inertial.mass))
+      report.problem(mass, "expected a mass > 0 kg, not " + mass->text());
+  }
   if (inertia == nullptr) return inertial;
 
   const auto component = [&](const char* name) { return inertia->real(name); };

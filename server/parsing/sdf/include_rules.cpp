@@ -25,6 +25,7 @@ std::optional<std::string> flaw_of_part(const XmlNode& part, const XmlNode& incl
   const auto known = attributes_of.find(part.name);
   if (known == attributes_of.end()) {
     std::vector<std::string> names;
+    names.reserve(attributes_of.size());
     for (const auto& [name, attributes] : attributes_of) names.push_back(name);
     return "unknown element" + suggestion(part.name, names);
   }

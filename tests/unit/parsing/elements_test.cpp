@@ -134,8 +134,9 @@ XmlNode& add_first(XmlNode& parent, const std::string& name) {
 XmlNode& parent_of(const std::string& path, XmlNode& root) {
   std::size_t start = path.find('/');
   XmlNode* node = first_of(root, path.substr(0, start));
-  for (std::size_t end; (end = path.find('/', start + 1)) != std::string::npos; start = end) {
+  for (std::size_t end = path.find('/', start + 1); end != std::string::npos; end = path.find('/', start + 1)) {
     const std::string name = path.substr(start + 1, end - start - 1);
+    start = end;
     if (node->child(name) == nullptr) add_first(*node, name);
     node = parsing::child_of(*node, name);
   }
@@ -149,7 +150,7 @@ void change(const Part& part, XmlNode& root) {
   if (name.front() == '@') {
     const std::string* const old = parent.attribute(name.substr(1));
     parsing::set_attribute(parent, name.substr(1),
-                           other_value(*part.value, old ? *old : part.value->standard, part.path));
+                           other_value(*part.value, old != nullptr ? *old : part.value->standard, part.path));
   } else if (part.element != nullptr) {
     parent.children.insert(parent.children.begin(),
                            full_element(*part.element, part.element->is_shared ? name : part.path));

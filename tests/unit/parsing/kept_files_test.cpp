@@ -184,6 +184,7 @@ class KeptFilesOfAllKinds : public Description {
   Experiment read() const { return read_experiment(folder_ / "run.yaml", 3, {}, {folder_ / "installed"}); }
   std::vector<std::string> names_of(const std::vector<KeptFile>& files) const {
     std::vector<std::string> names;
+    names.reserve(files.size());
     for (const KeptFile& file : files) names.push_back(fs::path(file.path).lexically_relative(folder_).string());
     return names;
   }

@@ -106,7 +106,7 @@ void RuleReader::read_line(std::string_view line, std::size_t level) {
   ChildRule& place = parent != nullptr ? parent->children.emplace_back() : unplaced;
   std::string_view name = next_word(line);
   place.presence = presence_of(next_word(line));
-  if (name.starts_with('[')) {
+  if (parent != nullptr && name.starts_with('[')) {
     name = name.substr(1, name.size() - 2);
     references_.push_back({parent, parent->children.size() - 1, name});
     if (!line.empty()) set_effect(next_word(line), place);

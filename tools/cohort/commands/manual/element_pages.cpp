@@ -94,7 +94,8 @@ class SdfSections {
  public:
   std::string text() {
     add(parsing::sdf_rule());
-    for (std::size_t next = 0; next < found_.size(); ++next) write(*found_[next]);
+    std::size_t next = 0;
+    while (next < found_.size()) write(*found_[next++]);  // which finds more
     return fmt::format("{}\n# Elements of SDFormat\n{}{}", made_from("server/parsing/sdf/schema"), sdf_introduction,
                        text_);
   }

@@ -34,9 +34,9 @@ An element without a remark has the effect that SDFormat defines. The remarks ha
 - **ignored**: it changes motion or measurements in other simulators, but not here. Each such name causes a warning.
 
 There is no message about an element with the default value. Elements that SDFormat does not define are
-[unknown](../sdf.md#third-party-files). [SDFormat support](../sdf.md) explains the elements that have an effect. A visual
-with a `<plane>`, `<heightmap>` or `<image>` is not shown. A test reads each element of this page with another value and
-compares the world and the messages with its remark (`ctest --preset release -R Elements`).
+[unknown](../sdf.md#third-party-files). [SDFormat support](../sdf.md) explains the elements that have an effect. A
+visual with a `<plane>`, `<heightmap>` or `<image>` is not shown. A test reads each element of this page with another
+value and compares the world and the messages with its remark (`ctest --preset release -R Elements`).
 )";
 
 constexpr std::string_view urdf_introduction = R"(

@@ -123,7 +123,8 @@ void MeshSurface::make_half_spaces(const description::TriangleMesh& hull) {
   half_spaces_.reserve(hull.triangles.size());
   for (const Triangle& triangle : hull.triangles) {
     const Vector3d normal = scaled_normal(hull.vertices, triangle).normalized();
-    const auto along = normal.x() * vertices.col(0) + (normal.y() * vertices.col(1) + normal.z() * vertices.col(2));
+    // In the order of Vector3d::dot(), which has the same bits.
+    const auto along = (normal.x() * vertices.col(0) + normal.y() * vertices.col(1)) + normal.z() * vertices.col(2);
     half_spaces_.push_back({normal, along.maxCoeff()});
   }
 }

@@ -26,7 +26,7 @@ bool is_bullets_beside_ode(const Element* element) {
   const Element* const parent = element->parent();
   return parent != nullptr && parent->name() == "bullet" && parent->parent()->child("ode") != nullptr &&
          std::ranges::find(names, element->name()) != std::end(names) &&
-         !is_standard(element->rule()->value, element->text());
+         (element->rule() == nullptr || !is_standard(element->rule()->value, element->text()));
 }
 
 }  // namespace

@@ -63,6 +63,15 @@ TEST_F(MissingEffects, OfStandardValuesAndOnAppearanceAreNotTold) {
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
+TEST_F(MissingEffects, ThatDependOnOtherElementsAreLookedForInUnknownOnesToo) {
+  const std::vector<Problem> problems = problems_of([&] {
+    return read("<model name=\"m\"><link name=\"a\"><ode/><bullet><friction>3</friction></bullet></link></model>");
+  });
+  ASSERT_EQ(problems.size(), 2u) << texts_of(problems);
+  EXPECT_TRUE(problems[0].message.starts_with("unknown element")) << texts_of(problems);
+  EXPECT_TRUE(problems[1].message.starts_with("unknown element")) << texts_of(problems);
+}
+
 TEST_F(MissingEffects, OfUrdfAreTold) {
   const std::string joint =
       "<joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/>\n<axis xyz=\"0 0 1\"/>\n";

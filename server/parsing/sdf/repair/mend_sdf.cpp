@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "server/core/text.hpp"
-#include "server/parsing/sdf/tree/unknown_names.hpp"
+#include "server/parsing/sdf/tree/counted_warnings.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
 namespace cohort::parsing {
@@ -44,7 +44,7 @@ class SdfMender {
 
   const std::filesystem::path& file_;
   std::vector<Problem>& warnings_;
-  UnknownNames told_;
+  CountedWarnings told_;
 };
 
 void SdfMender::mend(XmlNode& node, const std::string& path) {

@@ -5,7 +5,7 @@
 
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/schema/sdf_schema.hpp"
-#include "server/parsing/sdf/tree/unknown_names.hpp"
+#include "server/parsing/sdf/tree/counted_warnings.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
 namespace cohort::parsing {
@@ -19,14 +19,14 @@ std::string meant_by(const std::string& name, const std::vector<std::string>& kn
 class UnknownInSdf {
  public:
   void take_out_of(XmlNode& node, const ElementSchema& schema, const std::string& path);
-  const UnknownNames& found() const { return found_; }
+  const CountedWarnings& found() const { return found_; }
 
  private:
   void note(const XmlNode& where, const std::string& path, const std::string& message) {
     found_.add({where.file->shown, where.line, path, ""}, message);
   }
 
-  UnknownNames found_;
+  CountedWarnings found_;
 };
 
 void UnknownInSdf::take_out_of(XmlNode& node, const ElementSchema& schema, const std::string& path) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/parsing/sdf/tree/unknown_names.hpp"
+#include "server/parsing/sdf/tree/counted_warnings.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
 namespace cohort::parsing {
@@ -21,7 +21,7 @@ std::string joined(std::string name) {
 /// The scoped names of one model, and their replacements.
 class ScopedNames {
  public:
-  ScopedNames(const std::filesystem::path& file, UnknownNames& told) : file_(file), told_(told) {}
+  ScopedNames(const std::filesystem::path& file, CountedWarnings& told) : file_(file), told_(told) {}
 
   void collect(const XmlNode& node, const std::string& path);
   void join_in(XmlNode& node) const;
@@ -30,7 +30,7 @@ class ScopedNames {
   void join(std::string& text) const;
 
   const std::filesystem::path& file_;
-  UnknownNames& told_;
+  CountedWarnings& told_;
   std::set<std::string> names_;
 };
 
@@ -58,7 +58,7 @@ void ScopedNames::join_in(XmlNode& node) const {
   for (XmlNode& child : node.children) join_in(child);
 }
 
-void join_in_parts(XmlNode& node, const std::string& path, const std::filesystem::path& file, UnknownNames& told) {
+void join_in_parts(XmlNode& node, const std::string& path, const std::filesystem::path& file, CountedWarnings& told) {
   for (XmlNode& child : node.children) {
     const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
     if (child.name == "world") {
@@ -74,7 +74,7 @@ void join_in_parts(XmlNode& node, const std::string& path, const std::filesystem
 }  // namespace
 
 void join_scoped_names(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>* warnings) {
-  UnknownNames told;
+  CountedWarnings told;
   join_in_parts(sdf, "", file, told);
   if (warnings != nullptr) told.tell(*warnings);
 }

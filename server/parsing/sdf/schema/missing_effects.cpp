@@ -6,7 +6,7 @@
 
 #include "server/parsing/sdf/schema/sdf_rules.hpp"
 #include "server/parsing/sdf/schema/value_text.hpp"
-#include "server/parsing/sdf/tree/unknown_names.hpp"
+#include "server/parsing/sdf/tree/counted_warnings.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
 namespace cohort::parsing {
@@ -37,7 +37,7 @@ class MissingEffects {
   template <class Rule>
   void note(const Rule& rule, const std::string& name, const XmlNode& where, const std::string& path);
 
-  UnknownNames missing_;
+  CountedWarnings missing_;
   std::optional<Problem> first_;    // the position of the first one without any effect
   std::vector<std::string> names_;  // all names without any effect
 };

@@ -7,7 +7,7 @@
 
 #include "server/description/input_error.hpp"
 #include "server/parsing/files/xml_outline.hpp"
-#include "server/parsing/sdf/tree/unknown_names.hpp"
+#include "server/parsing/sdf/tree/counted_warnings.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 
 /// Steps of mend_urdf() on single elements.
@@ -32,7 +32,7 @@ class UrdfNotes {
  private:
   const std::filesystem::path& file_;
   std::vector<Problem>& warnings_;
-  UnknownNames unknown_;
+  CountedWarnings unknown_;
 };
 
 /// Renames joints that have the name of a link, which SDF does not allow.

@@ -26,8 +26,8 @@ using parsing::ValueRule;
 using parsing::ValueType;
 
 constexpr std::string_view sdf_introduction = R"(
-These are the elements and attributes of SDFormat 1.12, in the order of its specification, and what they do in Cohort.
-An element without a remark has the effect that SDFormat defines. The remarks have these meanings:
+These are the elements and attributes of SDFormat 1.12, and what they do in Cohort. An element without a remark has the
+effect that SDFormat defines. The remarks have these meanings:
 
 - **appearance only**: it changes how other simulators look, or a name that is not used here. Nothing is reported.
 - **no effect**: it changes how other simulators compute or look. One warning names all such elements of a file.
@@ -35,13 +35,14 @@ An element without a remark has the effect that SDFormat defines. The remarks ha
 
 There is no message about an element with the default value. Elements that SDFormat does not define are
 [unknown](../sdf.md#third-party-files). [SDFormat support](../sdf.md) explains the elements that have an effect. A
-visual with a `<plane>`, `<heightmap>` or `<image>` is not shown. A test reads each element of this page with another
-value and compares the world and the messages with its remark (`ctest --preset release -R Elements`).
+visual with a `<plane>`, `<heightmap>` or `<image>` is not shown. A test reads the elements of this page with other
+values and compares the world and the messages with the remarks (`ctest --preset release -R Elements`).
 )";
 
 constexpr std::string_view urdf_introduction = R"(
 These are the elements and attributes of URDF, and what they do in Cohort. An element without a remark has the effect
-that URDF defines. Every other element causes a warning. [URDF](../urdf.md) explains how files are read.
+that URDF defines. Every other element outside of `<visual>` causes a warning. [URDF](../urdf.md) explains how files
+are read, and names the elements of Bullet's `<contact>`.
 )";
 
 std::string_view name_of(ValueType type) {
@@ -146,6 +147,13 @@ std::string value_text(const UrdfAttribute& attribute) {
   return kind + (attribute.required ? " · required" : "");
 }
 
+std::string text_of(const UrdfForm& form) {
+  std::string text = bullet_of(fmt::format("`{}`{}", form.name, form.has_effect ? "" : " · **ignored**"));
+  for (const UrdfAttribute& attribute : form.attributes)
+    text += bullet_of(fmt::format("`{}@{}` · {}", form.name, attribute.name, value_text(attribute)));
+  return text;
+}
+
 std::string_view name_of(parsing::GazeboTarget target) {
   switch (target) {
     case parsing::GazeboTarget::robot: return "model";
@@ -163,13 +171,13 @@ std::string sdf_elements() { return SdfSections().text(); }
 
 std::string urdf_elements() {
   std::string text = fmt::format("{}\n# Elements of URDF\n{}", made_from("server/parsing/sdf/urdf"), urdf_introduction);
-  std::string_view parent;
-  for (const UrdfForm& form : parsing::urdf_forms()) {
-    if (form.parent != parent) text += fmt::format("\n## In `<{}>`\n\n", form.parent);
-    parent = form.parent;
-    text += bullet_of(fmt::format("`{}`{}", form.name, form.has_effect ? "" : " · **ignored**"));
-    for (const UrdfAttribute& attribute : form.attributes)
-      text += bullet_of(fmt::format("`{}@{}` · {}", form.name, attribute.name, value_text(attribute)));
+  std::vector<std::string_view> parents;
+  for (const UrdfForm& form : parsing::urdf_forms())
+    if (std::ranges::find(parents, form.parent) == parents.end()) parents.push_back(form.parent);
+  for (const std::string_view parent : parents) {
+    text += fmt::format("\n## In `<{}>`\n\n", parent);
+    for (const UrdfForm& form : parsing::urdf_forms())
+      if (form.parent == parent) text += text_of(form);
   }
   text +=
       "\n## In `<gazebo>`\n\nElements that set an [element of SDFormat](sdf-elements.md). All others are added to the "

@@ -9,11 +9,10 @@
 
 namespace cohort::parsing {
 
-/// Unknown names in files from other sources. Each is reported once, with its first position and the number of
-/// occurrences.
-class UnknownNames {
+/// Warnings about a file. Each message is reported once, with its first position and the number of occurrences.
+class CountedWarnings {
  public:
-  /// `place` has no message; `message` identifies the name.
+  /// `place` has no message.
   void add(const Problem& place, const std::string& message);
 
   /// Adds the warnings in the order of their first positions.

@@ -34,6 +34,7 @@ enum class Fidelity {
 /// The solver for joints and contacts, island by island.
 enum class Solver {
   iterative,  ///< sequential impulses, warm-started
+  convex,     ///< Newton's method on a convex function of the velocities, down to its minimum
   direct,     ///< Dantzig's algorithm on the whole island
   hybrid,     ///< direct for islands of few bodies, iterative for others
 };

@@ -89,7 +89,7 @@ std::string arithmetic_fingerprint() {
   add_functions(hash);
   add_random_numbers(hash);
   for (const auto dynamics : {description::Dynamics::bullet, description::Dynamics::cohort})
-    for (const auto solver : {description::Solver::iterative, description::Solver::direct})
+    for (const auto solver : {description::Solver::iterative, description::Solver::convex, description::Solver::direct})
       add_world(hash, dynamics, solver);
   char digits[17] = {};
   std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash.value()));

@@ -135,7 +135,8 @@ TEST(Motors, GiveTheCommandedEffortWithinTheirLimit) {
 }
 
 TEST(Motors, ApplyTheSameEffortWithEverySolver) {
-  for (const description::Solver solver : {description::Solver::iterative, description::Solver::direct}) {
+  for (const description::Solver solver :
+       {description::Solver::iterative, description::Solver::convex, description::Solver::direct}) {
     SmallWorld small;
     small.description.physics.solver = solver;
     const auto robot = small.add(tracked_robot(), at(0, 0, 0));

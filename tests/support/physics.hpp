@@ -17,7 +17,7 @@ struct Physics {
 
   bool operator==(const Physics&) const = default;
   std::string name() const {
-    const std::string solvers[] = {"", "_direct", "_hybrid"};
+    const std::string solvers[] = {"", "_convex", "_direct", "_hybrid"};
     const std::string fidelities[] = {"articulated", "treel", "planar"};
     return fidelities[static_cast<std::size_t>(fidelity)] + solvers[static_cast<std::size_t>(solver)] +
            (dynamics == description::Dynamics::bullet ? "_bullet" : "");

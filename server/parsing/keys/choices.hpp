@@ -11,7 +11,7 @@ namespace cohort::parsing {
 
 inline constexpr std::string_view fidelities[] = {"articulated", "treel", "planar"};
 inline constexpr std::string_view dynamics_kinds[] = {"bullet", "cohort"};
-inline constexpr std::string_view solvers[] = {"iterative", "direct", "hybrid"};
+inline constexpr std::string_view solvers[] = {"iterative", "convex", "direct", "hybrid"};
 inline constexpr std::string_view headings[] = {"random", "fixed", "towards", "away", "along"};
 inline constexpr std::string_view late_policies[] = {"wait", "hold", "zero", "detach", "stop"};
 inline constexpr std::string_view quantities[] = {"position", "pose",        "heading",     "velocity",

@@ -157,7 +157,7 @@ void BulletContact::save(SnapshotWriter& writer) const {
 void BulletContact::restore(const Pose& X_WA, const Pose& X_WB, SnapshotReader& reader) {
   int count = 0;
   reader.read(count);
-  if (count < 0 || count > ContactPoints::most) throw SnapshotError("snapshot: a contact has too many points");
+  if (count < 0 || count > MANIFOLD_CACHE_SIZE) throw SnapshotError("snapshot: a contact has too many points");
   state_->collide(X_WA, X_WB);  // creates the manifold
   btPersistentManifold* manifold = state_->manifold();
   if (manifold == nullptr && count > 0)

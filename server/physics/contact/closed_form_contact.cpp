@@ -56,9 +56,10 @@ void on_plane(const Box& box, const Pose& X_W, const HalfSpace& plane, double ma
     positions_W[i] = X_W.position + R * signs.cwiseProduct(box.size);
     corners[i] = {plane.height(positions_W[i]), i};
   }
-  std::partial_sort(corners.begin(), corners.begin() + ContactPoints::most, corners.end());
+  constexpr std::size_t corners_of_a_face = 4;
+  std::partial_sort(corners.begin(), corners.begin() + corners_of_a_face, corners.end());
   // Add them in the order of the corners, so that the solver sees the same rows in each step.
-  std::array<std::uint32_t, ContactPoints::most> lowest{};
+  std::array<std::uint32_t, corners_of_a_face> lowest{};
   for (std::size_t i = 0; i < lowest.size(); ++i) lowest[i] = corners[i].index;
   std::sort(lowest.begin(), lowest.end());
   for (const std::uint32_t corner : lowest) touch_plane(positions_W[corner], plane, margin, found);
@@ -90,10 +91,11 @@ void on_plane(const Cylinder& cylinder, const Pose& X_W, const HalfSpace& plane,
     }
     return;
   }
-  // The cylinder lies or leans: the ends of its lowest line are the points.
+  // The cylinder lies or leans: the ends and the middle of its lowest line are the points. A wheel that turns about its
+  // middle slips at both ends. Without the middle, it might as well turn about a point between the middle and an end.
   const Vector3d down = (upright * axis - plane.normal_W).normalized();
-  touch_plane(X_W.position + cylinder.radius * down - to_end, plane, margin, found);
-  touch_plane(X_W.position + cylinder.radius * down + to_end, plane, margin, found);
+  for (const double share : {-1.0, 0.0, 1.0})
+    touch_plane(X_W.position + cylinder.radius * down + share * to_end, plane, margin, found);
 }
 
 void on_plane(const Capsule& capsule, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
@@ -110,8 +112,8 @@ void on_plane(const Ellipsoid& ellipsoid, const Pose& X_W, const HalfSpace& plan
   touch_plane(X_W * lowest, plane, margin, found);
 }
 
-// Takes the vertices near the plane if there are at most four, otherwise four that are far from each other. Those that
-// touch come first. The body must not tip over an edge between vertices that were left out.
+// Takes the vertices near the plane. If there are too many, it takes the lowest one, and then always the one that is
+// furthest from those taken; those that touch come first.
 void on_plane(const Mesh& mesh, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
   if (!mesh.convex) return;  // it is static, and so is the plane
   struct Vertex {
@@ -121,30 +123,35 @@ void on_plane(const Mesh& mesh, const Pose& X_W, const HalfSpace& plane, double 
     bool is_taken = false;
   };
   std::vector<Vertex> near;
-  double least = margin;
   for (const Vector3d& vertex : mesh.triangles->vertices) {
     const Vector3d point_W = X_W * vertex;
     const double height = plane.height(point_W);
-    if (height >= margin) continue;
-    near.push_back({point_W, height, std::numeric_limits<double>::infinity()});
-    least = std::min(least, height);
+    if (height < margin) near.push_back({point_W, height, std::numeric_limits<double>::infinity()});
   }
-  constexpr double touching = 1e-3;  // height above the lowest vertex [m]
-  for (const bool only_touching : {true, false}) {
-    for (int taken = 0; taken < ContactPoints::most; ++taken) {
-      Vertex* furthest = nullptr;
-      for (Vertex& vertex : near)
-        if (vertex.away > 0.0 && (!only_touching || vertex.height < least + touching) &&
-            (furthest == nullptr || vertex.away > furthest->away))
-          furthest = &vertex;
-      if (furthest == nullptr) break;
-      furthest->is_taken = true;
-      for (Vertex& vertex : near)
-        vertex.away = std::min(vertex.away, (vertex.point_W - furthest->point_W).squaredNorm());
+  const auto take = [&](Vertex& taken) {
+    taken.is_taken = true;
+    for (Vertex& vertex : near) vertex.away = std::min(vertex.away, (vertex.point_W - taken.point_W).squaredNorm());
+  };
+  int left = ContactPoints::most;
+  if (std::ssize(near) > left) {
+    take(*std::ranges::min_element(near, {}, &Vertex::height));
+    --left;
+    for (const bool only_touching : {true, false}) {
+      const auto is_open = [&](const Vertex& vertex) {
+        return vertex.away > 0.0 && (!only_touching || vertex.height <= 0.0);
+      };
+      for (; left > 0; --left) {
+        Vertex* furthest = nullptr;
+        for (Vertex& vertex : near)
+          if (is_open(vertex) && (furthest == nullptr || vertex.away > furthest->away)) furthest = &vertex;
+        if (furthest == nullptr) break;
+        take(*furthest);
+      }
     }
   }
+  const bool is_all = left == ContactPoints::most;
   for (const Vertex& vertex : near)
-    if (vertex.is_taken) touch_plane(vertex.point_W, plane, margin, found);
+    if (is_all || vertex.is_taken) touch_plane(vertex.point_W, plane, margin, found);
 }
 
 // The point of a box's surface nearest to `point`, both in the box's frame. For a point inside, it is on the nearest

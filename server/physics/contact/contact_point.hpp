@@ -31,9 +31,9 @@ struct ContactPoint {
   }
 };
 
-/// The contact points of one pair of solids; four support any face on any other.
+/// The contact points of one pair of solids. Four support a box; a body with more corners rolls over all of them.
 struct ContactPoints {
-  static constexpr int most = 4;
+  static constexpr int most = 8;
 
   std::array<ContactPoint, most> points;
   int count = 0;

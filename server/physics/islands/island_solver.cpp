@@ -131,7 +131,7 @@ void IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> memb
 
 bool IslandSolver::solve_by_newton(Assembly& assembly, std::span<const std::uint32_t> members) {
   take(assembly, members);
-  if (!set_up(assembly) || method_ != Method::newton ||
+  if (!set_up(assembly) || find_iterative_method(assembly) != Method::newton ||
       !newton_.solve(problem_, precise_share * settled_change(assembly)))
     return false;
   damp_calm_heap(sound_, assembly, bodies_);
@@ -158,16 +158,16 @@ bool IslandSolver::set_up(Assembly& assembly) {
 
   problem_.clear();
   for (const std::uint32_t member : sound_) assembly.add_own_rows(member, problem_);
-  bool has_light_connections = false;
+  has_light_connections_ = false;
   has_connections_ = false;
   for (const std::uint32_t member : sound_)
     assembly.connections.for_each_of(member, [&](Connection& connection) {
       assembly.add_connection_rows(connection, problem_);
       has_connections_ = true;
-      has_light_connections =
-          has_light_connections || assembly.is_light(connection.a()) || assembly.is_light(connection.b());
+      has_light_connections_ =
+          has_light_connections_ || assembly.is_light(connection.a()) || assembly.is_light(connection.b());
     });
-  method_ = find_method(assembly, has_light_connections);
+  method_ = find_method(assembly);
   const FrictionStart start = find_start(assembly);
   for (const std::uint32_t member : sound_)
     assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_, start); });
@@ -185,6 +185,7 @@ bool IslandSolver::finish(Assembly& assembly) {
 }
 
 FrictionStart IslandSolver::find_start(const Assembly& assembly) const {
+  if (method_ == Method::convex) return FrictionStart::last;
   if (sound_.size() > 1) return method_ == Method::newton ? FrictionStart::last : FrictionStart::shared;
   const Multibody& body = *assembly.members[sound_.front()].multibody;
   if (!body.mechanism().is_free_body()) return FrictionStart::shared;
@@ -194,13 +195,19 @@ FrictionStart IslandSolver::find_start(const Assembly& assembly) const {
                                                                                 : FrictionStart::shared;
 }
 
-IslandSolver::Method IslandSolver::find_method(const Assembly& assembly, bool has_light_connections) const {
+IslandSolver::Method IslandSolver::find_method(const Assembly& assembly) const {
   const bool is_symmetric = std::ranges::all_of(
       sound_, [&](std::uint32_t member) { return bodies_[assembly.anchors.index_of_member[member]].is_symmetric(); });
   if (!is_symmetric) return Method::many_passes;
   if (is_solved_directly(assembly.settings, sound_.size())) return Method::direct;
+  if (assembly.settings.solver == description::Solver::convex) return Method::convex;
+  return find_iterative_method(assembly);
+}
+
+// For the iterative solver, and for islands that are too large for the convex one.
+IslandSolver::Method IslandSolver::find_iterative_method(const Assembly& assembly) const {
   if (has_connections_)
-    return has_light_connections && sound_.size() <= most_lightly_connected ? Method::newton : Method::passes;
+    return has_light_connections_ && sound_.size() <= most_lightly_connected ? Method::newton : Method::passes;
   return sound_.size() == 1 || has_carried(sound_, assembly) ? Method::newton : Method::passes;
 }
 
@@ -208,6 +215,10 @@ void IslandSolver::solve_rows(const Assembly& assembly) {
   const double settled = settled_change(assembly);
   const bool is_alone = sound_.size() == 1;
   if (method_ == Method::direct && solve_directly(problem_)) return;
+  if (method_ == Method::convex) {
+    if (problem_.row_count() == 0 || convex_.solve(problem_)) return;
+    method_ = find_iterative_method(assembly);
+  }
   if (method_ != Method::direct && solve_by_active_set(problem_)) return;
   if (method_ == Method::newton && !(is_alone && has_cones()) && newton_.solve(problem_, precise_share * settled))
     return;

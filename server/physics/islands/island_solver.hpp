@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "server/physics/islands/assembly.hpp"
+#include "server/physics/solvers/convex_solver.hpp"
 #include "server/physics/solvers/impacts.hpp"
 #include "server/physics/solvers/newton_solver.hpp"
 
@@ -19,14 +20,15 @@ class IslandSolver {
   bool solve_by_newton(Assembly& assembly, std::span<const std::uint32_t> members);
 
  private:
-  enum class Method : std::uint8_t { passes, many_passes, direct, newton };
+  enum class Method : std::uint8_t { convex, passes, many_passes, direct, newton };
 
   void take(const Assembly& assembly, std::span<const std::uint32_t> members);
   bool try_to_solve(Assembly& assembly);
   bool all_are_finite(Assembly& assembly);
   bool set_up(Assembly& assembly);
   bool finish(Assembly& assembly);
-  Method find_method(const Assembly& assembly, bool has_light_connections) const;
+  Method find_method(const Assembly& assembly) const;
+  Method find_iterative_method(const Assembly& assembly) const;
   FrictionStart find_start(const Assembly& assembly) const;
   void solve_rows(const Assembly& assembly);
   bool has_cones() const;
@@ -34,10 +36,12 @@ class IslandSolver {
   IslandBodies bodies_;
   Problem problem_{bodies_};
   NewtonSolver newton_;
+  ConvexSolver convex_;
   Impacts impacts_;
   std::vector<std::uint32_t> sound_;      // members
   std::vector<double> without_impulses_;  // velocities of the first body
   bool has_connections_ = false;
+  bool has_light_connections_ = false;
   Method method_ = Method::passes;
 };
 

@@ -153,6 +153,11 @@ void Mechanism::find_light_segments() {
   for (std::size_t s = segments_.size(); s-- > 0;)
     if (segments_[s].parent >= 0) masses[static_cast<std::size_t>(segments_[s].parent)] += masses[s];
   for (const double mass : masses) is_light_.push_back(mass < light_share * masses[0] ? 1 : 0);
+  mass_beyond_.resize(dofs_.size());
+  for (std::size_t s = 0; s < segments_.size(); ++s)
+    std::fill_n(mass_beyond_.begin() + segments_[s].first_dof, segments_[s].dofs, masses[s]);
+  for (const Segment& segment : segments_)
+    if (segment.last_dof >= 0 && !(&segment == segments_.data() && has_kinematic_root())) moving_mass_ += segment.mass;
 }
 
 void Mechanism::add_link(std::size_t link, const std::vector<char>& welded) {

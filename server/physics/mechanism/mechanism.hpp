@@ -97,6 +97,11 @@ class Mechanism {
   /// easily moves this part and hardly moves the rest.
   bool is_light(int segment) const { return is_light_[static_cast<std::size_t>(segment)] != 0; }
 
+  /// Returns the mass of everything that forces can move [kg].
+  double moving_mass() const { return moving_mass_; }
+  /// Returns the mass that moves with a dof [kg].
+  double mass_beyond(int dof) const { return mass_beyond_[static_cast<std::size_t>(dof)]; }
+
   int dof_count() const { return static_cast<int>(dofs_.size()); }
   /// Returns the length of a velocity vector in the solver, padded with zeros. A mechanism welded to the world has such
   /// a vector too.
@@ -125,7 +130,9 @@ class Mechanism {
   DeviceOutputs outputs_;
   std::vector<double> zero_coordinates_;
   std::vector<int> parents_;
-  std::vector<char> is_light_;  // by segment
+  std::vector<char> is_light_;       // by segment
+  std::vector<double> mass_beyond_;  // by dof
+  double moving_mass_ = 0.0;
   bool is_chain_ = true;
   bool has_wheels_ = false;
 };

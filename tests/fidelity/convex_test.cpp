@@ -41,8 +41,8 @@ INSTANTIATE_TEST_SUITE_P(AtAnyStep, Convex,
 
 constexpr std::size_t left = 0, right = 1;  // joints of a driven base
 
-// A base on two wheels, each turned by a motor, and on frictionless balls in front and behind: five bodies' worth of
-// contacts, of which statics tells only the sum.
+// A base on two wheels, each turned by a motor, and on frictionless balls in front and behind. Statics alone does not
+// tell how these four share the weight.
 Model driven_base(const description::Shape& wheel) {
   Model model = loose("base", Box{{0.3, 0.2, 0.05}}, solid_box(5.0, {0.4, 0.3, 0.1}));
   model.links[0].collisions.clear();
@@ -125,9 +125,10 @@ TEST_P(Convex, AHeavyBoxOnALightOneStands) {
 
 description::Mesh prism(int corners, double radius, double height) {
   auto mesh = std::make_shared<description::TriangleMesh>();
-  for (int i = 0; i < 2 * corners; ++i) {
-    const double angle = 2.0 * M_PI * (i / 2) / corners;
-    mesh->vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), (i % 2 - 0.5) * height);
+  for (int corner = 0; corner < corners; ++corner) {
+    const double angle = 2.0 * M_PI * corner / corners;
+    for (const double z : {-0.5 * height, 0.5 * height})
+      mesh->vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
   }
   for (std::uint32_t i = 2; i < mesh->vertices.size(); ++i) mesh->triangles.push_back({i - 2, i - 1, i});
   return {mesh, true};
@@ -228,7 +229,9 @@ TEST_P(Convex, HasTheSameBitsForAnyNumberOfThreadsAndAfterARestore) {
       description::World its = world();
       its.physics.fidelity = description::Fidelity::treel;
       auto small = std::make_unique<SmallWorld>(std::move(its), threads);
-      for (int i = 0; i < 12; ++i) small->add(tracked_robot(), at(0.13 * (i % 4), 0.13 * (i / 4), 0, i));
+      for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+          small->add(tracked_robot(), at(0.13 * column, 0.13 * row, 0, 4 * row + column));
       for (int i = 0; i < 6; ++i) {
         small->add(loose("box", Box{Vector3d::Constant(0.05)}, solid_box(0.2, Vector3d::Constant(0.05))),
                    at(-0.1, 0.06 * i, 0.03 + 0.02 * i));

@@ -216,7 +216,10 @@ std::span<const Extension> extensions() {
 
 std::span<const ExtensionKey> sensor_keys() {
   static constexpr auto keys = std::apply(
-      [](const auto&... each) { return std::array<ExtensionKey, sizeof...(each)>{each...}; }, keys::readout_keys);
+      [](const auto&... each) {
+        return std::array<ExtensionKey, sizeof...(each)>{static_cast<const ExtensionKey&>(each)...};
+      },
+      keys::readout_keys);
   return keys;
 }
 

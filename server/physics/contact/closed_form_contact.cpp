@@ -112,45 +112,44 @@ void on_plane(const Ellipsoid& ellipsoid, const Pose& X_W, const HalfSpace& plan
   touch_plane(X_W * lowest, plane, margin, found);
 }
 
-// Takes the vertices near the plane. If there are too many, it takes the lowest one, and then always the one that is
-// furthest from those taken; those that touch come first.
+// A vertex near a plane.
+struct LowVertex {
+  Vector3d point_W;
+  double height;
+  double away = std::numeric_limits<double>::infinity();  // squared distance to the nearest vertex that was taken
+  bool is_taken = false;
+};
+
+// Returns the vertex that is furthest from those taken, or nullptr if all were taken. Those that touch come first.
+LowVertex* next_to_take(std::vector<LowVertex>& near) {
+  for (const double highest : {0.0, std::numeric_limits<double>::infinity()}) {
+    LowVertex* furthest = nullptr;
+    for (LowVertex& vertex : near)
+      if (vertex.height <= highest && vertex.away > 0.0 && (furthest == nullptr || vertex.away > furthest->away))
+        furthest = &vertex;
+    if (furthest != nullptr) return furthest;
+  }
+  return nullptr;
+}
+
+// Takes the vertices near the plane. If there are too many, it takes the lowest one and then those that are furthest
+// from each other.
 void on_plane(const Mesh& mesh, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
   if (!mesh.convex) return;  // it is static, and so is the plane
-  struct Vertex {
-    Vector3d point_W;
-    double height;
-    double away;  // squared distance to the nearest vertex that was taken
-    bool is_taken = false;
-  };
-  std::vector<Vertex> near;
+  std::vector<LowVertex> near;
   for (const Vector3d& vertex : mesh.triangles->vertices) {
     const Vector3d point_W = X_W * vertex;
     const double height = plane.height(point_W);
-    if (height < margin) near.push_back({point_W, height, std::numeric_limits<double>::infinity()});
+    if (height < margin) near.push_back({point_W, height});
   }
-  const auto take = [&](Vertex& taken) {
-    taken.is_taken = true;
-    for (Vertex& vertex : near) vertex.away = std::min(vertex.away, (vertex.point_W - taken.point_W).squaredNorm());
-  };
-  int left = ContactPoints::most;
-  if (std::ssize(near) > left) {
-    take(*std::ranges::min_element(near, {}, &Vertex::height));
-    --left;
-    for (const bool only_touching : {true, false}) {
-      const auto is_open = [&](const Vertex& vertex) {
-        return vertex.away > 0.0 && (!only_touching || vertex.height <= 0.0);
-      };
-      for (; left > 0; --left) {
-        Vertex* furthest = nullptr;
-        for (Vertex& vertex : near)
-          if (is_open(vertex) && (furthest == nullptr || vertex.away > furthest->away)) furthest = &vertex;
-        if (furthest == nullptr) break;
-        take(*furthest);
-      }
-    }
+  const bool is_all = std::ssize(near) <= ContactPoints::most;
+  LowVertex* next = is_all ? nullptr : &*std::ranges::min_element(near, {}, &LowVertex::height);
+  for (int i = 0; next != nullptr && i < ContactPoints::most; ++i) {
+    next->is_taken = true;
+    for (LowVertex& vertex : near) vertex.away = std::min(vertex.away, (vertex.point_W - next->point_W).squaredNorm());
+    next = next_to_take(near);
   }
-  const bool is_all = left == ContactPoints::most;
-  for (const Vertex& vertex : near)
+  for (const LowVertex& vertex : near)
     if (is_all || vertex.is_taken) touch_plane(vertex.point_W, plane, margin, found);
 }
 

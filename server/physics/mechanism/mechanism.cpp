@@ -58,7 +58,7 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
   std::vector<char> welded(model.joints.size(), 0);
   for (const description::Device& device : model.devices) {
     const description::TrackPair* const drive = description::tracks_of(device);
-    if (!drive) continue;
+    if (drive == nullptr) continue;
     for (const auto* wheels : {&drive->left_wheels, &drive->right_wheels}) {
       for (const std::size_t wheel : *wheels) {
         if (fidelity == description::Fidelity::articulated) {

@@ -222,8 +222,13 @@ TEST_P(Convex, ARobotOnFourLegsStandsStillAndSleeps) {
 }
 
 // Robots with tracks that push each other, boxes and hulls.
-TEST_P(Convex, HasTheSameBitsForAnyNumberOfThreadsAndAfterARestore) {
-  if (std::get<0>(GetParam()) != 10) return;
+class ConvexBits : public Convex {};
+INSTANTIATE_TEST_SUITE_P(At, ConvexBits,
+                         ::testing::Combine(::testing::Values(10),
+                                            ::testing::Values(Dynamics::cohort, Dynamics::bullet)),
+                         name_of_step);
+
+TEST_P(ConvexBits, AreTheSameForAnyNumberOfThreadsAndAfterARestore) {
   const auto hash_after = [&](unsigned threads, bool restores) {
     const auto create = [&] {
       description::World its = world();

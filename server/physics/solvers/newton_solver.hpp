@@ -1,10 +1,9 @@
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "server/physics/multibody/rows.hpp"
-#include "server/physics/solvers/block_cholesky.hpp"
+#include "server/physics/solvers/newton_on_rows.hpp"
 #include "server/physics/solvers/yielding_rows.hpp"
 
 namespace cohort::physics {
@@ -24,7 +23,7 @@ namespace cohort::physics {
 /// methods", 1982, chapters 2 and 5). The first guess is that of the last step, which usually solves a heap at rest.
 ///
 /// Reuses its memory; each worker has one.
-class NewtonSolver {
+class NewtonSolver : private NewtonOnRows<YieldingRows> {
  public:
   /// Returns false, without any change, if it would cost too much or no minimum was found. `negligible`: an error of
   /// the velocity of a row that does not matter [m/s or rad/s]. `most_minima`: how many of them are found at most; the
@@ -33,35 +32,10 @@ class NewtonSolver {
   static constexpr int usual_minima = 10;
 
  private:
-  bool is_small(const Problem& problem);
-  void start();
-  bool prepare();
   bool follow(double negligible, int most_minima);
   bool minimise(double negligible, int& steps_left, double& moved);
-  bool evaluate();
-  void factorise();
-  void add_outer_products(const YieldingRow& term);
-  double find_step();
-  double slope(double share, double* curvature);
-  double find_share();
-  void add_step(double share);
-  void apply();
 
-  const Row& row(const YieldingRow& term, std::size_t i = 0) const { return problem_->rows()[term.row + i]; }
-  double along(const Row& row, const std::vector<double>& velocities) const;
-
-  Problem* problem_ = nullptr;
-  YieldingRows rows_;
-  BlockCholesky matrix_;
-  std::vector<int> sizes_;          // by body
-  std::vector<double> inertia_;     // mass matrices
-  std::vector<std::size_t> begin_;  // start of each body's mass matrix
-  std::vector<double> velocity_;    // vectors as in the matrix
-  std::vector<double> momentum_;    // that the impulses have added
-  std::vector<double> step_;        // step of the velocity
-  std::vector<double> step_momentum_;
   std::vector<double> found_;  // the velocity at the last minimum
-  bool is_factorised_ = false;
 };
 
 }  // namespace cohort::physics

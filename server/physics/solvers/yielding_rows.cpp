@@ -63,7 +63,7 @@ void YieldingRows::gather(Problem& problem) {
 }
 
 // `response`: what the bodies yield to a unit impulse. `least`: what the heaviest body yields.
-void YieldingRows::soften(YieldingRow& term, double response, double least) {
+void YieldingRows::soften(YieldingRow& term, double response, double least) const {
   const Row& of = row(term);
   const bool is_above = of.lower > -unlimited;
   const bool is_below = of.upper < unlimited;

@@ -6,26 +6,16 @@
 #include <vector>
 
 #include "server/physics/multibody/rows.hpp"
-#include "server/physics/solvers/block_cholesky.hpp"
+#include "server/physics/solvers/newton_on_rows.hpp"
 
 namespace cohort::physics {
 
-/// A row, or the two rows of a cone.
-struct YieldingRow {
-  std::size_t row = 0;
-  std::size_t count = 1;  ///< number of rows
-  bool is_free = false;   ///< the impulse is within its limits
+/// A row of YieldingRows.
+struct YieldingRow : SmoothRow {
+  bool is_free = false;  ///< the impulse is within its limits
   double compliance = 0.0;
-  double forgotten = 0.0;  ///< share of the impulse that is missing in the next guess
-  double lower = 0.0;
-  double upper = 0.0;                ///< radius of a cone
-  std::array<double, 2> guess{};     ///< guess of the impulse
-  std::array<double, 2> velocity{};  ///< along each row
-  std::array<double, 2> change{};    ///< change of the velocity by a whole step
-  std::array<double, 2> impulse{};
-  std::array<double, 3> stiffness{};             ///< negative derivative of the impulse: first, second, mixed
-  std::array<double, 3> factorised{};            ///< the stiffness in the present factors
-  std::array<BlockCholesky::Block, 3> blocks{};  ///< first body, second body, both
+  double forgotten = 0.0;         ///< share of the impulse that is missing in the next guess
+  std::array<double, 2> guess{};  ///< guess of the impulse
 };
 
 /// The rows of a problem as functions of the velocities: each yields a little, so that its impulse is a first guess
@@ -35,12 +25,15 @@ struct YieldingRow {
 /// Reuses its memory.
 class YieldingRows {
  public:
+  using Term = YieldingRow;
+
   /// Takes the rows of `problem`, which must outlive this, and guesses the impulses of the last step.
   void gather(Problem& problem);
   /// Guesses the loads of new contacts: those that would stop the bodies. `along`: returns the velocity along a row.
   template <class Along>
   void guess_loads(Along&& along);
 
+  const Row& row(const YieldingRow& term, std::size_t i = 0) const { return problem_->rows()[term.row + i]; }
   std::vector<YieldingRow>& terms() { return terms_; }
   const std::vector<YieldingRow>& terms() const { return terms_; }
   const std::vector<double>& impulses() const { return impulses_; }  ///< by row of the problem
@@ -61,9 +54,8 @@ class YieldingRows {
   void apply() const;
 
  private:
-  void soften(YieldingRow& term, double response, double least);
+  void soften(YieldingRow& term, double response, double least) const;
   double response_of_heavier(const Row& row, double response) const;
-  const Row& row(const YieldingRow& term, std::size_t i = 0) const { return problem_->rows()[term.row + i]; }
 
   Problem* problem_ = nullptr;
   std::vector<YieldingRow> terms_;

@@ -28,10 +28,10 @@ struct SmoothRow {
 /// are functions of the same velocities. The matrix of the equations of a step is the mass matrix plus the stiffness of
 /// the rows. `Rows` has `terms`, each a SmoothRow, and `row`, `evaluate` and `apply`.
 ///
-/// Reuses its memory.
+/// Reuses its memory. All is public for a solver, which derives from it privately.
 template <class Rows>
 class NewtonOnRows {
- protected:
+ public:
   using Term = typename Rows::Term;
 
   /// Starts with the bodies of a problem, which must outlive this. Returns false if a body has too many dofs.

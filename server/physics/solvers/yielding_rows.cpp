@@ -82,27 +82,26 @@ void YieldingRows::soften(YieldingRow& term, double response, double least) cons
 }
 
 bool YieldingRows::are_settled(double negligible) const {
-  for (const YieldingRow& term : terms_) {
-    std::array<double, 2> error{};
-    for (std::size_t i = 0; i < term.count; ++i)
-      error[i] = term.velocity[i] - row(term, i).target + term.forgotten * term.compliance * impulses_[term.row + i];
-    const double response = response_of(row(term));
-    if (term.count == 1) {
-      const double impulse = impulses_[term.row];
-      if (std::max(term.lower - impulse, impulse - term.upper) * response > negligible) return false;
-      if (error[0] > negligible && impulse > term.lower) return false;
-      if (error[0] < -negligible && impulse < term.upper) return false;
-      continue;
-    }
-    const std::array<double, 2> impulse{impulses_[term.row], impulses_[term.row + 1]};
-    const double length = length_of(impulse[0], impulse[1]);
-    if ((length - term.upper) * response > negligible) return false;
-    const double sliding = length > 0.0 ? -(error[0] * impulse[0] + error[1] * impulse[1]) / length : 0.0;
-    if (length >= term.upper && sliding > 0.0)
-      for (std::size_t i = 0; i < 2; ++i) error[i] += sliding * impulse[i] / length;
-    if ((length > 0.0 || term.upper > 0.0) && length_of(error[0], error[1]) > negligible) return false;
+  return std::ranges::all_of(terms_, [&](const YieldingRow& term) { return is_settled(term, negligible); });
+}
+
+bool YieldingRows::is_settled(const YieldingRow& term, double negligible) const {
+  std::array<double, 2> error{};
+  for (std::size_t i = 0; i < term.count; ++i)
+    error[i] = term.velocity[i] - row(term, i).target + term.forgotten * term.compliance * impulses_[term.row + i];
+  const double response = response_of(row(term));
+  if (term.count == 1) {
+    const double impulse = impulses_[term.row];
+    return std::max(term.lower - impulse, impulse - term.upper) * response <= negligible &&
+           (error[0] <= negligible || impulse <= term.lower) && (error[0] >= -negligible || impulse >= term.upper);
   }
-  return true;
+  const std::array<double, 2> impulse{impulses_[term.row], impulses_[term.row + 1]};
+  const double length = length_of(impulse[0], impulse[1]);
+  if ((length - term.upper) * response > negligible) return false;
+  const double sliding = length > 0.0 ? -(error[0] * impulse[0] + error[1] * impulse[1]) / length : 0.0;
+  if (length >= term.upper && sliding > 0.0)
+    for (std::size_t i = 0; i < 2; ++i) error[i] += sliding * impulse[i] / length;
+  return (length == 0.0 && term.upper == 0.0) || length_of(error[0], error[1]) <= negligible;
 }
 
 void YieldingRows::evaluate(YieldingRow& term, double share) const {

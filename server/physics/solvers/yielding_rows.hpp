@@ -54,6 +54,7 @@ class YieldingRows {
   void apply() const;
 
  private:
+  bool is_settled(const YieldingRow& term, double negligible) const;
   void soften(YieldingRow& term, double response, double least) const;
   double response_of_heavier(const Row& row, double response) const;
 

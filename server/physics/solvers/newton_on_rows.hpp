@@ -28,10 +28,10 @@ struct SmoothRow {
 /// are functions of the same velocities. The matrix of the equations of a step is the mass matrix plus the stiffness of
 /// the rows. `Rows` has `terms`, each a SmoothRow, and `row`, `evaluate` and `apply`.
 ///
-/// Reuses its memory. All is public for a solver, which derives from it privately.
+/// Reuses its memory.
 template <class Rows>
 class NewtonOnRows {
- public:
+ protected:
   using Term = typename Rows::Term;
 
   /// Starts with the bodies of a problem, which must outlive this. Returns false if a body has too many dofs.
@@ -62,6 +62,7 @@ class NewtonOnRows {
   void for_each_body(const Row& row, Visit&& visit) const;
   std::ptrdiff_t length() const { return static_cast<std::ptrdiff_t>(matrix_.length()); }
 
+  // NOLINTBEGIN(misc-non-private-member-variables-in-classes): a solver derives from this to work on them.
   Problem* problem_ = nullptr;
   Rows rows_;
   BlockCholesky matrix_;
@@ -74,6 +75,7 @@ class NewtonOnRows {
   std::vector<double> step_;        // step of the velocity
   std::vector<double> step_momentum_;
   bool is_factorised_ = false;
+  // NOLINTEND(misc-non-private-member-variables-in-classes)
 
  private:
   static constexpr double most_elimination_work = 4e6;  // multiplications in one factorisation

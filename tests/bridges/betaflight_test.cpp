@@ -339,17 +339,17 @@ class Betaflight : public ::testing::Test {
 
 // The second run ends while the copter hovers.
 TEST_F(Betaflight, TakesOffHoversAndLandsWithTheSameBitsTwice) {
-  constexpr int again = 12;
+  constexpr int again = 11;
   std::string expected;
   {
-    const Field& field = lay_out(1, 37, 7, 30);
+    const Field& field = lay_out(1, 24, 7, 17);
     simulate(field, "copter_0", {"--threads", "1", "--record", (field / "run.mcap").string(), "--record-poses", "20"});
     expect_end();
     double drift = 0.0, error = 0.0;
     const std::vector<Place> places = path(field, "copter_0");
     ASSERT_FALSE(places.empty());
     for (const Place& place : places) {
-      if (place.time < 12 || place.time > 30) continue;
+      if (place.time < 11 || place.time > 17) continue;
       drift = std::max(drift, std::hypot(place.x, place.y));
       error = std::max(error, std::abs(place.z - 1.0));
     }
@@ -361,7 +361,7 @@ TEST_F(Betaflight, TakesOffHoversAndLandsWithTheSameBitsTwice) {
                 double{field.summary()["real_time_factor"]});
     expected = hash_at(field, std::to_string(again * 1000));
   }
-  const Field& field = lay_out(1, again, 7, 30);
+  const Field& field = lay_out(1, again, 7, 17);
   simulate(field, "copter_0", {"--threads", "2"});
   expect_end();
   EXPECT_EQ(field.summary()["ticks"], again * 1000);

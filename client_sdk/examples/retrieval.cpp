@@ -2,7 +2,8 @@
 // the call of the prey, grips it, turns its chassis under its turret towards the light and drives. The prey moves as
 // soon as enough robots pull and push.
 //
-// Its only state is the remaining time in which it drives around another robot.
+// A robot that others keep from gripping would push the prey the wrong way: it drives back soon, and comes from another
+// side. The only state are two times: how long it has been at the prey, and how long it still drives back or around.
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,8 @@ constexpr double full_speed = 0.12;    // speed of a track [m/s]
 constexpr double turning_gain = 0.15;  // speed of a track per angle to the target [m/s]
 constexpr double in_the_way = 0.6;     // proximity reading at 8 cm
 constexpr double around_time = 1.0;    // duration of driving around an obstacle [s]
+constexpr double back_time = 1.5;      // duration of driving back before that, if it cannot grip the prey [s]
+constexpr double patience = 4.0;       // time at the prey after which it drives back [s]
 constexpr double around = 1.2;         // angle of driving around an obstacle [rad]
 constexpr double call_at_prey = 0.4;   // sound level next to the prey; less one robot further out
 constexpr double darkness = 0.03;      // greatest noise of a light sensor in darkness
@@ -26,6 +29,7 @@ class Retrieval final : public cohort::Controller {
     robot_ = cohort::Sbot(start);
     step_ = start.seconds_per_step();
     around_for_ = 0.0;
+    at_prey_for_ = 0.0;
   }
 
   void step(const cohort::Observation& observation, cohort::Command& command) override {
@@ -39,8 +43,14 @@ class Retrieval final : public cohort::Controller {
       approach(observation, sound, command);
   }
 
-  void save(cohort::StateWriter& state) const override { state.write(around_for_); }
-  void load(cohort::StateReader& state) override { state.read(around_for_); }
+  void save(cohort::StateWriter& state) const override {
+    state.write(around_for_);
+    state.write(at_prey_for_);
+  }
+  void load(cohort::StateReader& state) override {
+    state.read(around_for_);
+    state.read(at_prey_for_);
+  }
 
  private:
   void approach(const cohort::Observation& observation, const cohort::Sbot::Sound& sound, cohort::Command& command) {
@@ -48,8 +58,11 @@ class Retrieval final : public cohort::Controller {
     double ahead = 0.0;
     for (const std::size_t i : {0u, 1u, 13u, 14u}) ahead = std::max(ahead, observation[robot_.proximity[i]]);
     const bool is_at_prey = sound.level > call_at_prey;
-    if (ahead > in_the_way && !is_at_prey) around_for_ = around_time;
-    around_for_ = is_at_prey ? 0.0 : std::max(0.0, around_for_ - step_);
+    at_prey_for_ = is_at_prey && around_for_ == 0.0 ? at_prey_for_ + step_ : 0.0;
+    if (ahead > in_the_way && !is_at_prey) around_for_ = std::max(around_for_, around_time);
+    if (at_prey_for_ > patience) around_for_ = back_time + around_time;
+    around_for_ = std::max(0.0, around_for_ - step_);
+    if (around_for_ > around_time) return robot_.turn(command, -full_speed, 0.0);
     // Pass other robots on the right.
     const double to = sound.bearing() + observation[robot_.turret] - (around_for_ > 0.0 ? around : 0.0);
     drive(std::remainder(to, 2.0 * std::numbers::pi), ahead > in_the_way ? 0.4 : 1.0, command);
@@ -71,7 +84,8 @@ class Retrieval final : public cohort::Controller {
 
   cohort::Sbot robot_;
   double step_ = 0.0;        // time from one answer to the next [s]
-  double around_for_ = 0.0;  // [s]
+  double around_for_ = 0.0;   // [s]
+  double at_prey_for_ = 0.0;  // [s]
 };
 
 }  // namespace

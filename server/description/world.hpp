@@ -49,7 +49,7 @@ enum class Dynamics {
 struct PhysicsSettings {
   Fidelity fidelity = Fidelity::treel;
   Dynamics dynamics = Dynamics::bullet;
-  Solver solver = Solver::iterative;
+  Solver solver = Solver::convex;
   std::uint32_t iterations = 10;                             ///< maximum number, for the iterative solver
   std::uint32_t direct_bodies = 4;                           ///< largest island that the hybrid solver solves directly
   double lowest = -std::numeric_limits<double>::infinity();  ///< a body below this z has left the world [m]

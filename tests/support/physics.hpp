@@ -12,12 +12,12 @@ namespace cohort::test {
 /// How a world is simulated: the parameter of tests that ask the same of every kind.
 struct Physics {
   description::Fidelity fidelity = description::Fidelity::treel;
-  description::Solver solver = description::Solver::iterative;
+  description::Solver solver = description::PhysicsSettings{}.solver;
   description::Dynamics dynamics = description::Dynamics::cohort;
 
   bool operator==(const Physics&) const = default;
   std::string name() const {
-    const std::string solvers[] = {"", "_convex", "_direct", "_hybrid"};
+    const std::string solvers[] = {"_iterative", "", "_direct", "_hybrid"};
     const std::string fidelities[] = {"articulated", "treel", "planar"};
     return fidelities[static_cast<std::size_t>(fidelity)] + solvers[static_cast<std::size_t>(solver)] +
            (dynamics == description::Dynamics::bullet ? "_bullet" : "");

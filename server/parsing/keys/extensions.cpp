@@ -85,7 +85,7 @@ constexpr ExtensionKey physics[] = {
      "forward dynamics algorithm: Bullet's articulated-body algorithm (`bullet`) or Cohort's mass-matrix method "
      "(`cohort`); ignored with fidelity `planar`",
      false, dynamics_kinds},
-    {"solver", choice, "", "iterative", "solver for joints and contacts: `iterative`, `convex`, `direct` or `hybrid`",
+    {"solver", choice, "", "convex", "solver for joints and contacts: `convex`, `iterative`, `direct` or `hybrid`",
      false, solvers},
     {"iterations", count, "1", "10", "maximum number of iterations of the iterative solver"},
     {"direct_bodies", count, "1", "4", "maximum size of a group of bodies that the `hybrid` solver solves directly"},

@@ -109,11 +109,11 @@ bodies on flat ground have only a position in the plane and a heading:
 **Dynamics.** The SDF element `<physics type="bullet">` has the same meaning as `bullet`. If it names another
 engine, Cohort warns and ignores the name.
 
-**Solver.** `iterative` uses sequential impulses, and other methods where these would leave errors. `convex`
-solves all joints and contacts of a group of bodies at once, by the same equations for any robot. Runs of the
-shipped experiments take 1.1 to 1.5 times as long. `direct` uses Dantzig's algorithm, which solves each group
-of bodies that are connected or in contact simultaneously. `hybrid` solves small groups directly and large
-groups iteratively.
+**Solver.** `convex` solves all joints and contacts of a group of bodies at once, by the same equations for any
+robot. `iterative` uses sequential impulses, and other methods where these would leave large errors; it is faster,
+above all for robots that grip each other. `direct` uses Dantzig's algorithm, which solves each group of bodies
+that are connected or in contact simultaneously. `hybrid` solves small groups directly and large groups
+iteratively.
 )md"},
       {"air", "world", R"md(
 A world has at most one such element.

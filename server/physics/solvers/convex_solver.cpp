@@ -38,7 +38,11 @@ bool ConvexSolver::solve(Problem& problem) {
     rows_.update(minimum == 1 ? 1.0 : share_of_limits);
     const bool is_same = evaluate();
     find_step();
-    if (find_residual() <= settled) break;
+    if (find_residual() <= settled) {
+      add_step(1.0);
+      evaluate();
+      break;
+    }
     minimise(is_same ? From::step : From::velocities, most_steps_a_minimum);
   }
   apply();

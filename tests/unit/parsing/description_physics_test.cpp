@@ -194,7 +194,7 @@ TEST_F(PhysicsOfAWorld, HasTheDefaultsOfTheManual) {
   for (const std::string& content : {std::string(), physics("")}) {
     const PhysicsSettings settings = read(content).physics;
     EXPECT_EQ(settings.fidelity, Fidelity::treel);
-    EXPECT_EQ(settings.solver, Solver::iterative);
+    EXPECT_EQ(settings.solver, Solver::convex);
     EXPECT_EQ(settings.iterations, 10u);
     EXPECT_EQ(settings.direct_bodies, 4u);
     EXPECT_EQ(settings.lowest, -std::numeric_limits<double>::infinity());

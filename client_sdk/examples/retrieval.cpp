@@ -83,7 +83,7 @@ class Retrieval final : public cohort::Controller {
   }
 
   cohort::Sbot robot_;
-  double step_ = 0.0;        // time from one answer to the next [s]
+  double step_ = 0.0;         // time from one answer to the next [s]
   double around_for_ = 0.0;   // [s]
   double at_prey_for_ = 0.0;  // [s]
 };

@@ -31,7 +31,10 @@ class Shipped {
     const std::span<const double> values = simulation.observation(0);
     std::size_t offset = 0;
     for (const Channel& each : simulation.kinds()[simulation.kind_of(0)].observation) {
-      if (each.name == channel) return {values.begin() + offset, values.begin() + offset + each.size};
+      if (each.name == channel) {
+        const std::span<const double> its = values.subspan(offset, each.size);
+        return {its.begin(), its.end()};
+      }
       offset += each.size;
     }
     return {};
@@ -240,7 +243,7 @@ TEST(ShippedExperiments, TheBoatStaysUprightAndCirclesTheBuoy) {
   for (const Eigen::Vector2d& place : run.path_of_the_first) {
     const Eigen::Vector2d from_buoy = place - Eigen::Vector2d(0.2, 3.1);
     EXPECT_NEAR(from_buoy.norm(), 3.1, 0.5);
-    quarters.insert(2 * (from_buoy.x() > 0.0) + (from_buoy.y() > 0.0));
+    quarters.insert((from_buoy.x() > 0.0 ? 2 : 0) + (from_buoy.y() > 0.0 ? 1 : 0));
   }
   EXPECT_EQ(quarters.size(), 4u);
 }

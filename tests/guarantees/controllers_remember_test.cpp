@@ -151,7 +151,7 @@ TEST_P(ControllersRemember, InAnyPlaceAndFromAnyPlace) {
 
 INSTANTIATE_TEST_SUITE_P(OfTheExperiment, ControllersRemember,
                          ::testing::Values(Case{"aggregation", 20.0}, Case{"assembly", 20.0, true, 2},
-                                           Case{"retrieval", 40.0}, Case{"lifting", 40.0}, Case{"chain", 60.0},
+                                           Case{"retrieval", 40.0, true, 3}, Case{"lifting", 40.0}, Case{"chain", 60.0},
                                            Case{"phototaxis", 5.0, false}),
                          [](const auto& tested) { return std::string(tested.param.experiment); });
 

@@ -89,8 +89,8 @@ class RunHere {
 
 class ControllersRemember : public ::testing::TestWithParam<Case> {
  protected:
-  std::string summary_of(std::vector<std::string> arguments) {
-    return run_experiment(file_of(GetParam()), std::move(arguments))["state_hash"];
+  std::string summary_of(const std::vector<std::string>& arguments) {
+    return run_experiment(file_of(GetParam()), arguments)["state_hash"];
   }
   std::string seconds_ = std::to_string(GetParam().seconds);
   std::string seed_ = std::to_string(GetParam().seed);

@@ -3,7 +3,7 @@
 // soon as enough robots pull and push.
 //
 // A robot that others keep from gripping would push the prey the wrong way: it drives back soon, and comes from another
-// side. The only state are two times: how long it has been at the prey, and how long it still drives back or around.
+// side. Its only state is two times: how long it has been at the prey, and how long it still drives back or around.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr double around_time = 1.0;    // duration of driving around an obstacle
 constexpr double back_time = 1.5;      // duration of driving back before that, if it cannot grip the prey [s]
 constexpr double patience = 4.0;       // time at the prey after which it drives back [s]
 constexpr double around = 1.2;         // angle of driving around an obstacle [rad]
-constexpr double call_at_prey = 0.4;   // sound level next to the prey; less one robot further out
+constexpr double call_at_prey = 0.4;   // sound level near the prey, within 35 cm of its centre
 constexpr double darkness = 0.03;      // greatest noise of a light sensor in darkness
 constexpr double slow_down = 1.0;      // angle to the light from which on it only turns [rad]
 

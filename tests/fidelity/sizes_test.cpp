@@ -85,8 +85,9 @@ class Sizes : public EveryPhysics {
 INSTANTIATE_TEST_SUITE_P(Every, Sizes, ::testing::Values(articulated, treel, by_bullet(treel), hybrid, planar),
                          name_of);
 
-// A body that is larger than a heightmap is near all its triangles.
-constexpr double much_longer = 30.0;
+// A body that is larger than a heightmap is near all its triangles: an ellipsoid takes 28 times as long. On a loaded
+// machine, caches make it more.
+constexpr double much_longer = 60.0;
 constexpr double too_short_to_compare = 0.002;  // [s]
 
 TEST_P(Sizes, DoNotAffectTheTimeOfAStep) {

@@ -54,9 +54,10 @@ constexpr Physics by_bullet(Physics physics) {
 }
 
 inline constexpr Physics articulated{description::Fidelity::articulated}, treel{description::Fidelity::treel},
+    iterative{description::Fidelity::treel, description::Solver::iterative},
     direct{description::Fidelity::treel, description::Solver::direct},
     hybrid{description::Fidelity::treel, description::Solver::hybrid}, planar{description::Fidelity::planar};
-inline const auto every_physics =
-    ::testing::Values(articulated, by_bullet(articulated), treel, by_bullet(treel), hybrid, by_bullet(hybrid), planar);
+inline const auto every_physics = ::testing::Values(articulated, by_bullet(articulated), treel, by_bullet(treel),
+                                                    hybrid, by_bullet(iterative), planar);
 
 }  // namespace cohort::test

@@ -129,7 +129,7 @@ TEST_P(Formations, AConnectionToARemovedOrMovedWallIsReleased) {
 class EverySolver : public EveryPhysics {};
 INSTANTIATE_TEST_SUITE_P(Every, EverySolver,
                          ::testing::Values(treel, by_bullet(treel), direct, by_bullet(direct), hybrid,
-                                           by_bullet(hybrid)),
+                                           by_bullet(iterative)),
                          name_of);
 
 TEST_P(EverySolver, HoldsAChainOfFour) {

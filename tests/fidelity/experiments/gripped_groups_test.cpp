@@ -1,4 +1,4 @@
-// Groups of connected robots, with the iterative solver at ten iterations; and the rotor inertia of motors.
+// Groups of connected robots, and the rotor inertia of motors.
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 
 namespace cohort::test {
 namespace {
+
+using description::Solver;
 
 TEST(Motors, AddTheInertiaOfTheirRotor) {
   constexpr double rotor_inertia = 0.003;
@@ -31,6 +33,9 @@ struct Outcome {
   double speed = 0.0;
   double height = 0.0;
 };
+// The default solver takes minutes for all seeds.
+Solver solver_for(std::uint64_t seed) { return seed == 1 ? Solver::convex : Solver::iterative; }
+
 Outcome drive(GrippedSwarm& swarm, int seconds) {
   Outcome worst;
   for (int tick = 0; tick < 100 * seconds; ++tick) {
@@ -45,7 +50,7 @@ Outcome drive(GrippedSwarm& swarm, int seconds) {
 
 TEST(GrippedGroups, StayTogetherByTheirTurrets) {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    GrippedSwarm swarm(seed, false);
+    GrippedSwarm swarm(solver_for(seed), seed, false);
     const Outcome worst = drive(swarm, 60);
     EXPECT_LT(worst.gap, 3e-3) << seed;
     EXPECT_LT(worst.speed, 0.5) << seed;
@@ -55,7 +60,7 @@ TEST(GrippedGroups, StayTogetherByTheirTurrets) {
 TEST(GrippedGroups, GainNoEnergyWhenArmsLiftEachOther) {
   for (const double rotor_inertia : {0.0, 0.002}) {
     for (const std::uint64_t seed : {1, 2, 3}) {
-      GrippedSwarm swarm(seed, true, 10, rotor_inertia);
+      GrippedSwarm swarm(solver_for(seed), seed, true, rotor_inertia);
       const Outcome worst = drive(swarm, 30);
       EXPECT_LT(worst.gap, rotor_inertia > 0.0 ? 12e-3 : 25e-3) << seed;
       EXPECT_LT(worst.speed, 2.0) << seed;

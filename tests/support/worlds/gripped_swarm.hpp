@@ -21,9 +21,9 @@ struct GrippedSwarm {
   RandomStream random;
 
   /// With arms, each robot grips with its arm, otherwise with its turret.
-  GrippedSwarm(std::uint64_t seed, bool with_arms, std::uint32_t iterations = 10, double rotor_inertia = 0.0)
+  GrippedSwarm(description::Solver solver, std::uint64_t seed, bool with_arms, double rotor_inertia = 0.0)
       : gripping_link(with_arms ? arm_link : turret), random(seed, "swarm", "drive") {
-    small.description.physics.iterations = iterations;
+    small.description.physics.solver = solver;
     const double spacing = with_arms ? 0.19 : 0.135;
     std::uint32_t draw = 0;
     const auto off = [&](double by) { return by * (2.0 * random.uniform(0, draw++) - 1.0); };

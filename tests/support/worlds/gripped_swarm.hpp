@@ -27,10 +27,12 @@ struct GrippedSwarm {
     const double spacing = with_arms ? 0.19 : 0.135;
     std::uint32_t draw = 0;
     const auto off = [&](double by) { return by * (2.0 * random.uniform(0, draw++) - 1.0); };
-    for (int i = 0; i < side * side; ++i)
-      robots.push_back(small.add(with_arms ? with_arm(2.0, 0.05, rotor_inertia) : tracked_robot(),
-                                 at(spacing * (i % side) + off(0.005), spacing * (i / side) + off(0.005), 0,
-                                    with_arms ? off(0.05) : off(3.0))));
+    for (int i = 0; i < side * side; ++i) {
+      const int column = i % side, row = i / side;
+      robots.push_back(small.add(
+          with_arms ? with_arm(2.0, 0.05, rotor_inertia) : tracked_robot(),
+          at(spacing * column + off(0.005), spacing * row + off(0.005), 0, with_arms ? off(0.05) : off(3.0))));
+    }
     // With turrets to one or two of the neighbours at the right and behind; the arms reach only to the right.
     for (int i = 0; i < side * side; ++i) {
       const bool has_right = i % side + 1 < side;
@@ -63,7 +65,7 @@ struct GrippedSwarm {
     if (tick % every != 0) return;
     for (std::size_t i = 0; i < robots.size(); ++i) {
       const auto draw = static_cast<std::uint32_t>(4 * i);
-      const auto period = static_cast<std::uint64_t>(1 + tick / every);
+      const auto period = 1 + static_cast<std::uint64_t>(tick / every);
       small.drive(robots[i], 0.4 * random.uniform(period, draw) - 0.2, 0.4 * random.uniform(period, draw + 1) - 0.2);
       small.world().set_joint_target(robots[i], JointId{0},
                                      physics::JointTarget::velocity(3.0 * random.uniform(period, draw + 2) - 1.5));

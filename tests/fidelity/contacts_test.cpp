@@ -59,8 +59,10 @@ TEST(Contacts, FrictionIsTheSameInEveryDirection) {
 }
 
 TEST(Contacts, ABallBouncesToTheSquareOfItsRestitution) {
-  SmallWorld small;
-  small.description.step = std::chrono::milliseconds(1);
+  description::World world = world_with_floor();
+  world.step = std::chrono::milliseconds(1);
+  world.models.edit(0).links[0].collisions[0].surface.restitution = 1.0;
+  SmallWorld small(std::move(world));
   const auto ball = small.add(loose("ball", Sphere{0.05}, solid_sphere(1.0, 0.05), {1.0, 0.8}), at(0, 0, 1.05));
   double highest = 0.0;
   bool bounced = false;

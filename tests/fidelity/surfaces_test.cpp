@@ -299,7 +299,9 @@ TEST_P(Surfaces, SpinningResistanceStopsASpinningBall) {
 
 TEST_P(Surfaces, BounceOnlyAboveTheLargerThreshold) {
   description::World world = GetParam().world();
-  world.models.edit(0).links[0].collisions[0].surface.bounce_threshold = 0.5;
+  Surface& ground = world.models.edit(0).links[0].collisions[0].surface;
+  ground.restitution = 1.0;
+  ground.bounce_threshold = 0.5;
   SmallWorld small(std::move(world));
   const auto ball = [&](double x, double height, std::optional<double> threshold) {
     Surface surface{1.0, 0.8};
@@ -321,6 +323,23 @@ TEST_P(Surfaces, BounceOnlyAboveTheLargerThreshold) {
   EXPECT_GT(highest[0], 0.8);
   EXPECT_LT(highest[1], 0.01);
   EXPECT_LT(highest[2], 0.1);  // it is pushed out of the ground that it fell into
+}
+
+TEST_P(Surfaces, BounceWithTheProductOfTheirRestitutions) {
+  for (const auto& [of_ground, of_ball] : {std::pair(0.8, 0.5), std::pair(0.5, 0.8), std::pair(1.0, 0.4)}) {
+    description::World world = GetParam().world();
+    world.models.edit(0).links[0].collisions[0].surface.restitution = of_ground;
+    SmallWorld small(std::move(world));
+    const auto ball = small.add(loose("ball", Sphere{0.05}, solid_sphere(1.0, 0.05), {1.0, of_ball}), at(0, 0, 0.5));
+    const auto dull = small.add(loose("ball", Sphere{0.05}, solid_sphere(1.0, 0.05), {1.0, 0.0}), at(1, 0, 0.5));
+    double before = 0.0;
+    for (int i = 0; i < 100 && small.velocity(ball).z() <= 0.0; ++i) {
+      before = small.velocity(ball).z();
+      small.world().step();
+    }
+    EXPECT_NEAR(small.velocity(ball).z(), -0.4 * before, 0.11) << "gravity acts in the steps around the impact";
+    EXPECT_LT(small.velocity(dull).z(), -0.1 * before) << "it is pushed out of the ground that it fell into";
+  }
 }
 
 // A heap with all of these properties.

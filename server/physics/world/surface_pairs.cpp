@@ -16,7 +16,7 @@ SurfacePairs::SurfacePairs(const description::World& world)
 namespace {
 
 SurfacePair of_coefficients(const description::Surface& a, const description::Surface& b) {
-  SurfacePair both{std::min(a.friction, b.friction), std::max(a.restitution, b.restitution),
+  SurfacePair both{std::min(a.friction, b.friction), a.restitution * b.restitution,
                    std::max(a.rolling_resistance, b.rolling_resistance),
                    std::max(a.spinning_resistance, b.spinning_resistance)};
   if (a.has_direction() || b.has_direction()) {

@@ -274,13 +274,13 @@ TEST(ClosedFormContact, DoesNotExistForMeshesOnBoxes) {
   EXPECT_EQ(found.count, 1) << "the points are unchanged";
 }
 
-TEST(SurfacesOfAPair, CombineByTheLeastFrictionAndTheGreatestResistance) {
+TEST(SurfacesOfAPair, CombineByTheLeastFrictionTheGreatestResistanceAndTheProductOfRestitutions) {
   const physics::SurfacePairs pairs{description::World{}};
   description::Surface a{0.3, 0.5, 0.01, 0.002};
   description::Surface b{0.8, 0.1, 0.02, 0.001};
   physics::SurfacePair both = pairs.of(a, b);
   EXPECT_EQ(both.friction, 0.3);
-  EXPECT_EQ(both.restitution, 0.5);
+  EXPECT_EQ(both.restitution, 0.05);
   EXPECT_EQ(both.rolling_resistance, 0.02);
   EXPECT_EQ(both.spinning_resistance, 0.002);
   EXPECT_EQ(both.stiffness, physics::SurfacePair::rigid);

@@ -171,7 +171,7 @@ bool IslandSolver::set_up(Assembly& assembly) {
   const FrictionStart start = find_start(assembly);
   for (const std::uint32_t member : sound_)
     assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_, start); });
-  impacts_.solve(problem_);
+  impacts_.solve(problem_, assembly.step * assembly.gravity.norm());
   return true;
 }
 

@@ -57,7 +57,7 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   const double share_of_last = has_connections ? start_of_connected : 1.0;
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
     for_each_share(phase, [&](Share& share) {
-      rebound_at_once(share.problem);
+      rebound_at_once(share.problem, assembly.step * assembly.gravity.norm());
       SequentialImpulses(share.problem).start(share_of_last);
     });
   const double settled = settled_change(assembly);

@@ -71,9 +71,9 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, const Tangents& tangen
   push.target = separating_velocity(point.gap, step);
   push.set_limits(0.0, unlimited);
   push.restitution = surfaces.restitution;
-  push.least_approach = std::max(surfaces.bounce_threshold, point.gap / step);
-  const bool bounces = push.restitution > 0.0 && -problem.velocity_before(push) > push.least_approach;
-  if (surfaces.stiffness < SurfacePair::rigid && !bounces)
+  push.least_approach = surfaces.bounce_threshold;
+  push.closing = point.gap / step;
+  if (surfaces.stiffness < SurfacePair::rigid && !push.is_impact(problem.velocity_before(push), problem.velocity(push)))
     soften(push, point.gap, surfaces, step);
   else if (running.has_belt() && push.inverse > 0.0)
     push.soften(give_of_belts / push.inverse);

@@ -30,6 +30,7 @@ struct Row {
   double softness = 0.0;        ///< for a soft row [m/s / N s] or [rad/s / N m s]
   double restitution = 0.0;     ///< share of the approach speed that is left after an impact at a contact
   double least_approach = 0.0;  ///< a slower approach is no impact [m/s]
+  double closing = 0.0;         ///< speed that closes the gap within the step [m/s]
   int load_begin = 0;
   int load_end = 0;
   Limits limits = Limits::fixed;
@@ -47,6 +48,11 @@ struct Row {
   void set_limits(double least, double most) {
     lower = least;
     upper = most;
+  }
+  /// Returns whether bodies rebound at this contact: they approach each other with the velocity `before` the step, and
+  /// would close their gap with the velocity `after` it, if there was no contact.
+  bool is_impact(double before, double after) const {
+    return restitution > 0.0 && -before > least_approach && -after > closing;
   }
   bool has_fixed_limits() const { return limits == Limits::fixed || limits == Limits::soft; }
   /// Makes the row soft; call it at most once.

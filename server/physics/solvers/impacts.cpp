@@ -1,6 +1,7 @@
 #include "server/physics/solvers/impacts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "server/physics/solvers/iterative_solver.hpp"
 
@@ -10,14 +11,27 @@ namespace {
 constexpr int most_rounds = 64;
 constexpr std::uint32_t most_passes_a_round = 100;
 
-bool approaches(const Row& row, double velocity) { return row.restitution > 0.0 && -velocity > row.least_approach; }
+double square(double x) { return x * x; }
+
+// Returns the velocity after a rebound, without what forces add in this step. `velocity`: that before it; `gained`:
+// what forces add to it in the step.
+double rebound(const Row& row, double velocity, double gained) {
+  const double half = 0.5 * gained;
+  const double lost = -2.0 * gained * row.closing;  // square of the velocity that forces take on the way back
+  const double at_touch = std::max(0.0, square(velocity + half) + lost);
+  return std::sqrt(std::max(0.0, square(row.restitution) * at_touch - lost)) - half;
+}
 
 }  // namespace
 
-void Impacts::solve(Problem& problem) {
+void Impacts::solve(Problem& problem, double fall) {
   impulses_.clear();
-  const auto hits = [&](const Row& row) { return approaches(row, problem.velocity_before(row)); };
+  const auto hits = [&](const Row& row) { return row.is_impact(problem.velocity_before(row), problem.velocity(row)); };
   if (std::ranges::none_of(problem.rows(), hits)) return;
+
+  gained_.clear();
+  for (const Row& row : problem.rows())
+    gained_.push_back(std::clamp(problem.velocity(row) - problem.velocity_before(row), -fall, fall));
 
   free_.clear();
   const auto for_each_velocity = [&](auto&& visit) {
@@ -48,9 +62,9 @@ bool Impacts::find_approaching(Problem& problem) {
     row.impulse = 0.0;
     if (row.restitution == 0.0) continue;
     const double velocity = problem.velocity(row);
-    if (approaches(row, velocity)) {
+    if (row.is_impact(velocity, velocity + gained_[i])) {
       any = true;
-      row.target = -row.restitution * velocity;
+      row.target = rebound(row, velocity, gained_[i]);
     } else {
       row.inverse = 0.0;
     }
@@ -69,10 +83,14 @@ void Impacts::add_impulses(Problem& problem) const {
   for (std::size_t i = 0; i < impulses_.size(); ++i) problem.rows()[i].impulse += impulses_[i];
 }
 
-void rebound_at_once(Problem& problem) {
+void rebound_at_once(Problem& problem, double fall) {
   for (Row& row : problem.rows()) {
-    const double velocity = row.restitution > 0.0 ? problem.velocity_before(row) : 0.0;
-    if (approaches(row, velocity)) row.target = std::max(row.target, -row.restitution * velocity);
+    if (row.restitution == 0.0) continue;
+    const double before = problem.velocity_before(row);
+    const double after = problem.velocity(row);
+    if (!row.is_impact(before, after)) continue;
+    const double gained = std::clamp(after - before, -fall, fall);
+    row.target = std::max(row.target, rebound(row, before, gained) + gained);
   }
 }
 

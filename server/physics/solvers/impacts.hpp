@@ -12,11 +12,17 @@ namespace cohort::physics {
 /// row of touching balls from contact to contact, and only the last ball leaves. Source: Smith, Kaufman, Vouga,
 /// Tamstorf and Grinspun, "Reflections on simultaneous impact", ACM Transactions on Graphics 31, 2012.
 ///
+/// A contact rebounds at the beginning of the step, although its bodies touch within it. The velocity after it is the
+/// one whose energy is right at that place: what the bodies gain on their way through the gap is in the velocity that
+/// the restitution reduces, and they lose it again on the way back. Velocities belong to the middle of a step (as in
+/// the leapfrog method, whose energy this is). So a ball rises to the same height at any step.
+///
 /// Reuses its memory; each worker has one.
 class Impacts {
  public:
-  /// Changes the velocities by the impacts, if there are any. The rows keep the impulses with which they start.
-  void solve(Problem& problem);
+  /// Changes the velocities by the impacts, if there are any. The rows keep the impulses with which they start. `fall`:
+  /// speed that gravity adds in a step [m/s]. Other forces may change within the step, so that more is not counted.
+  void solve(Problem& problem, double fall);
   /// Adds the impulses of the impacts to those of the rows; call it after the rows have been solved.
   void add_impulses(Problem& problem) const;
 
@@ -27,10 +33,11 @@ class Impacts {
   std::vector<Row> rows_;         // as they were before the impacts
   std::vector<double> impulses_;  // sum over the rounds, by row; empty: no impact
   std::vector<double> free_;      // velocity changes by forces, by body and dof
+  std::vector<double> gained_;    // the same along each row
 };
 
 /// Makes the contacts that approach each other rebound in the same solution as everything else. For islands that are
 /// too large for rounds.
-void rebound_at_once(Problem& problem);
+void rebound_at_once(Problem& problem, double fall);
 
 }  // namespace cohort::physics

@@ -90,7 +90,7 @@ constexpr ExtensionKey physics[] = {
     {"iterations", count, "1", "10", "maximum number of iterations of the iterative solver"},
     {"direct_bodies", count, "1", "4", "maximum size of a group of bodies that the `hybrid` solver solves directly"},
     {"lowest", real, "m", no_value,
-     "z coordinate below which a body counts as having left the world; no limit if absent"},
+     "z coordinate below which a body counts as having left the world; if absent, as described below"},
     {"sleeping", flag, "", "true",
      "`true` if bodies that have been at rest for a while are not simulated until something wakes them"},
     {"strict", flag, "", "false",

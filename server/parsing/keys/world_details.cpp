@@ -94,6 +94,16 @@ the joint constrains only motion in the plane, and only forces along x and y and
 A world has at most one such element. The map `physics` of an experiment has the same keys, which take
 precedence over those of the world.
 
+**Leaving the world.** A body leaves the world when the origin of its root link is below `lowest`, or 1,000 km
+away from that of the world along an axis. From then on it is not simulated, until an event puts it back. If
+`lowest` is absent, the ground decides how far a body can fall:
+
+- In a world without static models, or none that has collisions, there is no limit.
+- Otherwise, the limit is 10 m below the lowest static collision, and 10 m below the lowest place at which an
+  object was put. It changes when objects are added, moved or deleted. Objects that events have removed still
+  count, because they can return. A sloping plane has no end and sets no limit.
+- With `fidelity: planar`, there is no limit, because bodies keep their height.
+
 **Sleeping.** [Sleep](../fidelity.md#sleep) describes which bodies sleep and what wakes them.
 
 **Fidelity.** `articulated` simulates every joint and wheel. With `treel`, each

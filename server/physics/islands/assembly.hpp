@@ -69,7 +69,7 @@ struct Assembly {
 
   double step;                            ///< [s]
   Eigen::Vector3d gravity;                ///< [m/s^2]
-  description::PhysicsSettings settings;  ///< with the default of `lowest` filled in
+  description::PhysicsSettings settings;  ///< with the present default of `lowest` filled in
   SurfacePairs surfaces;
   geometry::Scene scene;
   Anchors anchors;

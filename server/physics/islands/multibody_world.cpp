@@ -9,6 +9,7 @@
 
 #include "server/core/tick_stage.hpp"
 #include "server/physics/islands/island_solver.hpp"
+#include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {
 namespace {
@@ -20,6 +21,18 @@ constexpr std::size_t islands_at_once = 8;
 IslandSolver& solver_of_this_thread() {
   static thread_local IslandSolver solver;
   return solver;
+}
+
+// Returns the lowest height at which a static solid can carry a body. A sloping plane descends up to the end of the
+// world; a wall or a ceiling carries nothing below its origin.
+double lowest_of(const geometry::Scene& scene, std::uint32_t index) {
+  constexpr double least_upwards = 1e-9;
+  const geometry::Solid& solid = scene.solid(index);
+  if (!std::holds_alternative<description::Plane>(solid.shape())) return scene.bounds(index).lower.z();
+  const double height = solid.X_WC.position.z();
+  const Eigen::Vector3d up_W = solid.X_WC.orientation * Eigen::Vector3d::UnitZ();
+  if (up_W.z() < least_upwards) return height;
+  return height - 2.0 * furthest_from_origin * up_W.head<2>().lpNorm<1>() / up_W.z();
 }
 
 template <class Output>
@@ -51,7 +64,6 @@ MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool
   for (const description::Instance& instance : description.instances)
     create_body(instance.model, X_WM.empty() ? instance.X_WM : X_WM[bodies_.size()]);
   assembly_.scene.build();
-  find_lowest();
   for (std::size_t body = 0; body < bodies_.size(); ++body)
     if (!description.instances[body].is_present) remove_body(BodyId{body});
 }
@@ -59,6 +71,7 @@ MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool
 BodyId MultibodyWorld::add_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot) {
   const BodyId body = create_body(model, X_WM, saved_slot);
   assembly_.scene.build();
+  is_lowest_known_ = false;
   if (!saved_slot && is_static(body)) sleep_.wake_all();
   return body;
 }
@@ -114,20 +127,27 @@ std::unique_ptr<Multibody> MultibodyWorld::make_multibody(std::size_t model_inde
   }
 }
 
-// Sets the lowest allowed height well below everything that was there at first, unless the world specifies it.
+// Sets the lowest allowed height, unless the world specifies it: well below all static solids, present or not, and well
+// below the place of every body. Without a static solid, there is no ground that a body could miss, and no limit.
 void MultibodyWorld::find_lowest() {
   constexpr double below_all = 10.0;  // [m]
-  double& lowest = assembly_.settings.lowest;
-  if (std::isfinite(lowest)) return;
-  lowest = std::numeric_limits<double>::infinity();
+  is_lowest_known_ = true;
+  if (std::isfinite(description_.physics.lowest)) return;
+  constexpr double none = std::numeric_limits<double>::infinity();
+  double lowest_static = none;
+  double lowest_place = none;
   const geometry::Scene& scene = assembly_.scene;
-  for (std::uint32_t solid = 0; solid < scene.size(); ++solid) {
-    const double low = scene.bounds(solid).lower.z();
-    lowest = std::min(lowest, std::isfinite(low) ? low : scene.solid(solid).X_WC.position.z());
+  const auto is_released = [&](BodyId body) { return bodies_[body.value].slot == World::released; };
+  for (std::uint32_t solid = 0; solid < scene.size(); ++solid)
+    if (!assembly_.anchors.moves(solid) && !is_released(scene.solid(solid).body))
+      lowest_static = std::min(lowest_static, lowest_of(scene, solid));
+  for (const Member& member : assembly_.members) {
+    if (is_released(member.body)) continue;
+    const PlacedBody& body = bodies_[member.body.value];
+    const Pose X_WL = body.X_WM * description_.models[body.model].links[0].X_ML;
+    lowest_place = std::min(lowest_place, X_WL.position.z());
   }
-  for (const Member& member : assembly_.members)
-    lowest = std::min(lowest, member.multibody->motion().segment_pose(0).position.z());
-  lowest -= below_all;
+  assembly_.settings.lowest = lowest_static == none ? -none : std::min(lowest_static, lowest_place) - below_all;
 }
 
 Activity MultibodyWorld::activity(BodyId body) const {
@@ -198,6 +218,7 @@ void MultibodyWorld::set_joint_state(BodyId body, JointId joint, std::span<const
 }
 
 void MultibodyWorld::step() {
+  if (!is_lowest_known_) find_lowest();
   find_awake();
   quarantined_.clear();
   const bool all_is_as_it_was = awake_.empty() && reported_at_ == assembly_.revision;

@@ -125,7 +125,8 @@ class MultibodyWorld final : public World, private WorldConnections {
   static constexpr std::uint64_t never = 0xffffffffffffffff;
   std::uint64_t awake_at_ = never;
   std::uint64_t reported_at_ = never;
-  std::vector<Memory> memory_;  // by worker
+  bool is_lowest_known_ = false;  // no body was added, moved or released since the lowest height was set
+  std::vector<Memory> memory_;    // by worker
 };
 
 }  // namespace cohort::physics

@@ -34,6 +34,7 @@ void MultibodyWorld::put_back_body(BodyId index) {
 }
 
 void MultibodyWorld::release_body(BodyId index) {
+  is_lowest_known_ = false;
   slots_.release(bodies_[index.value], link_pose(index, LinkId{0}), description_);
 }
 
@@ -41,6 +42,7 @@ void MultibodyWorld::place_body(BodyId index, const Pose& X_WM) {
   PlacedBody& body = bodies_[index.value];
   body.X_WM = X_WM;
   body.is_placed_again = true;
+  is_lowest_known_ = false;
   if (!is_static(index)) return assembly_.place(wake(index).member, X_WM);
   sleep_.wake_all();
   assembly_.connections.release_of_body(index.value);

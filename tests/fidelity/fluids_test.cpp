@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "server/physics/fluid/floating_shape.hpp"
 #include "tests/support/physics.hpp"
@@ -271,6 +274,73 @@ TEST_P(Fluids, ABoxBobsWithThePeriodOfItsDraught) {
   EXPECT_NEAR((last - first) / (crossings - 1), 2 * pi * std::sqrt(0.2 / g), 0.005);
 }
 
+// Implicit Euler damps an oscillation of angular frequency ω: each step of h divides its amplitude by √(1 + ω²h²), so
+// each radian does so 1/arctan(ωh) times. The stiffness of heel is ρ g V GM, with the metacentric height GM = BM − BG.
+// For a box of width w and draught d, BM = I/V = w²/(12 d); a twin hull with centres 2 a apart has a²/d more.
+TEST_P(Fluids, AHeelingBoxIsDampedLikeItsStiffness) {
+  struct Case {
+    Vector3d size;
+    double density;
+    double lift;   // height of the centre of mass above the middle [m]
+    double aside;  // distance of each of two hulls from the middle; 0: one hull [m]
+  };
+  const Case cases[] = {{{0.3, 0.4, 0.2}, 0.6, 0.0, 0.0},
+                        {{0.6, 0.4, 0.2}, 0.5, 0.02, 0.0},
+                        {{3.0, 1.2, 0.5}, 0.4, -0.1, 0.0},
+                        {{1.0, 0.3, 0.3}, 0.5, 0.0, 0.3}};
+  for (const Case& box : cases)
+    for (const int milliseconds : {10, 2}) {
+      SmallWorld small(water());
+      small.description.step = std::chrono::milliseconds(milliseconds);
+      Model model = crate(box.size, box.density);
+      description::Link& link = model.links[0];
+      if (box.aside > 0.0) {
+        link.inertial = solid_box(2.0 * link.inertial.mass, box.size + Vector3d(0, 2.0 * box.aside, 0));
+        link.collisions.push_back(link.collisions[0]);
+        link.collisions[0].X_LC.position.y() = box.aside;
+        link.collisions[1].X_LC.position.y() = -box.aside;
+      }
+      link.inertial.X_LI.position.z() = box.lift;
+      const double draught = box.density * box.size.z();
+      const double radius = (box.size.y() * box.size.y() / 12.0 + box.aside * box.aside) / draught;  // BM
+      const double metacentric_height = radius - (0.5 * (box.size.z() - draught) + box.lift);        // GM
+      const description::Inertial& inertial = link.inertial;
+      const double omega = std::sqrt(inertial.mass * g * metacentric_height / inertial.inertia(0, 0));
+      const double h = 1e-3 * milliseconds;
+      const double first = 0.02;  // [rad]
+      const auto body = small.add(model, turned(0, 0, 0.5 * box.size.z() - draught, {1, 0, 0}, first));
+      const auto heel = [&] { return -small.up(body).y(); };
+
+      // Half a turn of the phase after the other, the heel is greatest to one side and to the other.
+      const int swings = 4;
+      double most = 0.0, before = heel();
+      int swing = 0;
+      double crossed = 0.0, crossed_first = 0.0, crossed_last = 0.0;
+      std::vector<double> peaks;
+      for (int i = 1; swing <= swings; ++i) {
+        ASSERT_LT(h * i, 20.0);
+        small.world().step();
+        const double now = heel();
+        most = std::max(most, std::abs(now));
+        if ((now > 0.0) != (before > 0.0)) {
+          crossed = h * (i - now / (now - before));
+          (swing == 0 ? crossed_first : crossed_last) = crossed;
+          if (swing > 0) peaks.push_back(most);
+          most = 0.0;
+          ++swing;
+        }
+        before = now;
+      }
+      const double damped_omega = std::atan(omega * h) / h;
+      EXPECT_NEAR(pi * swings / (crossed_last - crossed_first), damped_omega, 0.01 * damped_omega);
+      const double decay = std::log(peaks.front() / peaks.back()) / (pi * (swings - 1));  // in each radian
+      const double expected = 0.5 * std::log1p(omega * omega * h * h) / std::atan(omega * h);
+      EXPECT_NEAR(decay, expected, 0.01 * expected)
+          << box.size.transpose() << ", " << milliseconds << " ms, ωh/2 = " << 0.5 * omega * h
+          << ", BM / GM = " << radius / metacentric_height;
+    }
+}
+
 TEST_P(Fluids, SpheresAndCylindersDisplaceTheirMass) {
   Drag drag;
   drag.damping.setConstant(20.0);
@@ -331,6 +401,19 @@ TEST(FloatingShapes, DisplaceTheirVolumeBelowTheSurface) {
     const Vector3d centre = (high.volume * high.centre_W - low.volume * low.centre_W) / (high.volume - low.volume);
     EXPECT_LT((centre - mid.area_centre_W).norm(), 1e-5);
   }
+}
+
+TEST(FloatingShapes, AddUpToTheShapeThatTheyForm) {
+  const Pose X_WC = turned(0.3, -0.2, 0.05, {1, 2, 0.5}, 0.8);
+  const physics::SubmergedPart whole = physics::FloatingShape(Box{{0.2, 0.5, 0.3}}).below(0.02, X_WC);
+  physics::SubmergedPart sum = physics::FloatingShape(Box{{0.2, 0.1, 0.3}}).below(0.02, X_WC * at(0, 0.2, 0));
+  sum.add(physics::FloatingShape(Box{{0.2, 0.4, 0.3}}).below(0.02, X_WC * at(0, -0.05, 0)));
+  sum.add({});
+  EXPECT_NEAR(sum.volume, whole.volume, 1e-12);
+  EXPECT_LT((sum.centre_W - whole.centre_W).norm(), 1e-12);
+  EXPECT_NEAR(sum.area, whole.area, 1e-12);
+  EXPECT_LT((sum.area_centre_W - whole.area_centre_W).norm(), 1e-12);
+  EXPECT_LT((sum.second_moment_W - whole.second_moment_W).norm(), 1e-12);
 }
 
 TEST_P(Fluids, ALightPlateSettlesOnTheWater) {

@@ -96,6 +96,20 @@ struct Sums {
 
 }  // namespace
 
+void SubmergedPart::add(const SubmergedPart& other) {
+  if (other.volume > 0.0) {
+    volume += other.volume;
+    centre_W += other.volume / volume * (other.centre_W - centre_W);
+  }
+  if (other.area > 0.0) {
+    const Vector3d apart = other.area_centre_W - area_centre_W;
+    const double share = other.area / (area + other.area);
+    second_moment_W += other.second_moment_W + area * share * apart.head<2>() * apart.head<2>().transpose();
+    area += other.area;
+    area_centre_W += share * apart;
+  }
+}
+
 FloatingShape::FloatingShape(const geometry::Shape& shape) {
   if (const auto* sphere = std::get_if<description::Sphere>(&shape)) radii_.setConstant(sphere->radius);
   if (const auto* ellipsoid = std::get_if<description::Ellipsoid>(&shape)) radii_ = ellipsoid->radii;

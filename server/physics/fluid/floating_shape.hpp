@@ -12,6 +12,9 @@ struct SubmergedPart {
   double area = 0.0;  ///< [m^2]
   Eigen::Vector3d area_centre_W = Eigen::Vector3d::Zero();
   Eigen::Matrix2d second_moment_W = Eigen::Matrix2d::Zero();  ///< ∫ r r^T dA in x and y, about its centre [m^4]
+
+  /// Adds the part of another solid below the same surface.
+  void add(const SubmergedPart& other);
 };
 
 /// A solid that may float. Immutable. Spheres and ellipsoids are computed in closed form, as images of a cap of the

@@ -51,8 +51,12 @@ void FluidBody::apply(Equations& equations, const Media& media, double step) {
   }
   for (std::size_t i = 0; i < rotors_.size(); ++i) push_by_rotor(i, equations, media, step);
 
-  for (std::size_t i = 0; i < model_->floats.size(); ++i)
-    stiffen(model_->floats[i], submerged_[i], media, equations, step);
+  for (std::size_t i = 0, next = 0; i < model_->floats.size(); i = next) {
+    SubmergedPart of_link = submerged_[i];
+    for (next = i + 1; next < model_->floats.size() && model_->floats[next].link == model_->floats[i].link; ++next)
+      of_link.add(submerged_[next]);
+    stiffen(model_->floats[i], of_link, media, equations, step);
+  }
   for (std::size_t i = 0; i < rotors_.size(); ++i) drag_rotor(i, equations, media, step);
   for (const FluidModel::FinPlace& fin : model_->fins) push_fin(fin, equations, media, step);
   for (const FluidModel::DragPlace& drag : model_->drags) damp(drag, equations, media, step);
@@ -75,20 +79,28 @@ void FluidBody::push_by_rotor(std::size_t index, Equations& equations, const Med
        {rotor.reaction_sense() * step * rotor.moment_constant * thrust * axis_W, step * thrust * axis_W}, equations);
 }
 
-// Applies the change of buoyancy as the body sinks and tilts during the step. It tilts about the principal axes of the
-// section, so that each axis is an independent damper.
-void FluidBody::stiffen(const FluidModel::Float& floating, const SubmergedPart& part, const Media& media,
-                        Equations& equations, double step) {
+// Applies the change of the buoyancy of a link as it sinks and tilts during the step. It tilts about the principal axes
+// of the section, so that each axis is an independent damper. Tilting submerges a wedge of the section, which rights
+// the body. It also moves the centre of buoyancy aside from the centre of mass. This heels the body further if the
+// centre of buoyancy is the lower one. Together, their stiffness is ρ g V times the metacentric height. If it is
+// negative, nothing damps the tilting.
+void FluidBody::stiffen(const Place& link, const SubmergedPart& part, const Media& media, Equations& equations,
+                        double step) {
   const double weight = -media.gravity.z() * media.water->density;  // specific weight of water [N/m^3]
   if (!(part.area > 0.0) || !(weight > 0.0)) return;
-  aim(floating, part.area_centre_W, force_along(Vector3d::UnitZ()), equations);
+  aim(link, part.area_centre_W, force_along(Vector3d::UnitZ()), equations);
   damp_along(0.0, step * weight * part.area, 0.0, equations, step);
+  const BodyMotion& motion = equations.body();
+  const Segment& segment = motion.mechanism().segments()[static_cast<std::size_t>(link.segment)];
+  const double rise = (motion.segment_pose(link.segment) * segment.centre_S).z() - part.centre_W.z();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> section;
   section.computeDirect(part.second_moment_W);
   for (int i = 0; i < 2; ++i) {
+    const double righting = std::max(0.0, section.eigenvalues()[i]) - part.volume * rise;
+    if (!(righting > 0.0)) continue;
     const Eigen::Vector2d across = section.eigenvectors().col(i);
-    aim(floating, part.area_centre_W, torque_about({-across.y(), across.x(), 0.0}), equations);
-    damp_along(0.0, step * weight * std::max(0.0, section.eigenvalues()[i]), 0.0, equations, step);
+    aim(link, part.area_centre_W, torque_about({-across.y(), across.x(), 0.0}), equations);
+    damp_along(0.0, step * weight * righting, 0.0, equations, step);
   }
 }
 

@@ -14,7 +14,7 @@ namespace cohort::physics {
 /// Buoyancy and thrust depend on the pose of the body and the speed of its rotors, and act first. Forces that depend on
 /// the velocity follow, one direction after the other. Each is evaluated at the velocity that results from it (implicit
 /// Euler), without contacts and joint motors, and is therefore stable at any step. Buoyancy is stable too: its change
-/// over the step, given by the section at the surface, is a damper of this kind.
+/// over the step, given by the section at the surface and the metacentric height, is a damper of this kind.
 class FluidBody {
  public:
   explicit FluidBody(std::shared_ptr<const FluidModel> model);
@@ -71,8 +71,7 @@ class FluidBody {
   }
 
   void push_by_rotor(std::size_t index, Equations& equations, const Media& media, double step);
-  void stiffen(const FluidModel::Float& floating, const SubmergedPart& part, const Media& media, Equations& equations,
-               double step);
+  void stiffen(const Place& link, const SubmergedPart& part, const Media& media, Equations& equations, double step);
   void drag_rotor(std::size_t index, Equations& equations, const Media& media, double step);
   void push_fin(const FluidModel::FinPlace& placed, Equations& equations, const Media& media, double step);
   void damp(const FluidModel::DragPlace& placed, Equations& equations, const Media& media, double step);

@@ -133,6 +133,7 @@ struct RunResult {
   lockstep::LatencyHistogram lateness;  ///< start of each tick relative to the requested speed; empty without one
   std::uint64_t late_ticks = 0;         ///< ticks that started more than one step late at that speed
   TouchCounts touches;
+  physics::Convergence convergence;
   std::vector<RunEvent> events;
 };
 

@@ -8,8 +8,8 @@
 namespace cohort::session {
 
 /// An event of a run for its record. Kinds: `joined`, `lost`, `back`, `refused`, `superseded`, `missed`, `rejected`,
-/// `quarantined`, `event`, `version`, `control`, `unsent`, `unsaved`, `unrecorded`, `forgotten`, `rewound`,
-/// `other_build`, `dropped`, `failed`, `stopped`.
+/// `quarantined`, `unconverged`, `event`, `version`, `control`, `unsent`, `unsaved`, `unrecorded`, `forgotten`,
+/// `rewound`, `other_build`, `dropped`, `failed`, `stopped`.
 struct RunEvent {
   std::uint64_t tick = 0;  ///< tick of the first occurrence
   std::string kind;

@@ -40,6 +40,7 @@ void RunMonitor::stop() {
 void RunMonitor::stepped() {
   for (const std::string& body : simulation_.quarantined()) add_event("quarantined", body);
   for (const std::string& text : simulation_.happened()) add_event("event", text);
+  see_whether_converged();
   if (listener_.stepped) listener_.stepped();
   if (is_over()) at_boundary();  // no more frames are sent
 }
@@ -49,6 +50,17 @@ void RunMonitor::at_boundary() {
   last_boundary_ = simulation_.tick();
   if (listener_.boundary) listener_.boundary();
   see_whether_recorded();
+}
+
+// Once a run, and without a message: the summary counts them.
+void RunMonitor::see_whether_converged() {
+  const auto& islands = simulation_.convergence().of_last_step;
+  if (islands.empty() || std::exchange(has_noted_convergence_, true)) return;
+  const RunEvent event{simulation_.tick(), "unconverged",
+                       "the contacts and joints of '" + simulation_.objects().name(islands.front().body.value) +
+                           "' and what it touches were solved with an error; the summary counts such groups"};
+  log_.add(event.tick, event.kind, event.text);
+  if (listener_.event) listener_.event(event);
 }
 
 // Reports a failed recording at once to a user who waits for it.
@@ -137,6 +149,7 @@ RunResult RunMonitor::finish(RunResult::End end, const std::string& error) {
   for (std::uint32_t robot = robots_at_first_; robot < result_.robots; ++robot)
     result_.newcomers.push_back(simulation_.robot_name(robot));
   result_.touches = simulation_.touches();
+  result_.convergence = simulation_.convergence();
   result_.events.assign(log_.events().begin(), log_.events().end());
   return result_;
 }

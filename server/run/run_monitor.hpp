@@ -88,6 +88,7 @@ class RunMonitor {
   static constexpr std::chrono::milliseconds report_interval{200};
   Progress progress_at(Clock::time_point now);
   void see_whether_recorded();
+  void see_whether_converged();
 
   const Simulation& simulation_;
   RunOptions options_;
@@ -97,6 +98,7 @@ class RunMonitor {
   std::uint64_t total_ticks_;
   bool started_ = false;
   bool stopped_ = false;
+  bool has_noted_convergence_ = false;
   std::optional<std::string> unrecorded_;       // reason
   std::optional<std::uint64_t> last_boundary_;  // the last one that the listener was told of
   Clock::time_point start_;

@@ -156,6 +156,7 @@ class Simulation {
   const gripping::Grippers& grippers() const { return grippers_; }
   const BreakableJoints& breakable_joints() const { return breakable_joints_; }
   const TouchCounts& touches() const { return touches_; }
+  const physics::Convergence& convergence() const { return world_->convergence(); }
 
  private:
   // `X_WM`: the poses for make_world.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 
@@ -46,6 +47,23 @@ TEST(Examples, AreCopiedWithTheirDependencies) {
   const Ended again = cohort({"examples", "--copy", copy});
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_NE(again.err.find("exists and is not an empty folder"), std::string::npos) << again.err;
+}
+
+TEST(Examples, TellHowWellContactsAndJointsWereSolved) {
+  const ScratchFolder folder;
+  const std::string file = folder / "summary.json";
+  const Ended ran = cohort({"run", "aggregation", "--duration", "3", "--controllers", "inprocess", "--summary", file});
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(ran.err.find("warning"), std::string::npos) << ran.err;
+  const nlohmann::json summary = read_json(file);
+  const nlohmann::json& convergence = summary["convergence"];
+  EXPECT_GT(convergence["groups"], 300) << "one for each step at least";
+  EXPECT_LT(convergence["unconverged"], convergence["groups"]);
+  const bool is_any = convergence["unconverged"] > 0;
+  EXPECT_EQ(convergence["worst"] > 1e-6, is_any);
+  EXPECT_EQ(ran.out.find("\nconvergence       ") != std::string::npos, is_any) << ran.out;
+  EXPECT_EQ(std::ranges::count(summary["events"], "unconverged", [](const auto& event) { return event["kind"]; }),
+            is_any);
 }
 
 TEST(Seeds, ProduceOneRunEach) {

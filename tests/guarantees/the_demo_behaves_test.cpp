@@ -55,6 +55,7 @@ class DemoRun : public ::testing::Test {
       for (std::uint32_t robot = 0; robot < robots; ++robot) watch(simulation.robot_pose(robot));
     }
     touches = simulation.touches();
+    convergence = simulation.convergence();
     state_hash = simulation.state_hash();
   }
 
@@ -74,6 +75,7 @@ class DemoRun : public ::testing::Test {
   static inline double least_upright = 1.0;
   static inline std::set<std::pair<int, int>> visited;
   static inline TouchCounts touches;
+  static inline physics::Convergence convergence;
   static inline std::uint64_t state_hash = 0;
 };
 
@@ -88,6 +90,12 @@ TEST_F(DemoRun, NoRobotSinksTakesOffOrTipsOver) {
 TEST_F(DemoRun, RobotsTouchObstaclesInUnderTwoPercentOfTheirTicks) {
   EXPECT_EQ(touches.robot_ticks, 16u * 6000u);
   EXPECT_LT(static_cast<double>(touches.obstacles), 0.02 * static_cast<double>(touches.robot_ticks));
+}
+
+TEST_F(DemoRun, IsSolvedToAMillionth) {
+  EXPECT_GT(convergence.solved, 6000u);
+  EXPECT_LT(static_cast<double>(convergence.unconverged), 1e-3 * static_cast<double>(convergence.solved));
+  EXPECT_LT(convergence.worst, 1e-4);
 }
 
 TEST_F(DemoRun, RobotsCoverTheArena) {

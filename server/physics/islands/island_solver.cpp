@@ -124,9 +124,11 @@ void IslandSolver::take(const Assembly& assembly, std::span<const std::uint32_t>
     if (assembly.members[member].is_awake()) sound_.push_back(member);
 }
 
-void IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
+std::optional<double> IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
   take(assembly, members);
+  error_.reset();
   while (!sound_.empty() && !try_to_solve(assembly)) leave_out_broken(sound_, assembly);
+  return error_;
 }
 
 bool IslandSolver::solve_by_newton(Assembly& assembly, std::span<const std::uint32_t> members) {
@@ -216,7 +218,9 @@ void IslandSolver::solve_rows(const Assembly& assembly) {
   const bool is_alone = sound_.size() == 1;
   if (method_ == Method::direct && solve_directly(problem_)) return;
   if (method_ == Method::convex) {
-    if (problem_.row_count() == 0 || convex_.solve(problem_)) return;
+    if (problem_.row_count() == 0) return;
+    error_ = convex_.solve(problem_);
+    if (error_) return;
     method_ = find_iterative_method(assembly);
   }
   if (method_ != Method::direct && solve_by_active_set(problem_)) return;

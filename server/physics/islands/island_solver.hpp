@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace cohort::physics {
 class IslandSolver {
  public:
   /// Solves the island. A body whose state breaks keeps its pose, and the rest of the island is solved without it.
-  void solve(Assembly& assembly, std::span<const std::uint32_t> members);
+  /// Returns the error that is left, as in Convergence, if the convex solver has solved rows.
+  std::optional<double> solve(Assembly& assembly, std::span<const std::uint32_t> members);
   /// Solves a large heap by Newton's method. Returns false, without moving any body, if it is no heap, if that would
   /// cost too much, if there is no solution, or if a velocity is invalid.
   bool solve_by_newton(Assembly& assembly, std::span<const std::uint32_t> members);
@@ -43,6 +45,7 @@ class IslandSolver {
   bool has_connections_ = false;
   bool has_light_connections_ = false;
   Method method_ = Method::passes;
+  std::optional<double> error_;  // of the convex solver
 };
 
 /// Returns the change of a row's velocity in a pass below which the island has settled [m/s or rad/s].

@@ -221,6 +221,7 @@ void MultibodyWorld::step() {
   if (!is_lowest_known_) find_lowest();
   find_awake();
   quarantined_.clear();
+  convergence_.of_last_step.clear();
   const bool all_is_as_it_was = awake_.empty() && reported_at_ == assembly_.revision;
   if (!all_is_as_it_was) {
     StageMarks stages;
@@ -300,11 +301,13 @@ void MultibodyWorld::solve_islands() {
     const std::size_t bodies = islands_.members(island).size();
     return bodies >= LargeIslandSolver::least_bodies && !is_solved_directly(assembly_.settings, bodies);
   };
+  errors_.assign(islands_.count(), std::nullopt);
   workers_.for_each_chunk(islands_.count(), islands_at_once, [&](std::size_t begin, std::size_t end, unsigned) {
     IslandSolver& solver = solver_of_this_thread();
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
-      if (!is_large(island)) solver.solve(assembly_, islands_.members(island));
+      if (!is_large(island)) errors_[island] = solver.solve(assembly_, islands_.members(island));
   });
+  count_unconverged();
   for (std::uint32_t island = 0; island < islands_.count(); ++island) {
     if (!is_large(island)) continue;
     const std::span<const std::uint32_t> members = islands_.members(island);
@@ -316,6 +319,19 @@ void MultibodyWorld::solve_islands() {
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
       for (const std::uint32_t member : islands_.members(island)) sleep_.count(member, is_large(island));
   });
+}
+
+void MultibodyWorld::count_unconverged() {
+  for (std::uint32_t island = 0; island < islands_.count(); ++island) {
+    const std::optional<double>& error = errors_[island];
+    if (!error) continue;
+    ++convergence_.solved;
+    if (*error <= Convergence::bound) continue;
+    ++convergence_.unconverged;
+    convergence_.worst = std::max(convergence_.worst, *error);
+    const std::uint32_t first = islands_.members(island).front();
+    convergence_.of_last_step.push_back({assembly_.members[first].multibody->body(), *error});
+  }
 }
 
 void MultibodyWorld::quarantine() {

@@ -25,6 +25,7 @@ class MultibodyWorld final : public World, private WorldConnections {
 
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
+  const Convergence& convergence() const override { return convergence_; }
   Activity activity(BodyId body) const override;
   BodyId add_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot) override;
   void set_present(BodyId body, bool is_present) override;
@@ -91,6 +92,7 @@ class MultibodyWorld final : public World, private WorldConnections {
   void detect();
   void find_islands();
   void solve_islands();
+  void count_unconverged();
   void quarantine();
   void report_contacts();
   void report_contacts_of(std::uint32_t member);
@@ -117,6 +119,8 @@ class MultibodyWorld final : public World, private WorldConnections {
   LargeIslandSolver large_island_solver_;
   std::vector<Contact> contacts_;
   std::vector<Quarantine> quarantined_;
+  std::vector<std::optional<double>> errors_;  // by island, as in Convergence
+  Convergence convergence_;
   Sleep sleep_;
   std::vector<std::uint32_t> awake_;              // members, ascending
   std::vector<std::uint32_t> place_among_awake_;  // by member

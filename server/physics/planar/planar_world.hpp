@@ -46,6 +46,7 @@ class PlanarWorld final : public World, private WorldConnections {
 
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
+  const Convergence& convergence() const override { return convergence_; }
   Activity activity(BodyId body) const override;
   BodyId add_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot) override;
   void set_present(BodyId body, bool is_present) override;
@@ -174,6 +175,7 @@ class PlanarWorld final : public World, private WorldConnections {
   Connections connections_;
   std::vector<Contact> contacts_;
   std::vector<Quarantine> quarantined_;
+  Convergence convergence_;
   Pushes pushes_;
   std::vector<Memory> memory_;  // by worker
   bool has_records_ = false;

@@ -21,24 +21,26 @@ constexpr double settled = 1e-8;  // residual with new guesses and limits at whi
 
 }  // namespace
 
-bool ConvexSolver::solve(Problem& problem) {
+std::optional<double> ConvexSolver::solve(Problem& problem) {
   double mass = 0.0;
   for (int body = 0; body < problem.body_count(); ++body) {
-    if (!problem.equations(body).is_symmetric()) return false;
+    if (!problem.equations(body).is_symmetric()) return std::nullopt;
     mass += problem.equations(body).mechanism().moving_mass();
   }
-  if (mass == 0.0 || !take_bodies(problem) || !take_inertia()) return false;
+  if (mass == 0.0 || !take_bodies(problem) || !take_inertia()) return std::nullopt;
   start();
   if (!minimise(From::impulses, usual_steps))
     for (const double least : softer) {
       rows_.soften(least);
       minimise(least == softer.front() ? From::velocities : From::impulses, most_steps_a_minimum);
     }
+  double residual = 0.0;
   for (int minimum = 1; minimum < most_minima; ++minimum) {
     rows_.update(minimum == 1 ? 1.0 : share_of_limits);
     const bool is_same = evaluate();
     find_step();
-    if (find_residual() <= settled) {
+    residual = find_residual();
+    if (residual <= settled) {
       add_step(1.0);
       evaluate();
       break;
@@ -46,7 +48,7 @@ bool ConvexSolver::solve(Problem& problem) {
     minimise(is_same ? From::step : From::velocities, most_steps_a_minimum);
   }
   apply();
-  return true;
+  return residual;
 }
 
 void ConvexSolver::start() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "server/physics/solvers/convex_rows.hpp"
@@ -24,9 +25,9 @@ namespace cohort::physics {
 /// Reuses its memory; each worker has one.
 class ConvexSolver : private NewtonOnRows<ConvexRows> {
  public:
-  /// Solves the rows. Returns false, without any change, if the response of a body is not symmetric or if it would cost
-  /// too much.
-  bool solve(Problem& problem);
+  /// Solves the rows. Returns the residual when the last minimum was tested. Returns nothing, without any change, if
+  /// the response of a body is not symmetric or if it would cost too much.
+  std::optional<double> solve(Problem& problem);
 
  private:
   /// Where the search for a minimum begins. `velocities`: at the present ones. `impulses`: with each row at or between

@@ -10,6 +10,7 @@
 #include "server/core/worker_pool.hpp"
 #include "server/description/world.hpp"
 #include "server/geometry/scene/scene.hpp"
+#include "server/physics/world/convergence.hpp"
 #include "server/physics/world/world_connections.hpp"
 #include "server/physics/world/world_records.hpp"
 #include "server/physics/world/world_state.hpp"
@@ -96,6 +97,8 @@ class World : public WorldState, public WorldRecords {
   virtual void step() = 0;
   /// Returns the bodies quarantined in the last step, in the order of the bodies.
   virtual std::span<const Quarantine> quarantined() const = 0;
+  /// Returns how well steps were solved; nothing for Fidelity::planar and for other solvers than the convex one.
+  virtual const Convergence& convergence() const = 0;
   virtual Activity activity(BodyId body) const = 0;
   bool is_active(BodyId body) const { return activity(body) != Activity::out; }
   bool is_asleep(BodyId body) const { return activity(body) == Activity::asleep; }

@@ -64,6 +64,10 @@ void write_summary(const std::filesystem::path& file, const description::Experim
        {{"robot_ticks", result.touches.robot_ticks},
         {"obstacles", result.touches.obstacles},
         {"robots", result.touches.robots}}},
+      {"convergence",
+       {{"groups", result.convergence.solved},
+        {"unconverged", result.convergence.unconverged},
+        {"worst", result.convergence.worst}}},
   };
   write_file("the summary", file, json_text(summary, 2) + "\n");
 }

@@ -74,6 +74,10 @@ std::string summary_text(const description::Experiment& experiment, const sessio
     text += fmt::format("contacts          obstacles in {:.2f} % of robot-ticks, other robots in {:.2f} %\n",
                         percent(result.touches.obstacles, result.touches.robot_ticks),
                         percent(result.touches.robots, result.touches.robot_ticks));
+  if (result.convergence.unconverged > 0)
+    text += fmt::format("convergence       {} of {} groups solved with an error above {:.0e}, at most {:.0e}\n",
+                        result.convergence.unconverged, result.convergence.solved, physics::Convergence::bound,
+                        result.convergence.worst);
   if (result.late > 0) text += fmt::format("late answers      {}\n", result.late);
   if (is_verbose || result.late > 0) text += exchange_text(result);
   return text + fmt::format("state hash        {:016x}\n", result.state_hash);

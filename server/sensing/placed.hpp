@@ -19,7 +19,7 @@ Eigen::Vector3d velocity_of(const Posed& sensor, const Mount& mount) {
   return twist.linear_W + twist.angular_W.cross(p_LS_W);
 }
 
-/// Returns the acceleration of the origin of S minus gravity, in S [m/s^2]: the mean over the last step.
+/// Returns the acceleration of the origin of S minus gravity, in S [m/s^2], at the end of the last step.
 template <class Posed>
 Eigen::Vector3d proper_acceleration_of(const Posed& sensor, const Mount& mount) {
   const Eigen::Vector3d a_W = mount.world.link_acceleration(mount.body, LinkId{sensor.link}, sensor.X_LS.position);

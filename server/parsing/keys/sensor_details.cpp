@@ -133,7 +133,7 @@ nearby climate sources. Observations `NAME/0/temperature` [K] and `NAME/0/humidi
 )md"},
       {"accelerometer", "model", R"md(
 Observation `NAME/0/acceleration` [m/s²], x y z along the axes of the sensor: the acceleration of its origin
-minus gravity, averaged over the last step. At rest, the reading is g upwards; in free fall, it is 0.
+minus gravity, at the end of the last step. At rest, the reading is g upwards; in free fall, it is 0.
 )md"},
       {"inclinometer", "model", R"md(
 Observations `NAME/0/roll` and `NAME/0/pitch` [rad].

@@ -6,7 +6,10 @@ using Eigen::Vector3d;
 
 ForceRecord::ForceRecord(const Mechanism& mechanism, std::uint32_t first_solid,
                          std::vector<std::size_t> links_of_solids)
-    : mechanism_(mechanism), first_solid_(first_solid), links_of_solids_(std::move(links_of_solids)) {
+    : mechanism_(mechanism),
+      first_solid_(first_solid),
+      links_of_solids_(std::move(links_of_solids)),
+      motion_(mechanism.model()) {
   const description::Model& model = mechanism.model();
   for (std::size_t link = 0; link < model.links.size(); ++link) parents_.push_back(link);
   for (const description::Joint& joint : model.joints)
@@ -14,7 +17,7 @@ ForceRecord::ForceRecord(const Mechanism& mechanism, std::uint32_t first_solid,
 }
 
 void ForceRecord::begin(const BodyMotion& body) {
-  motion_.before(body, parents_.size());
+  motion_.before(body);
   const std::size_t segments = mechanism_.segments().size();
   X_WS_.resize(segments);
   for (std::size_t s = 0; s < segments; ++s) X_WS_[s] = body.segment_pose(static_cast<int>(s));
@@ -25,7 +28,7 @@ void ForceRecord::begin(const BodyMotion& body) {
 void ForceRecord::finish(const BodyMotion& body, const double* velocities, bool in_the_middle, const Vector3d& gravity,
                          double step) {
   step_ = step;
-  motion_.after(body, parents_.size());
+  motion_.after(body);
   needed_.assign(parents_.size(), {Vector3d::Zero(), Vector3d::Zero()});
   std::vector<double> accelerations(velocities_.size());
   for (std::size_t i = 0; i < velocities_.size(); ++i) accelerations[i] = (velocities[i] - velocities_[i]) / step;
@@ -125,10 +128,28 @@ void ForceRecord::add_outside(std::size_t link, const Vector3d& point_W, const V
   needed_[link].torque_W -= torque_W / step_;
 }
 
+// The wrench is constant in the axes of the link that it acts on. In a vehicle's axes, the weight of a wheel must
+// not turn with the wheel: at 100 rad/s, that would be a radian in a step of 10 ms.
 Wrench ForceRecord::joint_wrench(std::size_t index) const {
+  const description::Joint& joint = mechanism_.model().joints[index];
+  const Wrench on_child = wrench_before(joint);
+  if (!motion_.is_whole()) return on_child;
+  const Eigen::Quaterniond turn = motion_.turn(joint.child);
+  return {turn * on_child.force_W, turn * on_child.torque_W};
+}
+
+Wrench ForceRecord::joint_wrench_on_parent(std::size_t index) const {
+  const description::Joint& joint = mechanism_.model().joints[index];
+  const Wrench on_child = wrench_before(joint);
+  if (!motion_.is_whole() || joint.parent == description::Joint::world) return {-on_child.force_W, -on_child.torque_W};
+  const Eigen::Quaterniond turn = motion_.turn(joint.parent);
+  return {turn * -on_child.force_W, turn * -on_child.torque_W};
+}
+
+// Returns the wrench on the joint's child at the beginning of the step.
+Wrench ForceRecord::wrench_before(const description::Joint& joint) const {
   Wrench sum{Vector3d::Zero(), Vector3d::Zero()};
   if (!motion_.is_whole()) return sum;
-  const description::Joint& joint = mechanism_.model().joints[index];
   // Select the child and everything it carries: links come after their parents.
   std::vector<char> is_below(parents_.size(), 0);
   is_below[joint.child] = 1;

@@ -35,9 +35,11 @@ class ForceRecord {
 
   std::size_t link_of(std::uint32_t solid) const { return links_of_solids_[solid - first_solid_]; }
   const MotionRecord& motion() const { return motion_; }
-  /// Returns the wrench on the joint's child by its parent, about the joint's origin at the beginning of the step; zero
-  /// if the last step is not known.
+  /// Returns the wrench on the joint's child by its parent, about the joint's origin. It is that of the beginning of
+  /// the step, turned with the child; zero if the last step is not known.
   Wrench joint_wrench(std::size_t index) const;
+  /// Returns the wrench on the joint's parent by its child, turned with the parent.
+  Wrench joint_wrench_on_parent(std::size_t index) const;
 
  private:
   struct SegmentMotion {
@@ -47,6 +49,7 @@ class ForceRecord {
   };
   void add_needed(double factor, const std::vector<double>& velocities, const std::vector<double>& accelerations,
                   const Eigen::Vector3d& gravity);
+  Wrench wrench_before(const description::Joint& joint) const;
   void find_accelerations(const std::vector<double>& velocities, const std::vector<double>& accelerations);
 
   const Mechanism& mechanism_;

@@ -194,6 +194,11 @@ Wrench MultibodyWorld::joint_wrench(BodyId body, JointId joint) const {
   return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 }
 
+Wrench MultibodyWorld::joint_wrench_on_parent(BodyId body, JointId joint) const {
+  if (const ForceRecord* record = record_of(body)) return record->joint_wrench_on_parent(joint.value);
+  return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+}
+
 Eigen::Vector3d MultibodyWorld::link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const {
   if (const ForceRecord* record = record_of(body))
     return record->motion().acceleration(link.value, p_LP, assembly_.step);

@@ -45,6 +45,7 @@ class MultibodyWorld final : public World, private WorldConnections {
     if (!is_static(body)) assembly_.record(wake(body).member);
   }
   Wrench joint_wrench(BodyId body, JointId joint) const override;
+  Wrench joint_wrench_on_parent(BodyId body, JointId joint) const override;
   Eigen::Vector3d link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const override;
 
   WorldConnections& connections() override { return *this; }

@@ -19,6 +19,7 @@ struct LinksOf {
   std::uint32_t member;
   Pose link_pose(std::size_t link) const { return bodies.link_pose(member, link); }
   Twist link_twist(std::size_t link) const { return bodies.link_twist(member, link); }
+  Eigen::Vector3d reference() const { return {bodies.place(member).x, bodies.place(member).y, 0.0}; }
 };
 
 Wrench in_plane(const Wrench& wrench) {
@@ -78,7 +79,7 @@ void PlanarWorld::set_device_target(BodyId body, DeviceId device, std::size_t ou
 void PlanarWorld::record(BodyId body) {
   if (bodies_[body.value].member == Anchors::nobody) return;
   std::unique_ptr<MotionRecord>& record = members_[bodies_[body.value].member].record;
-  if (!record) record = std::make_unique<MotionRecord>();
+  if (!record) record = std::make_unique<MotionRecord>(description_.models[bodies_[body.value].model]);
   has_records_ = true;
 }
 
@@ -104,8 +105,7 @@ Wrench PlanarWorld::wrench(ConnectionId connection, ConnectionEnd end) const {
 void PlanarWorld::step() {
   if (has_records_)
     for (std::uint32_t index = 0; index < members_.size(); ++index)
-      if (members_[index].record)
-        members_[index].record->before(LinksOf{planar_, index}, planar_.model(index).link_count());
+      if (members_[index].record) members_[index].record->before(LinksOf{planar_, index});
   StageMarks stages;
   stages.enter("collision detection");
   collision_.detect(workers_);
@@ -200,7 +200,7 @@ void PlanarWorld::move(std::uint32_t index) {
   Member& member = members_[index];
   if (!member.is_active || !member.is_finite) return;
   if (planar_.integrate(index, step_)) find_parts_in_body(member, index);
-  if (member.record) member.record->after(LinksOf{planar_, index}, planar_.model(index).link_count());
+  if (member.record) member.record->after(LinksOf{planar_, index});
   place_solids(index);
   const PlanarPlace& place = planar_.place(index);
   member.is_inside = std::abs(place.x) < furthest_from_origin && std::abs(place.y) < furthest_from_origin &&

@@ -64,6 +64,7 @@ class PlanarWorld final : public World, private WorldConnections {
   OutputState device_state(BodyId body, DeviceId device, std::size_t output) const override;
   void record(BodyId body) override;
   Wrench joint_wrench(BodyId, JointId) const override { return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}; }
+  Wrench joint_wrench_on_parent(BodyId body, JointId joint) const override { return joint_wrench(body, joint); }
   Eigen::Vector3d link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const override;
 
   WorldConnections& connections() override { return *this; }

@@ -4,7 +4,7 @@
 namespace cohort::sensing {
 namespace {
 
-/// Proper acceleration along the axes of S: the acceleration of its origin, the mean over the last step, minus gravity.
+/// Proper acceleration along the axes of S: the acceleration of its origin at the end of the last step, minus gravity.
 /// At rest it is g upwards, in free fall 0.
 class Accelerometer final : public SensorOf<description::Accelerometer> {
  public:

@@ -5,7 +5,8 @@ namespace cohort::sensing {
 namespace {
 
 /// Wrench of a joint over the last step: force, and torque about the origin of the joint. It acts on the parent by the
-/// child or vice versa, in the axes of the child, the parent or S (SDF 1.9, <force_torque>). Zero for a planar body.
+/// child or vice versa, in the axes of the child, the parent or S (SDF 1.9, <force_torque>). It has turned with the
+/// link in whose axes it is given. Zero for a planar body.
 class ForceTorqueSensor final : public SensorOf<description::ForceTorqueSensor> {
  public:
   ForceTorqueSensor(const description::ForceTorqueSensor& sensor, const Mount& mount)
@@ -15,11 +16,14 @@ class ForceTorqueSensor final : public SensorOf<description::ForceTorqueSensor> 
             {device_.name + "/0/torque", "N m", 3, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const physics::Wrench on_child = mount_.world.joint_wrench(mount_.body, JointId{device_.joint});
+    const bool is_of_parent = device_.axes == description::ForceTorqueSensor::Frame::parent;
+    const JointId joint{device_.joint};
+    const physics::Wrench wrench = is_of_parent ? mount_.world.joint_wrench_on_parent(mount_.body, joint)
+                                                : mount_.world.joint_wrench(mount_.body, joint);
     const Eigen::Quaterniond W_axes = axes_W().conjugate();
-    const double sign = device_.is_on_parent ? -1.0 : 1.0;
-    write(Eigen::Vector3d(W_axes * (sign * on_child.force_W)), values);
-    write(Eigen::Vector3d(W_axes * (sign * on_child.torque_W)), values.subspan(3));
+    const double sign = device_.is_on_parent == is_of_parent ? 1.0 : -1.0;
+    write(Eigen::Vector3d(W_axes * (sign * wrench.force_W)), values);
+    write(Eigen::Vector3d(W_axes * (sign * wrench.torque_W)), values.subspan(3));
   }
   bool needs_record() const override { return true; }
 

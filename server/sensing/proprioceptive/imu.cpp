@@ -4,9 +4,9 @@
 namespace cohort::sensing {
 namespace {
 
-/// Orientation and angular velocity of S, and its proper acceleration: that of its origin, the mean over the last step,
-/// minus gravity; at rest it is g upwards. The orientation is the rotation of S in its frame of reference (REP 145; SDF
-/// 1.9, <orientation_reference_frame>).
+/// Orientation and angular velocity of S, and its proper acceleration: that of its origin at the end of the last
+/// step, minus gravity; at rest it is g upwards. The orientation is the rotation of S in its frame of reference (REP
+/// 145; SDF 1.9, <orientation_reference_frame>).
 class Imu final : public SensorOf<description::Imu> {
  public:
   Imu(const description::Imu& imu, const Mount& mount) : SensorOf(imu, mount) {

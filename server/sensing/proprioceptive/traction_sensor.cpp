@@ -18,7 +18,8 @@ class TractionSensor final : public SensorOf<description::TractionSensor> {
             {prefix + "force", "N", 2, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const Eigen::Vector3d on_parent_W = -mount_.world.joint_wrench(mount_.body, JointId{device_.joint}).force_W;
+    const Eigen::Vector3d on_parent_W =
+        mount_.world.joint_wrench_on_parent(mount_.body, JointId{device_.joint}).force_W;
     Eigen::Vector3d force = on_parent_W;
     if (parent_ != description::Joint::world)
       force = mount_.world.link_pose(mount_.body, LinkId{parent_}).orientation.conjugate() * on_parent_W;

@@ -363,22 +363,25 @@ TEST(Pushes, AreVisitedByBodyInTheOrderInWhichTheyWereAdded) {
   EXPECT_TRUE(links_of(7).empty());
 }
 
-TEST(MotionRecord, HasTheMeanAccelerationOfAPointOfALink) {
+TEST(MotionRecord, HasTheAccelerationOfAPointOfALinkAtTheEndOfTheStep) {
   struct OneLink {
     Pose X_WL;
     physics::Twist twist;
     const Pose& link_pose(std::size_t) const { return X_WL; }
     const physics::Twist& link_twist(std::size_t) const { return twist; }
+    const Vector3d& reference() const { return X_WL.position; }
   };
   const Vector3d p_LP(0.5, 0.0, 0.0);
-  physics::MotionRecord record;
+  description::Model model;
+  model.links.emplace_back();
+  physics::MotionRecord record(model);
   OneLink link{{}, {{0.0, 0.0, 2.0}, {1.0, 0.0, 0.0}}};
-  record.before(link, 1);
+  record.before(link);
   expect_near(record.acceleration(0, p_LP, 0.1), Vector3d::Zero());
-  // A quarter turn: the point's velocity about the link's origin turns from y to -x.
+  // A quarter turn: the point is then at y from the link's origin, which accelerates along x.
   link = {turned(0, 0, 0, Vector3d::UnitZ(), std::numbers::pi / 2.0), {{0.0, 0.0, 2.0}, {1.5, 0.0, 0.0}}};
-  record.after(link, 1);
-  expect_near(record.acceleration(0, p_LP, 0.1), {-5.0, -10.0, 0.0}, 1e-10);
+  record.after(link);
+  expect_near(record.acceleration(0, p_LP, 0.1), {5.0, -2.0, 0.0}, 1e-10);
   record.forget();
   expect_near(record.acceleration(0, p_LP, 0.1), Vector3d::Zero());
 }

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "tests/support/sensed.hpp"
 
@@ -13,7 +15,6 @@ using namespace test;
 using description::ForceTorqueSensor;
 using description::Model;
 using std::numbers::pi;
-constexpr double step = 0.01;
 
 description::Imu imu(const Pose& X_LS = {}) {
   description::Imu result;
@@ -46,8 +47,6 @@ TEST(ImuSensor, DistributesGravityToItsAxesByItsInclination) {
   expect_near(sensed.vector("linear_acceleration"), {0, g * std::sin(0.3), g * std::cos(0.3)}, 1e-12);
 }
 
-// The mean over a step of h of a point that moves on a circle. The velocities before and after have the length w r and
-// are w h apart. In the axes at the end the mean is w r / h (-sin(w h), 1 - cos(w h)), which is -w^2 r for small w h.
 TEST(ImuSensor, MeasuresTheCentripetalAccelerationAtItsPosition) {
   constexpr double w = 3.0, r = 0.4;
   Sensed sensed(imu({{r, 0, 0}}));
@@ -55,9 +54,44 @@ TEST(ImuSensor, MeasuresTheCentripetalAccelerationAtItsPosition) {
   sensed.read();
   sensed.small.world().set_root_twist(sensed.body, {{0, 0, w}, {0, 0, 0}});
   sensed.small.run(0.5);
-  expect_near(sensed.vector("linear_acceleration"),
-              w * r / step * Eigen::Vector3d(-std::sin(w * step), 1.0 - std::cos(w * step), 0.0), 1e-9);
+  expect_near(sensed.vector("linear_acceleration"), {-w * w * r, 0, 0}, 1e-9);
   expect_near(sensed.vector("angular_velocity"), {0, 0, w}, 1e-12);
+}
+
+// Runs `check` with each dynamics, with steps of 10 and 1 ms, and turning in both directions.
+template <class Check>
+void in_every_way(const Model& model, const Check& check) {
+  for (const auto dynamics : {description::Dynamics::bullet, description::Dynamics::cohort})
+    for (const int step_ms : {10, 1})
+      for (const double sense : {1.0, -1.0}) {
+        SCOPED_TRACE(std::string(dynamics == description::Dynamics::bullet ? "bullet" : "cohort") + ", " +
+                     std::to_string(step_ms) + " ms, sense " + std::to_string(sense));
+        Sensed sensed(model, at(0, 0, 1));
+        sensed.small.description.physics.dynamics = dynamics;
+        sensed.small.description.step = std::chrono::milliseconds(step_ms);
+        check(sensed, sense);
+      }
+}
+
+// A balanced drum that turns about a horizontal axis at a constant rate, with a device on it.
+Model drum(const description::Device& device) {
+  Model model = carrier(device);
+  model.joints.push_back(joint_of("hinge", description::JointType::revolute, description::Joint::world, 0, {0, 1, 0}));
+  return model;
+}
+
+TEST(ImuSensor, MeasuresAlongTheRadiusAndGravityUpwardsWhileItTurns) {
+  constexpr double w = 5.0, r = 0.3;
+  in_every_way(drum(imu({{r, 0, 0}})), [](Sensed& sensed, double sense) {
+    sensed.read();
+    sensed.small.world().set_joint_state(sensed.body, JointId{0}, std::array{0.0}, std::array{w * sense});
+    for (int i = 0; i < 50; ++i) {
+      sensed.small.world().step();
+      const Eigen::Quaterniond R_WS = sensed.small.world().link_pose(sensed.body, LinkId{0}).orientation;
+      const Eigen::Vector3d up = R_WS.conjugate() * Eigen::Vector3d(0, 0, g);
+      expect_near(sensed.vector("linear_acceleration"), up - Eigen::Vector3d(w * w * r, 0, 0), 1e-9);
+    }
+  });
 }
 
 TEST(ImuSensor, GivesAngularVelocityInItsOwnAxes) {
@@ -151,6 +185,38 @@ TEST(ForceTorqueSensor, MeasuresAHangingWeightInTheRequestedAxes) {
   check({"", 0, {}, Frame::child, true}, {0, moment, 0}, 1.0);
   check({"", 0, {}, Frame::sensor, true}, {moment, 0, 0}, 1.0);                      // a quarter turn further
   check({"", 0, at(0, 0, 0, 0.5 * pi), Frame::sensor, true}, {0, -moment, 0}, 1.0);  // and one more
+}
+
+// A bob of 2 kg turns on a hinge, 0.3 m from its vertical axis; the base and the bob are the links of a fixed joint.
+Model turning(ForceTorqueSensor sensor, std::size_t joint) {
+  Model model = hanging({});
+  model.joints[0].type = description::JointType::revolute;
+  sensor.name = "wrench";
+  sensor.joint = joint;
+  model.devices = {sensor};
+  return model;
+}
+
+TEST(ForceTorqueSensor, MeasuresACentrifugalForceAlongTheBoomInEveryAxes) {
+  using Frame = ForceTorqueSensor::Frame;
+  constexpr double w = 5.0, force = 2.0 * w * w * 0.3;
+  const auto check = [&](const ForceTorqueSensor& sensor, std::size_t joint, const Eigen::Vector3d& outwards) {
+    in_every_way(turning(sensor, joint), [&](Sensed& sensed, double sense) {
+      sensed.small.description.gravity.setZero();
+      sensed.read();
+      sensed.small.world().set_joint_state(sensed.body, JointId{0}, std::array{0.0}, std::array{w * sense});
+      sensed.small.run(0.2);
+      expect_near(sensed.vector("force"), force * outwards, 1e-9 * force);
+      expect_near(sensed.vector("torque"), {0, 0, 0}, 1e-9);
+    });
+  };
+  // The bob is rotated by a quarter turn in the base, and the axes of the sensor by another one.
+  check({"", 0, {}, Frame::child, true}, 1, {1, 0, 0});
+  check({"", 0, {}, Frame::child, false}, 1, {-1, 0, 0});
+  check({"", 0, {}, Frame::parent, true}, 1, {0, 1, 0});
+  check({"", 0, {}, Frame::parent, false}, 1, {0, -1, 0});
+  check({"", 0, {}, Frame::sensor, true}, 1, {0, -1, 0});
+  check({"", 0, {}, Frame::child, true}, 0, {0, 1, 0});  // the hinge; its child is the base
 }
 
 TEST(ForceTorqueSensor, IsZeroWithoutLoadBeforeTheFirstStep) {

@@ -255,6 +255,46 @@ TEST(Joints, ASoftLimitDeflectsByItsStiffness) {
   }
 }
 
+// A limit without damping gives back what it has taken, wherever within a step the joint meets it.
+TEST(Joints, AnElasticLimitKeepsTheEnergy) {
+  for (const double dynamics : {0.0, 1.0})
+    for (const int step : {10, 5, 1})
+      for (const double sense : {1.0, -1.0})
+        for (const double frequency : {10.0, 50.0, 200.0, 700.0})  // [rad/s]
+          for (int i = 0; i < 8; ++i) {
+            description::World world = empty_world(std::chrono::milliseconds(step));
+            world.gravity.setZero();
+            if (dynamics > 0.0) world.physics.dynamics = description::Dynamics::bullet;
+            SmallWorld small(std::move(world));
+            description::Model model;
+            model.name = "buffer";
+            model.links.push_back({"load", {}, solid_box(2.0, {0.1, 0.1, 0.1}), {}});
+            model.joints.push_back(joint_of("rail", JointType::prismatic, Joint::world, 0, sense * Vector3d::UnitX()));
+            description::JointAxis& axis = model.joints[0].axis;
+            axis.lower = -0.1;
+            axis.upper = 0.1 + 0.0012 * i;
+            axis.limit_stiffness = 2.0 * frequency * frequency;
+            const auto body = small.add(model, at(0, 0, 1));
+            small.world().set_joint_state(body, JointId{0}, std::array{0.0}, std::array{1.0});
+            double slowest = 1.0;
+            double fastest = 1.0;
+            int bounces = 0;
+            double last = 1.0;
+            for (int k = 0; k < 5000 / step; ++k) {
+              small.world().step();
+              const auto state = small.world().joint_state(body, JointId{0});
+              if (std::abs(state.position) > 0.08) continue;
+              if (state.velocity * last < 0.0) ++bounces;
+              last = state.velocity;
+              slowest = std::min(slowest, std::abs(state.velocity));
+              fastest = std::max(fastest, std::abs(state.velocity));
+            }
+            EXPECT_NEAR(slowest, 1.0, 1e-3) << step << " ms, " << frequency << " rad/s, " << i;
+            EXPECT_NEAR(fastest, 1.0, 1e-3) << step << " ms, " << frequency << " rad/s, " << i;
+            EXPECT_GT(bounces, 8);
+          }
+}
+
 // Returns a cart with four wheels as real links, which touch the ground.
 description::Model four_wheels() {
   description::Model model;

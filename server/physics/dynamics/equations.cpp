@@ -15,8 +15,6 @@ constexpr int free_root_dofs = 6;
 // recursion is faster for chains: from 36 degrees of freedom with ball joints and 52 with hinges. With four limbs, it
 // is faster from 75 and 105.
 constexpr int most_by_matrix = 64;
-// Square of the step times the angular frequency up to which a spring keeps all its energy.
-constexpr double fastest_spring = 64.0;
 
 }  // namespace
 

@@ -10,6 +10,9 @@
 
 namespace cohort::physics {
 
+/// Square of the step times the angular frequency up to which a spring keeps all its energy.
+inline constexpr double fastest_spring = 64.0;
+
 /// The equations of motion of one body over one step: its velocities without any impulse, and how an impulse changes
 /// them. They use the dynamics that the body has: Bullet's, or Cohort's own. Damping and springs of joints are
 /// integrated implicitly: they are part of the inertia, and so stable at any stiffness. The rotor inertia of geared

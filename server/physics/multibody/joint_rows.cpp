@@ -23,6 +23,45 @@ double velocity_to_rest(double way, double braking, double step) {
   return std::sqrt(half * half + 2.0 * braking * way) - half;
 }
 
+// Returns the velocity that the spring of an elastic limit would give to `mass`, which moves with `velocity` away from
+// the limit and meets it, if no other force acted in this step. Velocities belong to the middle of steps, so that the
+// joint is at gap - step velocity / 2 with the one, and at gap + step velocity / 2 with the other. The kinetic energy
+// and that of the spring at these places have the same sum: the limit gives back what it has taken.
+double rebound_from_spring(double stiffness, double mass, double gap, double velocity, double step) {
+  const double before = gap - 0.5 * step * velocity;
+  const double inertia = mass + 0.25 * step * step * stiffness;
+  if (before < 0.0) {
+    const double within = velocity - step * stiffness * gap / inertia;
+    if (gap + 0.5 * step * within < 0.0) return within;
+    return std::sqrt(velocity * velocity + stiffness * before * before / mass);
+  }
+  const double half = 0.5 * stiffness * step * gap;
+  const double rest = stiffness * gap * gap - mass * velocity * velocity;
+  return -(half + std::sqrt(std::max(0.0, half * half - inertia * rest))) / inertia;
+}
+
+// Makes the row one of a joint limit, and returns its target away from the limit. `gap`: to the limit; `velocity`: of
+// the joint before the step, away from the limit.
+double limit_row(Row& row, const description::JointAxis& axis, double gap, double velocity, double step) {
+  const double resistance = step * axis.limit_stiffness + axis.limit_damping;
+  // Closes the gap exactly, or corrects a share of an overshoot.
+  if (std::isinf(resistance)) return -(gap > 0.0 ? gap : correction_share * gap) / step;
+  const double mass = row.inverse;
+  if (axis.limit_stiffness * step * step > fastest_spring * mass) {
+    // A spring with a damper, as in Connection::add_yielding_rows.
+    row.soften(1.0 / (step * resistance));
+    return -(gap > 0.0 ? gap / step : axis.limit_stiffness * gap / resistance);
+  }
+  if (gap >= 0.5 * step * std::abs(velocity)) {  // the joint does not meet it in this step
+    row.set_limits(0.0, 0.0);
+    return velocity;
+  }
+  const double rebound = rebound_from_spring(axis.limit_stiffness, mass, gap, velocity, step);
+  const double by_spring = 0.25 * step * step * axis.limit_stiffness;
+  row.soften(1.0 / (by_spring + step * axis.limit_damping));
+  return row.softness * (mass * (rebound - velocity) + by_spring * rebound);
+}
+
 }  // namespace
 
 JointRows::JointRows(const Mechanism& mechanism)
@@ -95,31 +134,17 @@ void JointRows::add_rows(Problem& problem, int index, const BodyMotion& body, do
     const double fastest = std::max(std::abs(velocity), std::abs(problem.equations(index).velocity()[limit.dof]));
     const double by_motor = has_motor(limit.dof) ? motor(limit.dof).most_change : 0.0;
     const double reach = (2.0 * fastest + by_motor) * step + 1e-3;
-    // A spring with a damper, as in Connection::add_yielding_rows; infinite where the limit is rigid.
-    const double resistance = step * dof.axis.limit_stiffness + dof.axis.limit_damping;
-    const bool is_rigid = std::isinf(resistance);
-    // Returns the velocity that closes the gap exactly, or corrects a share of an overshoot.
-    const auto target = [&](double gap) {
-      if (gap > 0.0) return gap / step;
-      return is_rigid ? correction_share * gap / step : dof.axis.limit_stiffness * gap / resistance;
+    const auto add = [&](double gap, double sense, double* kept) {
+      if (gap >= reach) {
+        *kept = 0.0;
+        return;
+      }
+      Row& row = problem.add_dof_row(index, limit.dof, kept);
+      sense > 0.0 ? row.set_limits(0.0, unlimited) : row.set_limits(-unlimited, 0.0);
+      row.target = sense * limit_row(row, dof.axis, gap, sense * velocity, step);
     };
-    const auto is_near = [&](double gap) { return gap < reach; };
-    if (is_near(position - dof.axis.lower)) {
-      Row& row = problem.add_dof_row(index, limit.dof, &limit.lower_impulse);
-      row.target = -target(position - dof.axis.lower);
-      row.set_limits(0.0, unlimited);
-      if (!is_rigid) row.soften(1.0 / (step * resistance));
-    } else {
-      limit.lower_impulse = 0.0;
-    }
-    if (is_near(dof.axis.upper - position)) {
-      Row& row = problem.add_dof_row(index, limit.dof, &limit.upper_impulse);
-      row.target = target(dof.axis.upper - position);
-      row.set_limits(-unlimited, 0.0);
-      if (!is_rigid) row.soften(1.0 / (step * resistance));
-    } else {
-      limit.upper_impulse = 0.0;
-    }
+    add(position - dof.axis.lower, 1.0, &limit.lower_impulse);
+    add(dof.axis.upper - position, -1.0, &limit.upper_impulse);
   }
 }
 

@@ -18,8 +18,8 @@
 /// frame A.
 namespace cohort::description {
 
-/// Contact properties of a surface. For two surfaces in contact, the smaller friction, the product of restitutions and
-/// the larger rolling resistance apply, unless the world has a MaterialPair for them, and the larger spinning one.
+/// Contact properties of a surface. For two surfaces in contact, the smaller friction, the product of restitutions, and
+/// the larger resistances to rolling and spinning apply. A MaterialPair of the world replaces all but the last.
 /// If friction has a direction, that of the surface with the smaller coefficient along it applies, with the smaller
 /// coefficient across it. Stiffnesses combine as springs in series, and dampings add up. The larger of the given bounce
 /// thresholds applies.

@@ -45,7 +45,7 @@ class IslandSolver {
   bool has_connections_ = false;
   bool has_light_connections_ = false;
   Method method_ = Method::passes;
-  std::optional<double> error_;  // of the convex solver
+  std::optional<double> error_;  // that the convex solver has left
 };
 
 /// Returns the change of a row's velocity in a pass below which the island has settled [m/s or rad/s].

@@ -23,10 +23,10 @@ double velocity_to_rest(double way, double braking, double step) {
   return std::sqrt(half * half + 2.0 * braking * way) - half;
 }
 
-// Returns the velocity that the spring of an elastic limit would give to `mass`, which moves with `velocity` away from
-// the limit and meets it, if no other force acted in this step. Velocities belong to the middle of steps, so that the
-// joint is at gap - step velocity / 2 with the one, and at gap + step velocity / 2 with the other. The kinetic energy
-// and that of the spring at these places have the same sum: the limit gives back what it has taken.
+// Returns the velocity that the spring of an elastic limit would give to `mass` if no other force acted in this step.
+// `velocity`: that before the step, away from the limit. Velocities belong to the middle of steps, so that the joint is
+// at gap - step velocity / 2 with the one, and at gap + step velocity / 2 with the other. The kinetic energy and that
+// of the spring have the same sum at these places: the limit gives back what it has taken.
 double rebound_from_spring(double stiffness, double mass, double gap, double velocity, double step) {
   const double before = gap - 0.5 * step * velocity;
   const double inertia = mass + 0.25 * step * step * stiffness;

@@ -49,8 +49,8 @@ struct Row {
     lower = least;
     upper = most;
   }
-  /// Returns whether bodies rebound at this contact: they approach each other with the velocity `before` the step, and
-  /// would close their gap with the velocity `after` it, if there was no contact.
+  /// Returns whether bodies rebound at this contact. `before`: their velocity before the step, with which they must
+  /// approach each other. `after`: that after it without the contact, with which they must close their gap.
   bool is_impact(double before, double after) const {
     return restitution > 0.0 && -before > least_approach && -after > closing;
   }

@@ -12,10 +12,10 @@ namespace cohort::physics {
 /// row of touching balls from contact to contact, and only the last ball leaves. Source: Smith, Kaufman, Vouga,
 /// Tamstorf and Grinspun, "Reflections on simultaneous impact", ACM Transactions on Graphics 31, 2012.
 ///
-/// A contact rebounds at the beginning of the step, although its bodies touch within it. The velocity after it is the
-/// one whose energy is right at that place: what the bodies gain on their way through the gap is in the velocity that
-/// the restitution reduces, and they lose it again on the way back. Velocities belong to the middle of a step (as in
-/// the leapfrog method, whose energy this is). So a ball rises to the same height at any step.
+/// A contact rebounds at the beginning of the step, although its bodies touch within it. Their energy after it is right
+/// for that place. The velocity that the restitution reduces includes what they gain on their way through the gap, and
+/// they lose that again on the way back. Velocities belong to the middle of a step, as in the leapfrog method. So a
+/// ball rises to the same height at any step.
 ///
 /// Reuses its memory; each worker has one.
 class Impacts {

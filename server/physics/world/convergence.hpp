@@ -20,9 +20,9 @@ struct Convergence {
     double error = 0.0;
   };
 
-  std::uint64_t solved = 0;          ///< islands since the world was built, one for each step
-  std::uint64_t unconverged = 0;     ///< of these
-  double worst = 0.0;                ///< greatest error of these
+  std::uint64_t solved = 0;          ///< islands since the world was built, counted in each step
+  std::uint64_t unconverged = 0;     ///< number of them that have not converged
+  double worst = 0.0;                ///< greatest error of those
   std::vector<Island> of_last_step;  ///< islands that have not converged in the last step, by their first body
 };
 

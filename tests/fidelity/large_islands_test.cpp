@@ -119,6 +119,26 @@ TEST_P(LargeIslands, ContinueWithoutABodyThatBreaks) {
   EXPECT_EQ(broken_run(1), broken_run(4));
 }
 
+// A hundred balls that hit a board at once are one island.
+TEST_P(LargeIslands, BounceToTheHeightOfTheirRestitution) {
+  SmallWorld small(GetParam().world());
+  const Vector3d size(2.2, 2.2, 0.02);
+  small.add(loose("board", description::Box{size}, solid_box(1000.0, size), {1.0, 1.0}), at(1.0, 1.0, 0.01));
+  std::vector<BodyId> balls;
+  for (int i = 0; i < 100; ++i)
+    balls.push_back(
+        small.add(loose("ball", description::Sphere{0.05}, description::solid_sphere(0.001, 0.05), {1.0, 0.8}),
+                  at(0.2 * (i % 10), 0.2 * (i / 10), 0.02 + 0.05 + 0.31)));
+  small.run(0.3);  // they hit after 0.25 s
+  std::vector<double> peaks(balls.size(), 0.0);
+  for (int i = 0; i < 40; ++i) {
+    small.world().step();
+    for (std::size_t ball = 0; ball < balls.size(); ++ball)
+      peaks[ball] = std::max(peaks[ball], small.position(balls[ball]).z() - 0.07);
+  }
+  for (const double peak : peaks) EXPECT_NEAR(peak, 0.64 * 0.31, 0.002);
+}
+
 // A hundred bodies in a row, of which every third is linked to one far away.
 void link_all(IslandParts& parts, std::uint32_t count) {
   parts.reset(count);

@@ -54,12 +54,12 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   workers_.for_each_chunk(seams_.size(), 1, [&](std::size_t seam, std::size_t, unsigned) {
     add_rows_of_seam(assembly, seams_[seam], shares_[parts_.count() + seam].problem);
   });
+  for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
+    for_each_share(phase,
+                   [&](Share& share) { rebound_at_once(share.problem, assembly.step * assembly.gravity.norm()); });
   const double share_of_last = has_connections ? start_of_connected : 1.0;
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
-    for_each_share(phase, [&](Share& share) {
-      rebound_at_once(share.problem, assembly.step * assembly.gravity.norm());
-      SequentialImpulses(share.problem).start(share_of_last);
-    });
+    for_each_share(phase, [&](Share& share) { SequentialImpulses(share.problem).start(share_of_last); });
   const double settled = settled_change(assembly);
   if (is_calm) {
     settle(settled);

@@ -37,7 +37,7 @@ class Impacts {
 };
 
 /// Makes the contacts that approach each other rebound in the same solution as everything else. For islands that are
-/// too large for rounds.
+/// too large for rounds. Call it before any impulses are applied.
 void rebound_at_once(Problem& problem, double fall);
 
 }  // namespace cohort::physics

@@ -125,16 +125,17 @@ TEST_P(LargeIslands, BounceToTheHeightOfTheirRestitution) {
   const Vector3d size(2.2, 2.2, 0.02);
   small.add(loose("board", description::Box{size}, solid_box(1000.0, size), {1.0, 1.0}), at(1.0, 1.0, 0.01));
   std::vector<BodyId> balls;
-  for (int i = 0; i < 100; ++i)
-    balls.push_back(
-        small.add(loose("ball", description::Sphere{0.05}, description::solid_sphere(0.001, 0.05), {1.0, 0.8}),
-                  at(0.2 * (i % 10), 0.2 * (i / 10), 0.02 + 0.05 + 0.31)));
+  const description::Model ball =
+      loose("ball", description::Sphere{0.05}, description::solid_sphere(0.001, 0.05), {1.0, 0.8});
+  balls.reserve(100);
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 10; ++x) balls.push_back(small.add(ball, at(0.2 * x, 0.2 * y, 0.02 + 0.05 + 0.31)));
   small.run(0.3);  // they hit after 0.25 s
   std::vector<double> peaks(balls.size(), 0.0);
   for (int i = 0; i < 40; ++i) {
     small.world().step();
-    for (std::size_t ball = 0; ball < balls.size(); ++ball)
-      peaks[ball] = std::max(peaks[ball], small.position(balls[ball]).z() - 0.07);
+    for (std::size_t each = 0; each < balls.size(); ++each)
+      peaks[each] = std::max(peaks[each], small.position(balls[each]).z() - 0.07);
   }
   for (const double peak : peaks) EXPECT_NEAR(peak, 0.64 * 0.31, 0.002);
 }

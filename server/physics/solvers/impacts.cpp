@@ -26,7 +26,9 @@ double rebound(const Row& row, double velocity, double gained) {
 
 void Impacts::solve(Problem& problem, double fall) {
   impulses_.clear();
-  const auto hits = [&](const Row& row) { return row.is_impact(problem.velocity_before(row), problem.velocity(row)); };
+  const auto hits = [&](const Row& row) {
+    return row.restitution > 0.0 && row.is_impact(problem.velocity_before(row), problem.velocity(row));
+  };
   if (std::ranges::none_of(problem.rows(), hits)) return;
 
   gained_.clear();

@@ -56,11 +56,8 @@ void RunMonitor::at_boundary() {
 void RunMonitor::see_whether_converged() {
   const auto& islands = simulation_.convergence().of_last_step;
   if (islands.empty() || std::exchange(has_noted_convergence_, true)) return;
-  const RunEvent event{simulation_.tick(), "unconverged",
-                       "the contacts and joints of '" + simulation_.objects().name(islands.front().body.value) +
-                           "' and what it touches were solved with an error; the summary counts such groups"};
-  log_.add(event.tick, event.kind, event.text);
-  if (listener_.event) listener_.event(event);
+  note("unconverged", "the contacts and joints of '" + simulation_.objects().name(islands.front().body.value) +
+                          "' and what it touches were solved with an error; the summary counts such groups");
 }
 
 // Reports a failed recording at once to a user who waits for it.
@@ -107,11 +104,16 @@ Progress RunMonitor::progress_at(Clock::time_point now) {
 }
 
 void RunMonitor::add_event(const std::string& kind, const std::string& text, std::uint64_t count) {
+  const auto [event, is_news] = note(kind, text, count);
+  if (is_news && listener_.news) listener_.news(event);
+}
+
+std::pair<RunEvent, bool> RunMonitor::note(const std::string& kind, const std::string& text, std::uint64_t count) {
   constexpr std::size_t longest = 4096;
   const RunEvent event{simulation_.tick(), kind, printable(text, longest), count};
   const bool is_news = log_.add(event.tick, kind, event.text, count);
   if (listener_.event) listener_.event(event);
-  if (is_news && listener_.news) listener_.news(event);
+  return {event, is_news};
 }
 
 void RunMonitor::controlled(ControlEvent event) {

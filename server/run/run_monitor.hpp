@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "server/lockstep/barrier.hpp"
 #include "server/run/run.hpp"
@@ -89,6 +90,8 @@ class RunMonitor {
   Progress progress_at(Clock::time_point now);
   void see_whether_recorded();
   void see_whether_converged();
+  // Adds an event without telling the user. Returns it, and whether it is the first of its kind and text.
+  std::pair<RunEvent, bool> note(const std::string& kind, const std::string& text, std::uint64_t count = 1);
 
   const Simulation& simulation_;
   RunOptions options_;

@@ -74,9 +74,10 @@ TEST(Contacts, ABallBouncesToTheSquareOfItsRestitution) {
         const double seconds = 1e-3 * step;
         double expected = height;
         for (int bounce = 0; bounce < 3; ++bounce) {
-          while (small.velocity(ball).z() <= 0.0) small.world().step();
+          const auto goes_on = [&](bool up) { return (small.velocity(ball).z() > 0.0) == up; };
+          for (int k = 0; k < 2000 / step && goes_on(false); ++k) small.world().step();
           double peak = 0.0;
-          while (small.velocity(ball).z() > 0.0) {
+          for (int k = 0; k < 2000 / step && goes_on(true); ++k) {
             peak = std::max(peak, small.position(ball).z() - 0.05);
             small.world().step();
           }
@@ -106,8 +107,9 @@ TEST(Contacts, ABallThatLosesNothingBouncesForEver) {
   }
 }
 
-// Corners, edges and rims hit the ground at any time within a step, also while other points slide on it. (Without any
-// loss, a tumbling body gains a few per cent in steps of 5 ms, and friction at an impact may add some in any step.)
+// Corners, edges and rims hit the ground at any time within a step, also while other points slide on it. Without any
+// loss, a tumbling body gains a few per cent in steps of 5 ms, and up to 240 % in steps of 10. Friction at an impact
+// without loss may add energy in any step.
 TEST(Contacts, NothingGainsEnergyByBouncing) {
   const Vector3d size(0.2, 0.12, 0.08);
   for (const double restitution : {1.0, 0.9, 0.6})

@@ -233,16 +233,22 @@ TEST(Joints, ADoublePendulumKeepsItsEnergy) {
   }
 }
 
+// 2 kg on a rail.
+description::Model load_on_a_rail(const Vector3d& axis) {
+  description::Model model;
+  model.name = "buffer";
+  model.links.push_back({"load", {}, solid_box(2.0, {0.1, 0.1, 0.1}), {}});
+  model.joints.push_back(joint_of("rail", JointType::prismatic, Joint::world, 0, axis));
+  return model;
+}
+
 // It comes to rest where the spring carries its weight, on either side of the joint, with any damping.
 TEST(Joints, ASoftLimitDeflectsByItsStiffness) {
   constexpr double weight = 2.0 * g, stiffness = 500.0;
   for (const double damping : {5.0, 50.0}) {
     for (const double sense : {1.0, -1.0}) {
       SmallWorld small(empty_world());
-      description::Model model;
-      model.name = "buffer";
-      model.links.push_back({"load", {}, solid_box(2.0, {0.1, 0.1, 0.1}), {}});
-      model.joints.push_back(joint_of("rail", JointType::prismatic, Joint::world, 0, sense * Vector3d::UnitZ()));
+      description::Model model = load_on_a_rail(sense * Vector3d::UnitZ());
       description::JointAxis& axis = model.joints[0].axis;
       axis.lower = -0.1;
       axis.upper = 0.1;
@@ -257,19 +263,16 @@ TEST(Joints, ASoftLimitDeflectsByItsStiffness) {
 
 // A limit without damping gives back what it has taken, wherever within a step the joint meets it.
 TEST(Joints, AnElasticLimitKeepsTheEnergy) {
-  for (const double dynamics : {0.0, 1.0})
+  for (const auto dynamics : {description::Dynamics::cohort, description::Dynamics::bullet})
     for (const int step : {10, 5, 1})
       for (const double sense : {1.0, -1.0})
         for (const double frequency : {10.0, 50.0, 200.0, 700.0})  // [rad/s]
           for (int i = 0; i < 8; ++i) {
             description::World world = empty_world(std::chrono::milliseconds(step));
             world.gravity.setZero();
-            if (dynamics > 0.0) world.physics.dynamics = description::Dynamics::bullet;
+            world.physics.dynamics = dynamics;
             SmallWorld small(std::move(world));
-            description::Model model;
-            model.name = "buffer";
-            model.links.push_back({"load", {}, solid_box(2.0, {0.1, 0.1, 0.1}), {}});
-            model.joints.push_back(joint_of("rail", JointType::prismatic, Joint::world, 0, sense * Vector3d::UnitX()));
+            description::Model model = load_on_a_rail(sense * Vector3d::UnitX());
             description::JointAxis& axis = model.joints[0].axis;
             axis.lower = -0.1;
             axis.upper = 0.1 + 0.0012 * i;

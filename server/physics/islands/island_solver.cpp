@@ -127,7 +127,10 @@ void IslandSolver::take(const Assembly& assembly, std::span<const std::uint32_t>
 std::optional<double> IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
   take(assembly, members);
   error_.reset();
-  while (!sound_.empty() && !try_to_solve(assembly)) leave_out_broken(sound_, assembly);
+  while (!sound_.empty() && !try_to_solve(assembly)) {
+    leave_out_broken(sound_, assembly);
+    error_.reset();
+  }
   return error_;
 }
 

@@ -9,7 +9,6 @@
 
 #include "server/core/tick_stage.hpp"
 #include "server/physics/islands/island_solver.hpp"
-#include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {
 namespace {
@@ -21,18 +20,6 @@ constexpr std::size_t islands_at_once = 8;
 IslandSolver& solver_of_this_thread() {
   static thread_local IslandSolver solver;
   return solver;
-}
-
-// Returns the lowest height at which a static solid can carry a body. A sloping plane descends up to the end of the
-// world; a wall or a ceiling carries nothing below its origin.
-double lowest_of(const geometry::Scene& scene, std::uint32_t index) {
-  constexpr double least_upwards = 1e-9;
-  const geometry::Solid& solid = scene.solid(index);
-  if (!std::holds_alternative<description::Plane>(solid.shape())) return scene.bounds(index).lower.z();
-  const double height = solid.X_WC.position.z();
-  const Eigen::Vector3d up_W = solid.X_WC.orientation * Eigen::Vector3d::UnitZ();
-  if (up_W.z() < least_upwards) return height;
-  return height - 2.0 * furthest_from_origin * up_W.head<2>().lpNorm<1>() / up_W.z();
 }
 
 template <class Output>
@@ -125,29 +112,6 @@ std::unique_ptr<Multibody> MultibodyWorld::make_multibody(std::size_t model_inde
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("model '" + model.name + "': " + error.what());
   }
-}
-
-// Sets the lowest allowed height, unless the world specifies it: well below all static solids, present or not, and well
-// below the place of every body. Without a static solid, there is no ground that a body could miss, and no limit.
-void MultibodyWorld::find_lowest() {
-  constexpr double below_all = 10.0;  // [m]
-  is_lowest_known_ = true;
-  if (std::isfinite(description_.physics.lowest)) return;
-  constexpr double none = std::numeric_limits<double>::infinity();
-  double lowest_static = none;
-  double lowest_place = none;
-  const geometry::Scene& scene = assembly_.scene;
-  const auto is_released = [&](BodyId body) { return bodies_[body.value].slot == World::released; };
-  for (std::uint32_t solid = 0; solid < scene.size(); ++solid)
-    if (!assembly_.anchors.moves(solid) && !is_released(scene.solid(solid).body))
-      lowest_static = std::min(lowest_static, lowest_of(scene, solid));
-  for (const Member& member : assembly_.members) {
-    if (is_released(member.body)) continue;
-    const PlacedBody& body = bodies_[member.body.value];
-    const Pose X_WL = body.X_WM * description_.models[body.model].links[0].X_ML;
-    lowest_place = std::min(lowest_place, X_WL.position.z());
-  }
-  assembly_.settings.lowest = lowest_static == none ? -none : std::min(lowest_static, lowest_place) - below_all;
 }
 
 Activity MultibodyWorld::activity(BodyId body) const {

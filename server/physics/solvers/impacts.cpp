@@ -22,6 +22,8 @@ double rebound(const Row& row, double velocity, double gained) {
   return std::sqrt(std::max(0.0, square(row.restitution) * at_touch - lost)) - half;
 }
 
+double gained_by_forces(double before, double after, double fall) { return std::clamp(after - before, -fall, fall); }
+
 }  // namespace
 
 void Impacts::solve(Problem& problem, double fall) {
@@ -33,7 +35,7 @@ void Impacts::solve(Problem& problem, double fall) {
 
   gained_.clear();
   for (const Row& row : problem.rows())
-    gained_.push_back(std::clamp(problem.velocity(row) - problem.velocity_before(row), -fall, fall));
+    gained_.push_back(gained_by_forces(problem.velocity_before(row), problem.velocity(row), fall));
 
   free_.clear();
   const auto for_each_velocity = [&](auto&& visit) {
@@ -91,7 +93,7 @@ void rebound_at_once(Problem& problem, double fall) {
     const double before = problem.velocity_before(row);
     const double after = problem.velocity(row);
     if (!row.is_impact(before, after)) continue;
-    const double gained = std::clamp(after - before, -fall, fall);
+    const double gained = gained_by_forces(before, after, fall);
     row.target = std::max(row.target, rebound(row, before, gained) + gained);
   }
 }

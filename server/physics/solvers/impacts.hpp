@@ -33,7 +33,7 @@ class Impacts {
   std::vector<Row> rows_;         // as they were before the impacts
   std::vector<double> impulses_;  // sum over the rounds, by row; empty: no impact
   std::vector<double> free_;      // velocity changes by forces, by body and dof
-  std::vector<double> gained_;    // the same along each row
+  std::vector<double> gained_;    // along each row, no more than by gravity
 };
 
 /// Makes the contacts that approach each other rebound in the same solution as everything else. For islands that are

@@ -29,7 +29,7 @@ class MultibodyWorld final : public World, private WorldConnections {
   Activity activity(BodyId body) const override;
   BodyId add_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot) override;
   void set_present(BodyId body, bool is_present) override;
-  void release_body(BodyId body) override;
+  void release_body(BodyId index) override;
   std::uint32_t slot_of(BodyId body) const override { return bodies_[body.value].slot; }
   void place_body(BodyId index, const Pose& X_WM) override;
   void push_body(BodyId body, LinkId link, const Wrench& wrench) override;
@@ -86,8 +86,8 @@ class MultibodyWorld final : public World, private WorldConnections {
   std::unique_ptr<Multibody> make_multibody(std::size_t model, const Pose& X_WM, BodyId body);
   BodyId create_body(std::size_t model, const Pose& X_WM, std::optional<std::uint32_t> saved_slot = {});
   const ModelParts& parts_of(std::size_t model);
-  void remove_body(BodyId body);
-  void put_back_body(BodyId body);
+  void remove_body(BodyId index);
+  void put_back_body(BodyId index);
   void find_lowest();
   void find_awake();
   void detect();

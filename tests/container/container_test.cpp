@@ -168,8 +168,8 @@ TEST_F(Container, ImageOfTheSdkBuildsAControllerThatTheServersImageRuns) {
   EXPECT_NE(inside.out.find("state hash"), npos) << inside.out;
 }
 
-// The services of the compose files, each started when what it depends on is ready, as Docker does.
-// podman-compose 1.0 starts them one second after another, whatever the files say.
+// The services of the compose files, each started when what it depends on is ready, as Docker does. podman-compose 1.0
+// ignores these conditions: it starts one service a second.
 class ComposeFiles : public Container, public ::testing::WithParamInterface<const char*> {
  protected:
   void SetUp() override {

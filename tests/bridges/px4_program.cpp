@@ -8,7 +8,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/support/patience.hpp"
 #include "tools/bridges/mavlink/payload.hpp"
@@ -93,9 +95,23 @@ void Px4Program::take(const std::vector<std::uint8_t>& bytes) {
   if (const auto message = mavlink::message_in<mavlink::HilSensor>(*piece.packet)) {
     if (has_sensor_) throw std::runtime_error("a second HIL_SENSOR before the first was answered");
     if (message->time_usec <= sensor.time_usec) throw std::runtime_error("time does not go on");
+    // Sensors have noise, so their values only stay the same while the simulation waits.
+    has_moved_ = has_moved_ || (first_ != 0 && message->acceleration != sensor.acceleration);
+    if (!has_moved_) at_rest_until_ = message->time_usec;
     sensor = *message;
     has_sensor_ = true;
   }
+}
+
+// Returns how many HIL_SENSOR `received_` holds.
+int Px4Program::waiting_sensors() const {
+  int count = 0;
+  std::span<const std::uint8_t> rest = received_;
+  for (std::size_t size = 0; (size = mavlink::size_at(rest)) > 0 && size <= rest.size(); rest = rest.subspan(size)) {
+    const mavlink::Piece piece = mavlink::piece_of(rest.first(size));
+    if (piece.packet && mavlink::message_in<mavlink::HilSensor>(*piece.packet)) ++count;
+  }
+  return count;
 }
 
 bool Px4Program::step(Pilot pilot) {
@@ -109,9 +125,12 @@ bool Px4Program::step(Pilot pilot) {
       if (!has_sensor_) continue;
       has_sensor_ = false;
       if (first_ == 0) first_ = sensor.time_usec;
-      if (boot_-- > 0) continue;
-      if (first_answered_ == 0) first_answered_ = sensor.time_usec;
-      seen.time = 1e-6 * static_cast<double>(sensor.time_usec - first_answered_);
+      if (boot_-- > 0 || of_state == 0) continue;
+      if (!std::exchange(has_answered_, true)) {
+        while (waiting_sensors() < sensors_before_first_answer)
+          if (!receive()) return false;
+      }
+      seen.time = 1e-6 * static_cast<double>(sensor.time_usec - at_rest_until_);
       const Outputs outputs = pilot(seen);
       mavlink::HilActuatorControls controls;
       controls.time_usec = sensor.time_usec - (counts_from_first_ ? first_ : 0);

@@ -43,7 +43,7 @@ class Px4Program {
  private:
   bool receive();
   int waiting_sensors() const;
-  void take(const std::vector<std::uint8_t>& piece);
+  void take(const std::vector<std::uint8_t>& bytes);
   template <class Message>
   void send(const Message& message);
 

@@ -12,6 +12,12 @@ namespace cohort::test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
+using mavlink::HilActuatorControls;
+
+Bytes frame_of(const HilActuatorControls& controls) {
+  return mavlink::frame_of({0, 1, 1, HilActuatorControls::id, mavlink::payload_of(controls)},
+                           HilActuatorControls::crc_extra);
+}
 
 BridgedRun::Options with_px4(const std::string& experiment, const std::string& seconds,
                              std::vector<std::string> more = {}) {
@@ -123,10 +129,10 @@ TEST_F(Px4Rover, BytesThatAreNoMessageAreSkippedCountedAndNamed) {
   Px4Program px4(run.port());
   px4.steers_by_two_sides = true;
   px4.fly(drive_to_the_north, 20);
-  mavlink::HilActuatorControls controls;
+  HilActuatorControls controls;
   controls.time_usec = px4.sensor.time_usec;
   controls.controls.fill(1.0F);
-  Bytes wrong = mavlink::frame_of({0, 1, 1, controls.id, mavlink::payload_of(controls)}, controls.crc_extra);
+  Bytes wrong = frame_of(controls);
   wrong.back() ^= 1;
   px4.send_bytes(wrong);
   px4.fly(drive_to_the_north, 5);
@@ -141,11 +147,10 @@ TEST_F(Px4Rover, ControlsOfAnotherTimeAreNotTaken) {
   Px4Program px4(run.port());
   px4.steers_by_two_sides = true;
   for (int i = 0; i < 20; ++i) {
-    mavlink::HilActuatorControls controls;
+    HilActuatorControls controls;
     controls.time_usec = px4.sensor.time_usec > 4000 ? px4.sensor.time_usec - 4000 : 5'000'000;
     controls.controls.fill(-1.0F);
-    if (i > 0)
-      px4.send_bytes(mavlink::frame_of({0, 1, 1, controls.id, mavlink::payload_of(controls)}, controls.crc_extra));
+    if (i > 0) px4.send_bytes(frame_of(controls));
     px4.step(drive_to_the_north);
   }
   finish(run, px4);

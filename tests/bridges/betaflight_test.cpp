@@ -410,6 +410,20 @@ TEST_F(Betaflight, IsStartedAgainIfItNeverBegins) {
   EXPECT_TRUE(server_->running());
 }
 
+// The same, while it is configured: here its first start only listens.
+TEST_F(Betaflight, IsStartedAgainIfItsCommandLineIsSilent) {
+  const Field& field = lay_out(1, 0.5, 7, 70);
+  write_file(field / "silent_once", "#!/bin/sh\nif [ -e started ]; then exec " COHORT_BETAFLIGHT
+                                    " \"$@\"; fi\ntouch started\nexec python3 -c 'import socket, time\n"
+                                    "listener = socket.create_server((\"127.0.0.1\", 5761))\ntime.sleep(1000)'\n");
+  std::filesystem::permissions(field / "silent_once", std::filesystem::perms::owner_all);
+  server_ = std::make_unique<Process>(field.serve(domain_));
+  bridge_ = std::make_unique<Process>(
+      field.bridge(domain_, {"--run", (field / "silent_once").string(), "--folder", (field / "betaflight").string()}));
+  expect_end();
+  EXPECT_TRUE(std::filesystem::exists(field / "betaflight/0/eeprom.bin"));
+}
+
 TEST_F(Betaflight, IsConfiguredByADumpThatEndsWithSave) {
   const Field& field = lay_out(1, 0.5, 7, 70);
   write_file(field / "dump.txt", "# dump\nbatch start\nset angle_limit = 30\n\nbatch end\nsave\n");

@@ -33,7 +33,7 @@ void CommandLine::enter() {
   send("#");
   bool is_first = true;
   while (!find_prompt(asked_again_after)) {
-    if (Clock::now() > until) throw std::runtime_error("Betaflight's CLI does not respond to '#'");
+    if (Clock::now() > until) throw Silent("Betaflight's CLI does not respond to '#'");
     send("#");
     is_first = false;
   }
@@ -42,6 +42,8 @@ void CommandLine::enter() {
 }
 
 void CommandLine::connect() {
+  const sockaddr nowhere{AF_UNSPEC, {}};
+  ::connect(socket_, &nowhere, sizeof nowhere);
   sockaddr_in endpoint{};
   endpoint.sin_family = AF_INET;
   endpoint.sin_port = htons(cli_port);
@@ -49,8 +51,7 @@ void CommandLine::connect() {
   const auto until = Clock::now() + patience_;
   while (::connect(socket_, reinterpret_cast<const sockaddr*>(&endpoint), sizeof endpoint) != 0) {
     check_();
-    if (Clock::now() > until)
-      throw std::runtime_error("the program does not listen on TCP port " + std::to_string(cli_port));
+    if (Clock::now() > until) throw Silent("the program does not listen on TCP port " + std::to_string(cli_port));
     std::this_thread::sleep_for(polled_every);
   }
 }

@@ -3,17 +3,23 @@
 #include <chrono>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "tools/bridges/common/descriptor.hpp"
 
 namespace cohort::betaflight {
 
+/// A program that does not begin to respond.
+struct Silent : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// A conversation with the command line of a flight controller, at its TCP port. Set-up only: it blocks.
 class CommandLine {
  public:
-  /// Connects `socket`, which is used up, as soon as the program listens, and waits for its prompt. `check` is called
-  /// while it waits, and throws to end that. Throws std::runtime_error after `patience`.
+  /// Connects `socket` as soon as the program listens, also if it was connected before, and waits for the prompt.
+  /// `check` is called while it waits, and throws to end that. Throws Silent after `patience`.
   CommandLine(const bridges::Descriptor& socket, std::chrono::seconds patience, std::function<void()> check);
 
   /// Throws std::runtime_error if the program does not know or accept the command.

@@ -25,6 +25,7 @@ using bridges::Descriptor;
 
 constexpr std::chrono::seconds patience{20};
 constexpr std::chrono::milliseconds asked_every{10};
+constexpr int most_starts = 3;
 
 // The functions up to `launch` run between fork and exec, or in a child that only makes sockets: system calls alone.
 
@@ -144,10 +145,7 @@ Program::~Program() { end(); }
 
 void Program::start() {
   end();
-  if (!std::filesystem::exists(options_.folder / "eeprom.bin")) {
-    launch();
-    configure();
-  }
+  if (!std::filesystem::exists(options_.folder / "eeprom.bin")) configure();
   options_.has_virtual_time ? launch_in_virtual_time() : launch();
 }
 
@@ -207,7 +205,19 @@ bool Program::enter(const Descriptor& log) const {
          ::dup2(log.number(), STDOUT_FILENO) >= 0 && ::dup2(log.number(), STDERR_FILENO) >= 0;
 }
 
+// Uses the machine's clock, with which the program's scheduler may hang at its start (Copter::wait_until_ready).
 void Program::configure() {
+  for (int starts = 1;; ++starts) {
+    launch();
+    try {
+      return configure_once();
+    } catch (const Silent&) {
+      if (starts == most_starts) throw;
+    }
+  }
+}
+
+void Program::configure_once() {
   try {
     CommandLine line(network_.cli, patience, [this] {
       if (const auto how = ended()) throw std::runtime_error("'" + options_.program.string() + "' " + *how);

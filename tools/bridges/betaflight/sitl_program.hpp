@@ -19,7 +19,7 @@ namespace cohort::betaflight {
 struct Network {
   bridges::Descriptor user, network;  ///< the namespaces
   bridges::Descriptor servo;          ///< UDP, bound to `servo_port`
-  bridges::Descriptor cli;            ///< TCP, not connected
+  bridges::Descriptor cli;            ///< TCP
 };
 /// Throws std::runtime_error that says what the system does not allow.
 Network make_network();
@@ -65,6 +65,7 @@ class Program {
   bool enter(const bridges::Descriptor& log) const;
   void end();
   void configure();
+  void configure_once();
   void wait_for_end();
 
   Options options_;

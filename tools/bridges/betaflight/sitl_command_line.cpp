@@ -43,7 +43,7 @@ void CommandLine::enter() {
 
 void CommandLine::connect() {
   const sockaddr nowhere{AF_UNSPEC, {}};
-  ::connect(socket_, &nowhere, sizeof nowhere);
+  static_cast<void>(::connect(socket_, &nowhere, sizeof nowhere));  // ends an earlier connection
   sockaddr_in endpoint{};
   endpoint.sin_family = AF_INET;
   endpoint.sin_port = htons(cli_port);

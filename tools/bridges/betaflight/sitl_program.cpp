@@ -106,7 +106,10 @@ HandOver receive(int from) {
 }
 
 std::string how_it_ended(int status) {
-  if (WIFSIGNALED(status)) return "was terminated by the signal " + std::string(::strsignal(WTERMSIG(status)));
+  if (WIFSIGNALED(status)) {
+    const char* text = ::sigdescr_np(WTERMSIG(status));
+    return "was terminated by the signal " + (text != nullptr ? text : std::to_string(WTERMSIG(status)));
+  }
   return "has ended with the exit code " + std::to_string(WEXITSTATUS(status));
 }
 

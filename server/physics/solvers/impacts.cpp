@@ -29,6 +29,7 @@ double gained_by_forces(double before, double after, double fall) { return std::
 void Impacts::solve(Problem& problem, double fall) {
   impulses_.clear();
   const auto hits = [&](const Row& row) {
+    // Before the velocities, which cost time and which most rows do not need.
     return row.restitution > 0.0 && row.is_impact(problem.velocity_before(row), problem.velocity(row));
   };
   if (std::ranges::none_of(problem.rows(), hits)) return;

@@ -11,6 +11,7 @@ import {
   patience,
   pausedTick,
   pixelsAt,
+  press,
   reachInPicture,
   run,
   runScenario,
@@ -323,7 +324,7 @@ const lineOf = (page, name) =>
 const fileOf = async (page, button) => {
   const [download] = await Promise.all([
     page.waitForEvent("download", { timeout: patience }),
-    page.getByRole("button", { name: button }).click(),
+    press(page.getByRole("button", { name: button })),
   ]);
   return readFileSync(await download.path(), "utf8");
 };
@@ -446,7 +447,7 @@ async function plots(page, file) {
   await page.evaluate(() => window.cohort.plots.show([3, 5]));
   await until(page, () => window.cohort.plots.lines().filter(({ curve }) => curve.times.length === 401).length === 10);
   await page.evaluate(() => window.cohort.plots.show([3]));
-  await page.getByRole("button", { name: "Remove treel/left/position" }).click();
+  await press(page.getByRole("button", { name: "Remove treel/left/position" }));
   await until(page, () => !window.cohort.plots.lines().some(({ name }) => name === "treel/left/position"));
 
   // The inspector lists values with units.

@@ -70,7 +70,7 @@ async function sounds(page) {
     "nothing sounds before it is asked for",
   );
   await look(page, [2, -1, 0.5], [2, 0, 0.3]);
-  await page.getByRole("button", { name: "sound" }).click();
+  await page.getByRole("button", { name: "sound" }).click(); // a browser allows sound after a real click only
   await until(page, () => window.cohort.viewer.sound.sounding === 2);
   const beside = await heard(page);
   assert.deepEqual(Object.keys(beside).sort(), ["-2.0", "2.0"]);

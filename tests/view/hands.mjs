@@ -1,7 +1,7 @@
 // In these scenarios a person drives robots, and adds, drags and removes objects.
 import assert from "node:assert/strict";
 import { Guest } from "./guest.mjs";
-import { drawCoarsely, look, run, runScenario, seenAt, tick, until } from "./in_page.mjs";
+import { drawCoarsely, look, press, run, runScenario, seenAt, tick, until } from "./in_page.mjs";
 
 const poseOf = (page, name) =>
   page.evaluate((text) => {
@@ -62,7 +62,7 @@ async function drivesByKeys(page) {
   const robot = "people/keys";
   await drawCoarsely(page);
   await run(page, "select people/keys");
-  await page.locator("#drive").click();
+  await press(page.locator("#drive"));
   await drives(page, robot);
   assert.match(
     await page.locator("#driven").textContent(),
@@ -147,7 +147,7 @@ async function drivesByKeys(page) {
 
   // A robot that a controller drives.
   await run(page, "select others/driven");
-  await page.locator("#drive").click();
+  await press(page.locator("#drive"));
   await told(page, "others/driven is driven by");
   await assert.rejects(run(page, "drive people/nobody"), /there is no robot/);
 }
@@ -281,7 +281,7 @@ async function drivesOn(page) {
 async function movesJoints(page) {
   await drawCoarsely(page);
   await run(page, "select bare");
-  await page.locator("#drive").click();
+  await press(page.locator("#drive"));
   await drives(page, "bare");
   const slider = (joint) => page.locator(`#sliders input[data-channel="${joint}/0/position"]`);
   assert.equal(await slider("shoulder").getAttribute("type"), "range");
@@ -312,11 +312,11 @@ async function drivesFirst(page) {
     },
     robot,
   );
-  await page.locator("#phase-close").click();
+  await press(page.locator("#phase-close"));
   assert.equal(await tick(page), 0);
   await drawCoarsely(page);
   await run(page, "select sbot_0");
-  await page.locator("#drive").click();
+  await press(page.locator("#drive"));
   await drives(page, robot);
   const from = await poseOf(page, robot);
   await page.keyboard.down("ArrowDown");
@@ -324,7 +324,7 @@ async function drivesFirst(page) {
   await page.keyboard.up("ArrowDown");
   await page.keyboard.press("Escape");
   await noted(`waits for ${robot}`);
-  await page.locator("#drive").click();
+  await press(page.locator("#drive"));
   await drives(page, robot);
   const before = await tick(page);
   await until(page, (each) => Number(window.cohort.viewer.poses.frame?.tick) > each + 20, before);
@@ -408,9 +408,9 @@ async function handlesObjects(page) {
   await run(page, "select lamp_post");
   const lampShines = (wanted) => until(page, (isOn) => window.cohort.viewer.signals.lamps[3] > 0 === isOn, wanted);
   await lampShines(true);
-  await page.locator("#light", { hasText: "light off" }).click();
+  await press(page.locator("#light", { hasText: "light off" }));
   await lampShines(false);
-  await page.locator("#light", { hasText: "light on" }).click();
+  await press(page.locator("#light", { hasText: "light on" }));
   await lampShines(true);
 
   await run(page, "select bar_1");
@@ -421,13 +421,13 @@ async function handlesObjects(page) {
     page.evaluate(() => window.cohort.viewer.chosen.hidden.has(window.cohort.viewer.find("bar_1")));
   const isGone = () =>
     page.evaluate(() => window.cohort.viewer.poses.frame.absent.includes(window.cohort.viewer.find("bar_1")));
-  await page.locator("#remove").click();
+  await press(page.locator("#remove"));
   assert.equal(await isHidden(), true);
-  await page.locator("#undo-button").click();
+  await press(page.locator("#undo-button"));
   assert.equal(await isHidden(), false);
   assert.equal(await page.locator("#inspected").textContent(), "bar_1");
   assert.equal(await isGone(), false);
-  await page.locator("#remove").click();
+  await press(page.locator("#remove"));
   await until(page, () => document.getElementById("inspector").hidden);
   await until(page, () => window.cohort.viewer.poses.frame?.absent.includes(window.cohort.viewer.find("bar_1")));
 }
@@ -440,14 +440,17 @@ async function offersNoHands(page) {
   await assert.rejects(run(page, "drive sbot_3"), /a recording offers/);
 }
 
-await runScenario({
-  drives_by_keys: drivesByKeys,
-  drives_by_arrows: drivesByArrows,
-  drives_by_pad: drivesByPad,
-  drives_alone: drivesAlone,
-  drives_on: drivesOn,
-  drives_first: drivesFirst,
-  moves_joints: movesJoints,
-  handles_objects: handlesObjects,
-  offers_no_hands: offersNoHands,
-});
+await runScenario(
+  {
+    drives_by_keys: drivesByKeys,
+    drives_by_arrows: drivesByArrows,
+    drives_by_pad: drivesByPad,
+    drives_alone: drivesAlone,
+    drives_on: drivesOn,
+    drives_first: drivesFirst,
+    moves_joints: movesJoints,
+    handles_objects: handlesObjects,
+    offers_no_hands: offersNoHands,
+  },
+  { context: { deviceScaleFactor: 0.25 } }, // no test looks at pixels here
+);

@@ -168,5 +168,5 @@ await runScenario(
     changes_scene: changesScene,
     contains_textures: containsTextures,
   },
-  cutOff,
+  { prepare: cutOff },
 );

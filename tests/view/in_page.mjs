@@ -17,6 +17,17 @@ export async function tick(page) {
 export const atTick = (page, wanted) =>
   until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
 
+/**
+ * Presses a button that is visible and enabled. A click of the mouse would wait for still frames, which a busy machine
+ * may not draw for minutes.
+ */
+export async function press(button) {
+  await button.waitFor();
+  const enabled = button.and(button.page().locator(":not(:disabled)"));
+  await enabled.focus();
+  await enabled.dispatchEvent("click");
+}
+
 /** Switches shadows by hand: then the page itself leaves them alone. */
 export const setShadows = (page, on) =>
   page.evaluate(
@@ -170,8 +181,9 @@ export async function expectRobots(page, expected) {
 
 /**
  * Opens the page for the scenario that the command line names: SCENARIO ADDRESS [FILE]. `prepare` is called before.
+ * `context` goes to Playwright's `newPage`.
  */
-export async function runScenario(scenarios, prepare = async () => undefined) {
+export async function runScenario(scenarios, { prepare = async () => undefined, context = {} } = {}) {
   const [, , scenario, address, file] = process.argv;
   const browser = await chromium.launch({
     executablePath: process.env.COHORT_CHROMIUM,
@@ -187,7 +199,7 @@ export async function runScenario(scenarios, prepare = async () => undefined) {
     ],
   });
   try {
-    const page = await browser.newPage({ viewport: { width: 960, height: 640 } });
+    const page = await browser.newPage({ viewport: { width: 960, height: 640 }, ...context });
     page.setDefaultTimeout(patience);
     const errors = [];
     page.on("pageerror", (error) => errors.push(error.message));

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { drawCoarsely, drawn, run, runScenario, until } from "./in_page.mjs";
+import { drawCoarsely, drawn, press, run, runScenario, until } from "./in_page.mjs";
 
 const axeSource = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const desktop = { width: 1440, height: 900 };
@@ -12,7 +12,7 @@ const phone = { width: 390, height: 844 };
 /** A large page with the tree. */
 async function onDesktop(page) {
   await page.setViewportSize(desktop);
-  if (!(await isVisible(page, "left"))) await page.locator('[data-panel="left"]').click();
+  if (!(await isVisible(page, "left"))) await press(page.locator('[data-panel="left"]'));
 }
 
 const isVisible = (page, id) => page.locator(`#${id}`).isVisible();
@@ -57,7 +57,7 @@ async function nothingOverlaps(page) {
     await drawn(page, 2);
     for (const tab of ["left", "right", "plotting", "events", "console"]) {
       const button = page.locator(`[data-tab="${tab}"]:visible, [data-panel="${tab}"]:visible`);
-      if ((await button.getAttribute("aria-pressed")) === "false") await button.click();
+      if ((await button.getAttribute("aria-pressed")) === "false") await press(button);
       assert.equal(await isVisible(page, tab), true, tab);
       assert.deepEqual(await overlaps(page), [], `${size.width} with ${tab}`);
       assert.deepEqual(await outside(page), [], `${size.width} with ${tab}`);
@@ -81,23 +81,23 @@ async function panelsAreKept(page) {
   const right = await width("right");
   await page.keyboard.press("ArrowLeft");
   assert.equal(await width("right"), right + 16);
-  await page.locator('[data-tab="events"]').click();
+  await press(page.locator('[data-tab="events"]'));
   assert.equal(await isVisible(page, "events"), true);
-  await page.locator('[data-panel="right"]').click();
+  await press(page.locator('[data-panel="right"]'));
   assert.equal(await isVisible(page, "right"), false);
   await page.reload();
   await until(page, () => window.cohort?.viewer.poses?.frame);
   assert.equal(await width("left"), before + 80);
   assert.equal(await isVisible(page, "right"), false);
   assert.equal(await isVisible(page, "events"), true);
-  await page.locator('[data-tab="events"]').click();
+  await press(page.locator('[data-tab="events"]'));
   assert.equal(await isVisible(page, "dock"), false);
 }
 
 async function worksOnAPhone(page) {
   await page.setViewportSize(phone);
   await run(page, "pause; seek 1; select sbot_3");
-  await page.locator('[data-tab="right"]').click();
+  await press(page.locator('[data-tab="right"]'));
   assert.equal(await text(page, "inspected"), "explorers/sbot_3");
   const small = await page.evaluate(() =>
     [...document.querySelectorAll("button, select")]
@@ -150,7 +150,7 @@ async function showsTheWorldAsATree(page) {
   assert.match(await text(page, "group"), /^16 robots \(sbot\)/);
   await page.locator("#tree [data-row='1']").click({ modifiers: ["Control"] });
   assert.equal((await selected(page)).length, 15);
-  await page.locator("#tree [data-row='1']").click();
+  await press(page.locator("#tree [data-row='1']"));
   await page.locator("#tree [data-row='4']").click({ modifiers: ["Shift"] });
   const four = ["sbot_0", "sbot_1", "sbot_2", "sbot_3"].map((name) => `explorers/${name}`);
   assert.deepEqual(await selected(page), four);
@@ -167,7 +167,7 @@ async function showsTheWorldAsATree(page) {
   assert.ok(beside < 1e-3, `the camera looks ${beside} m beside the middle`);
 
   // Hidden robots are not drawn, also after a step.
-  await page.locator("#isolate").click();
+  await press(page.locator("#isolate"));
   const shown = () =>
     page.evaluate(() => {
       const { viewer } = window.cohort;
@@ -176,10 +176,10 @@ async function showsTheWorldAsATree(page) {
   assert.equal(await shown(), 4);
   await run(page, "step");
   assert.equal(await shown(), 4);
-  await page.locator("#hide").click();
+  await press(page.locator("#hide"));
   assert.equal(await shown(), 0);
   assert.deepEqual(await selected(page), []);
-  await page.locator("#show-all").click();
+  await press(page.locator("#show-all"));
   assert.equal(await shown(), 16);
 }
 
@@ -187,7 +187,7 @@ async function showsTheWorldAsATree(page) {
 async function tellsOfMany(page) {
   await onDesktop(page);
   await run(page, "pause; seek 3");
-  await page.locator("#tree [data-row='0']").click();
+  await press(page.locator("#tree [data-row='0']"));
   const cells = await until(page, () => {
     const row = [...document.querySelectorAll("#group tr")].find((each) =>
       each.textContent.startsWith("treel/left/velocity"),
@@ -244,7 +244,7 @@ async function usesTheHeight(page) {
   await onDesktop(page);
   await run(page, "pause; select sbot_3");
   const dock = page.locator('[data-panel="dock"]');
-  if ((await dock.getAttribute("aria-pressed")) === "true") await dock.click();
+  if ((await dock.getAttribute("aria-pressed")) === "true") await press(dock);
   const below = await until(page, () => {
     if (document.querySelectorAll("#values tr").length === 0) return undefined;
     const bottom = (id) => document.getElementById(id).getBoundingClientRect().bottom;
@@ -303,7 +303,7 @@ async function runsAgain(page) {
   await lastTick();
   const card = await text(page, "phase-text");
   assert.equal(await text(page, "phase-word"), "■ finished");
-  await page.locator("#again").click();
+  await press(page.locator("#again"));
   await until(page, () => document.getElementById("phase").hidden);
   await until(page, () => document.getElementById("phase-word").textContent === "❚❚ paused");
   await run(page, "play");

@@ -1,9 +1,15 @@
 #include "tools/view/driving/driver.hpp"
 
+#include <chrono>
+#include <condition_variable>
+#include <stop_token>
 #include <utility>
 
 namespace cohort::view {
 namespace {
+
+// On a busy machine a server may be found only after seconds.
+constexpr std::chrono::seconds longest_claim{10};
 
 class ObedientController final : public Controller {
  public:
@@ -77,9 +83,14 @@ void Driver::run(const std::shared_future<void>& after) {
 std::string Driver::drive() {
   const std::string robot = options_.robots.front();
   const auto begun = [this, robot] {
-    has_begun_ = true;
+    {
+      const std::lock_guard lock(mutex_);
+      has_begun_ = true;
+      told_.clear();  // it no longer waits for the server
+    }
     answer({true, "drives " + robot});
   };
+  const std::jthread limit([this](const std::stop_token& stop) { limit_claim(stop); });
   try {
     const ClientEnd end = run_client(obedient_controllers(command_, begun), options_, leaves_);
     const std::lock_guard lock(mutex_);
@@ -97,16 +108,22 @@ std::string Driver::drive() {
   }
 }
 
-// The first that is told before the robot is driven says why it is not; the client would wait on.
+// The client itself would wait on.
+void Driver::limit_claim(const std::stop_token& stop) {
+  std::condition_variable_any stopped;
+  std::unique_lock lock(mutex_);
+  stopped.wait_for(lock, stop, longest_claim, [] { return false; });
+  if (has_begun_ || leaves_ || stop.stop_requested()) return;
+  leaves_ = true;
+  told_ = options_.robots.front() + " could not be claimed" + (told_.empty() ? "" : " (" + told_ + ")") +
+          ". Its current controller may be silent because the run is not advancing";
+}
+
 void Driver::tell(Severity severity, const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (leaves_) return;
   told_ = text;
-  if (has_begun_) return;
-  leaves_ = true;
-  if (severity == Severity::warning)
-    told_ = options_.robots.front() + " could not be claimed (" + text +
-            "). Its current controller may be silent because the run is not advancing";
+  if (!has_begun_ && severity == Severity::error) leaves_ = true;
 }
 
 void Driver::answer(const Answer& answer) {

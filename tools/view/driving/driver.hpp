@@ -4,6 +4,7 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -41,6 +42,7 @@ class Driver {
  private:
   void run(const std::shared_future<void>& after);
   std::string drive();
+  void limit_claim(const std::stop_token& stop);
   void tell(Severity severity, const std::string& text);
   void answer(const Answer& answer);
 

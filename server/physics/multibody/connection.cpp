@@ -107,6 +107,7 @@ void Connection::add_yielding_rows(Problem& problem, Anchor a, Anchor b, const P
                         : problem.add_torque_row(a, b, direction_W, &kept);
     const double off = axis < 3 ? gap_P[axis] : twist_P[axis - 3];
     row.set_limits(-limit * step, limit * step);
+    row.is_hold = true;
     if (std::isinf(stiffness)) {
       row.target = correction(off, axis < 3 ? most_linear_correction : most_angular_correction, step);
     } else {

@@ -7,9 +7,9 @@ namespace cohort::physics {
 namespace {
 
 // Shares of what the heaviest body yields. A smaller one needs fewer minima, a larger one fewer steps to each of them.
-constexpr double share_of_holds = 1e-6;      // loops, connections: rows without a limit
+constexpr double share_of_holds = 1e-6;      // loops and connections
 constexpr double share_of_pushes = 1e-6;     // contacts, limits of joints
-constexpr double share_of_friction = 1e-2;   // friction and motors: rows with two limits
+constexpr double share_of_friction = 1e-2;   // friction and motors
 constexpr double share_of_own_yield = 1e-1;  // the same, as a share of what the bodies of the row yield
 
 double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
@@ -45,36 +45,36 @@ void ConvexRows::gather(Problem& problem, const std::vector<std::vector<double>>
     term.lower = row.lower;
     term.upper = row.upper;
     for (std::size_t k = 0; k < term.count; ++k) impulses_[i + k] = term.impulse[k] = rows[i + k].impulse;
-    set_yielding(term);
+    set_compliance(term);
   }
   for (ConvexTerm& term : terms_) guess_limit(term);
-  soften(0.0);
 }
 
 // A degree of freedom counts with the radius of gyration of what it moves: a wheel with its radius, an arm with its
 // length.
-void ConvexRows::set_yielding(ConvexTerm& term) {
+void ConvexRows::set_compliance(ConvexTerm& term) {
   const Row& of = row(term);
+  double yielding = 0.0;  // velocity that a unit impulse would give to the heaviest body
   if (of.is_of_force) {
-    term.yielding = yielding_to_force_;
+    yielding = yielding_to_force_;
   } else {
     const double* jacobian = problem_->numbers() + of.numbers;
     for (const int body : {of.body_a, of.body_b}) {
       if (body < 0) continue;
       const std::vector<double>& its = yielding_[at(body)];
-      for (std::size_t dof = 0; dof < its.size(); ++dof) term.yielding += jacobian[dof] * jacobian[dof] * its[dof];
+      for (std::size_t dof = 0; dof < its.size(); ++dof) yielding += jacobian[dof] * jacobian[dof] * its[dof];
       jacobian += 2 * problem_->equations(body).stride();
     }
   }
   const bool has_lower = !of.has_fixed_limits() || of.lower > -unlimited;
   const bool has_upper = !of.has_fixed_limits() || of.upper < unlimited;
-  term.has_two_limits = has_lower && has_upper;
-  if (!term.has_two_limits) {
-    term.share = has_lower || has_upper ? share_of_pushes : share_of_holds;
+  term.has_guess = has_lower && has_upper && !of.is_hold;
+  if (!term.has_guess) {
+    term.compliance = (has_lower != has_upper ? share_of_pushes : share_of_holds) * yielding;
     return;
   }
   const double own = 1.0 / (term.count == 2 ? of.cone_inverse : of.inverse);
-  term.share = std::min(share_of_friction, share_of_own_yield * own / term.yielding);
+  term.compliance = std::min(share_of_friction * yielding, share_of_own_yield * own);
 }
 
 double ConvexRows::limit_of(const Row& row, double load) const {
@@ -93,10 +93,6 @@ void ConvexRows::guess_limit(ConvexTerm& term) {
     }
   term.upper = limit_of(of, load);
   term.lower = -term.upper;
-}
-
-void ConvexRows::soften(double least) {
-  for (ConvexTerm& term : terms_) term.compliance = std::max(term.share, least) * term.yielding;
 }
 
 // Returns the impulse of a row without regard to its limits.
@@ -145,7 +141,7 @@ void ConvexRows::extend(ConvexTerm& term) const {
 
 void ConvexRows::update(double share_of_limits) {
   for (ConvexTerm& term : terms_) {
-    if (term.has_two_limits) term.guess = term.impulse;
+    if (term.has_guess) term.guess = term.impulse;
     for (std::size_t i = 0; i < term.count; ++i) impulses_[term.row + i] = term.impulse[i];
   }
   for (ConvexTerm& term : terms_) {

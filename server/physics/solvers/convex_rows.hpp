@@ -11,12 +11,10 @@ namespace cohort::physics {
 
 /// A row of ConvexRows.
 struct ConvexTerm : SmoothRow {
-  double yielding = 0.0;    ///< velocity that a unit impulse would give to the heaviest body of the island
-  double share = 0.0;       ///< share of it by which the row yields
   double compliance = 0.0;  ///< velocity by which the row yields to a unit impulse beyond its guess
   double softness = 0.0;    ///< that the row itself has
   std::array<double, 2> guess{};
-  bool has_two_limits = false;  ///< friction, a motor or the like
+  bool has_guess = false;  ///< friction, a motor or the like
 };
 
 /// The rows of a problem as functions of the velocities. The impulse of a row is a guess plus (target - velocity) /
@@ -40,8 +38,6 @@ class ConvexRows {
   const std::vector<ConvexTerm>& terms() const { return terms_; }
   const Row& row(const ConvexTerm& term, std::size_t i = 0) const { return problem_->rows()[term.row + i]; }
 
-  /// Lets each row yield by at least this share of what the heaviest body yields.
-  void soften(double least);
   /// Computes the impulse at a share of the change of the velocity, and its derivative.
   void evaluate(ConvexTerm& term, double share) const;
   /// Computes the impulse as if the row were within its limits or at one, as its present impulse is.
@@ -53,7 +49,7 @@ class ConvexRows {
   void apply();
 
  private:
-  void set_yielding(ConvexTerm& term);
+  void set_compliance(ConvexTerm& term);
   void guess_limit(ConvexTerm& term);
   double wanted(const ConvexTerm& term, std::size_t i, double share) const;
   double limit_of(const Row& row, double load) const;

@@ -6,18 +6,14 @@
 namespace cohort::physics {
 namespace {
 
-// Usually a few steps find a minimum. Otherwise the rows yield more at first: by these shares of what the heaviest body
-// yields, with which nearly any start is good enough.
-constexpr int usual_steps = 5;
-constexpr std::array softer{1.0, 0.1, 0.0};
 constexpr int most_steps_a_minimum = 60;
-constexpr double minimal = 1e-4;  // residual at a minimum
+constexpr double minimal = 1e-4;  // share of what forces and impulses change, at a minimum
 
-constexpr int most_minima = 8;
+constexpr int most_minima = 32;
 // Limits of friction move by this share of the way after the second minimum. With the whole way, limits that alternate
 // would do so for long.
 constexpr double share_of_limits = 0.6;
-constexpr double settled = 1e-8;  // residual with new guesses and limits at which no other minimum is needed
+constexpr double settled = 1e-9;  // residual with new guesses and limits at which no other minimum is needed
 
 }  // namespace
 
@@ -29,25 +25,28 @@ std::optional<double> ConvexSolver::solve(Problem& problem) {
   }
   if (mass == 0.0 || !take_bodies(problem) || !take_inertia()) return std::nullopt;
   start();
-  if (!minimise(From::impulses, usual_steps))
-    for (const double least : softer) {
-      rows_.soften(least);
-      minimise(least == softer.front() ? From::velocities : From::impulses, most_steps_a_minimum);
-    }
+  minimise(From::impulses);
+  const double residual = settle();
+  apply();
+  return residual;
+}
+
+// Finds one minimum after the other, each with guesses and limits from the last, until they satisfy the rows. Returns
+// the residual.
+double ConvexSolver::settle() {
   double residual = 0.0;
   for (int minimum = 1; minimum < most_minima; ++minimum) {
     rows_.update(minimum == 1 ? 1.0 : share_of_limits);
     const bool is_same = evaluate();
     find_step();
-    residual = find_residual();
+    residual = share_of_change(step_momentum_);
     if (residual <= settled) {
       add_step(1.0);
       evaluate();
       break;
     }
-    minimise(is_same ? From::step : From::velocities, most_steps_a_minimum);
+    minimise(is_same ? From::step : From::velocities);
   }
-  apply();
   return residual;
 }
 
@@ -73,29 +72,28 @@ void ConvexSolver::start() {
   start_with_impulses();
 }
 
-// Makes steps to the minimum; afterwards the impulses belong to the velocities. Returns false if it was not found.
-bool ConvexSolver::minimise(From from, int most_steps) {
+// Makes steps to the minimum; afterwards the impulses belong to the velocities.
+void ConvexSolver::minimise(From from) {
   bool is_predicted = from == From::impulses;
   bool is_same = false;
   if (is_predicted)
     for (ConvexTerm& term : rows_.terms()) rows_.extend(term);
   else if (from == From::velocities)
     is_same = evaluate();
-  for (int i = 0; i < most_steps; ++i) {
+  for (int i = 0; i < most_steps_a_minimum; ++i) {
     if (i > 0 || from != From::step) {
       if (!is_factorised_ || !(is_same || is_near())) factorise();
       find_step();
     }
-    const bool is_minimum = !is_predicted && find_residual() <= minimal;
+    const bool is_minimum = !is_predicted && share_of_change(missing_) <= minimal;
     double share = 1.0;
     if (!is_predicted && !is_minimum) share = find_share(-dot(step_.data(), missing_.data(), length()));
     add_step(share);
     is_same = evaluate();
     // The function is quadratic as long as the stiffness of all rows is the same.
-    if (is_minimum || (is_same && share == 1.0)) return true;
+    if ((is_same && share == 1.0) || (is_minimum && is_near())) return;
     is_predicted = false;
   }
-  return false;
 }
 
 // Returns whether the present factors are good enough for a step.
@@ -109,11 +107,13 @@ bool ConvexSolver::is_near() const {
   return true;
 }
 
-double ConvexSolver::find_residual() const {
+// The momentum of the step by the mass matrix gives its length by this matrix; the momentum that is missing, its length
+// with the stiffness of the rows.
+double ConvexSolver::share_of_change(const std::vector<double>& momentum) const {
   double square = 0.0;
   double by_impulses = 0.0;
   for (std::size_t i = 0; i < step_.size(); ++i) {
-    square += step_[i] * missing_[i];
+    square += step_[i] * momentum[i];
     by_impulses += momentum_[i] * (velocity_[i] - without_impulses_[i]);
   }
   const double all = by_forces_ + by_impulses;

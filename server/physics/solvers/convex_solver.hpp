@@ -25,8 +25,10 @@ namespace cohort::physics {
 /// Reuses its memory; each worker has one.
 class ConvexSolver : private NewtonOnRows<ConvexRows> {
  public:
-  /// Solves the rows. Returns the residual when the last minimum was tested. Returns nothing, without any change, if
-  /// the response of a body is not symmetric or if it would cost too much.
+  /// Solves the rows. Returns the residual when the last minimum was tested: the change of the velocities that new
+  /// guesses and limits would make, as a share of what forces and impulses change. Both are measured by the mass
+  /// matrix, so that the residual does not depend on units, masses, sizes or gravity. Returns nothing, without any
+  /// change, if the response of a body is not symmetric or if it would cost too much.
   std::optional<double> solve(Problem& problem);
 
  private:
@@ -35,11 +37,10 @@ class ConvexSolver : private NewtonOnRows<ConvexRows> {
   enum class From { velocities, impulses, step };
 
   void start();
-  bool minimise(From from, int most_steps);
+  void minimise(From from);
+  double settle();
   bool is_near() const;
-  /// Returns the step that is to be made, as a share of all that forces and impulses change. Both are measured by the
-  /// mass matrix with the stiffness of the rows, so that it does not depend on units, masses, sizes or gravity.
-  double find_residual() const;
+  double share_of_change(const std::vector<double>& momentum) const;
 
   std::vector<std::vector<double>> diagonals_;  // by body: diagonal of its mass matrix
   std::vector<double> without_impulses_;        // velocities

@@ -69,6 +69,7 @@ TEST_P(Chain, CrossesTheTrough) {
   EXPECT_EQ(run.result.stop_reason, "inside: 4 objects");
   EXPECT_EQ(gripping_at_the_edge, 3) << "all but the first";
   EXPECT_GT(lowest, floor - 0.015) << "no robot hangs deeper";
+  EXPECT_LT(run.unconverged(), 0.05);
   for (std::uint32_t robot = 0; robot < 4; ++robot) {
     EXPECT_GT(run.simulation.robot_pose(robot).position.x(), far_side + 0.1);
     EXPECT_NEAR(run.simulation.robot_pose(robot).position.z(), floor, 0.002);
@@ -97,6 +98,7 @@ TEST_P(Lifting, AnSbotHoldsAnotherInTheAirAndPutsItDownAgain) {
   const Pose X_WL = run.pose("load/sbot_detailed_0");
   EXPECT_NEAR(X_WL.position.z(), 0.0, 0.001);
   EXPECT_GT((X_WL.orientation * Eigen::Vector3d::UnitZ()).z(), 0.999);
+  EXPECT_EQ(run.unconverged(), 0.0);
 }
 
 TEST(Lifting, WithoutAnAnchorTheLifterTipsOver) {
@@ -165,6 +167,7 @@ TEST_P(Assembly, SbotsGripEachOtherAndMoveTogether) {
     EXPECT_EQ(run.reading(pair.first, "gripper/0/gripping"), 1.0) << "no robot lets go";
   EXPECT_GE(run.robots_near(east, 0.0, 0.7), 8) << "those at the front stop first, and hold the others";
   EXPECT_FALSE(run.has_quarantined());
+  EXPECT_LT(run.unconverged(), 0.1);
 }
 
 class Retrieval : public ::testing::TestWithParam<std::uint64_t> {};
@@ -180,6 +183,7 @@ TEST_P(Retrieval, SeveralRobotsMoveALoadThatTwoCannot) {
   EXPECT_EQ(run.result.stop_reason, "inside: 1 object");
   EXPECT_LT(moved_by_two, 0.01);
   EXPECT_GE(run.robots_that_grip(), 3);
+  EXPECT_LT(run.unconverged(), 0.01);
 }
 
 TEST(GrippingSwarm, StaysConnectedUnderRandomPullsForFiveMinutes) {

@@ -60,6 +60,11 @@ class ShippedExperiment {
     return std::any_of(result.events.begin(), result.events.end(),
                        [](const session::RunEvent& event) { return event.kind == "quarantined"; });
   }
+  /// Returns the share of groups of bodies that were not solved to the bound.
+  double unconverged() const {
+    const physics::Convergence& convergence = simulation.convergence();
+    return static_cast<double>(convergence.unconverged) / static_cast<double>(convergence.solved);
+  }
   /// Returns the last observation of a robot: the first value of the channel.
   double reading(std::uint32_t robot, const std::string& channel) const {
     std::size_t offset = 0;

@@ -155,6 +155,7 @@ Panel traction() {
           {pulled(gripper_at(0.0), "traction/0/intensity", std::identity())}};
 }
 
+// A grip yields so little that the rounding of places gives forces of a ten-millionth of a newton.
 Panel direction() {
   const auto measure = [](double bearing) {
     Pull pull(gripper_at(degree * bearing), degree * bearing);
@@ -165,7 +166,7 @@ Panel direction() {
           "line: equal",
           "direction of a pull of 5 N [degrees]",
           "direction [degrees]",
-          {measured_at(evenly(-165.0, 165.0, 23), measure, std::identity(), 1e-6)}};
+          {measured_at(evenly(-165.0, 165.0, 23), measure, std::identity(), 1e-5)}};
 }
 
 }  // namespace

@@ -166,7 +166,7 @@ Panel direction() {
           "line: equal",
           "direction of a pull of 5 N [degrees]",
           "direction [degrees]",
-          {measured_at(evenly(-165.0, 165.0, 23), measure, std::identity(), 1e-5)}};
+          {measured_at(evenly(-165.0, 165.0, 23), measure, std::identity(), 3e-6)}};
 }
 
 }  // namespace

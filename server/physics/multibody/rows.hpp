@@ -35,7 +35,7 @@ struct Row {
   int load_end = 0;
   Limits limits = Limits::fixed;
   bool is_of_force = false;  ///< along a force at a point, not a torque or a joint's degree of freedom
-  bool is_hold = false;      ///< belongs to a connection, which seldom reaches its limits
+  bool is_hold = false;      ///< its limits are the strength of a connection, seldom reached
 
   int body_a = -1;  ///< in the problem
   int body_b = -1;  ///< -1: only one body

@@ -7,7 +7,8 @@ namespace cohort::physics {
 namespace {
 
 constexpr int most_steps_a_minimum = 60;
-constexpr double minimal = 1e-4;  // share of what forces and impulses change, at a minimum
+// The last step to a minimum, as a share of what forces and impulses change.
+constexpr double minimal = 1e-4;
 
 constexpr int most_minima = 32;
 // Limits of friction move by this share of the way after the second minimum. With the whole way, limits that alternate
@@ -107,8 +108,8 @@ bool ConvexSolver::is_near() const {
   return true;
 }
 
-// The momentum of the step by the mass matrix gives its length by this matrix; the momentum that is missing, its length
-// with the stiffness of the rows.
+// Returns the length of the step as a share of what forces and impulses change. It is measured by the matrix that gives
+// the step this momentum: the mass matrix for `step_momentum_`, the factorised one for `missing_`.
 double ConvexSolver::share_of_change(const std::vector<double>& momentum) const {
   double square = 0.0;
   double by_impulses = 0.0;

@@ -17,6 +17,7 @@ class LatencyHistogram {
     const auto value = static_cast<std::uint64_t>(std::max<Duration::rep>(duration.count(), 0));
     ++counts_[bucket_of(value)];
     ++total_;
+    sum_ += duration;
     max_ = std::max(max_, duration);
   }
 
@@ -33,6 +34,7 @@ class LatencyHistogram {
     return max_;
   }
   Duration max() const { return max_; }
+  Duration sum() const { return sum_; }
   std::uint64_t count() const { return total_; }
 
  private:
@@ -51,6 +53,7 @@ class LatencyHistogram {
   std::array<std::uint64_t, std::size_t{32} * 60> counts_{};
   std::uint64_t total_ = 0;
   Duration max_{0};
+  Duration sum_{0};
 };
 
 }  // namespace cohort::lockstep

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/commands/small_experiment.hpp"
@@ -18,6 +19,37 @@ TEST(TheSummary, HasTheExchangeWithControllersOnlyWhenVerbose) {
     const Ended verbose = run_to_end(experiment.run({"--controllers", controllers, "--verbose"}));
     EXPECT_NE(verbose.out.find("barrier latency   p50 "), std::string::npos) << verbose.out;
   }
+}
+
+TEST(TheProfile, HasTheTimeOfEachStageAndTheWorkOfTheSolver) {
+  const ScratchFolder folder;
+  const std::string summary = folder / "summary.json";
+  const Ended run = run_to_end({cohort_program(), "run", demo_experiment(), "--duration", "2", "--controllers",
+                                "inprocess", "--profile", "--summary", summary});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const char* line : {"\nprofile  ", "\n  controllers ", "\n  collision detection ", "\n  sensors ", "\nsolver  "})
+    EXPECT_NE(run.out.find(line), std::string::npos) << run.out;
+  const nlohmann::json written = nlohmann::json::parse(read_file(summary));
+  double sum = 0.0;
+  for (const auto& [stage, seconds] : written["stages_s"].items()) {
+    EXPECT_GT(seconds, 0.0) << stage;
+    sum += seconds.get<double>();
+  }
+  EXPECT_LE(sum, written["wall_s"]);
+  EXPECT_GT(sum, 0.2 * written["wall_s"].get<double>()) << "most of the time is in a stage";
+  const nlohmann::json& solver = written["convergence"];
+  EXPECT_GE(solver["minima"], solver["groups"]);
+  EXPECT_GE(solver["steps"], solver["minima"]);
+  EXPECT_GE(solver["factorisations"], solver["groups"]);
+}
+
+TEST(TheProfile, IsOnlyForThoseWhoAsk) {
+  const ScratchFolder folder;
+  const std::string summary = folder / "summary.json";
+  const Ended run = run_to_end({cohort_program(), "run", demo_experiment(), "--duration", "0.1", "--controllers",
+                                "inprocess", "--summary", summary});
+  EXPECT_EQ(run.out.find("\nprofile"), std::string::npos) << run.out;
+  EXPECT_FALSE(nlohmann::json::parse(read_file(summary)).contains("stages_s"));
 }
 
 TEST(TheTableOfSeeds, HasTheCpuTimeOfEachRun) {

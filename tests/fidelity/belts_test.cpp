@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 class Belts : public EveryPhysics {};
 INSTANTIATE_TEST_SUITE_P(Every, Belts,
                          ::testing::Values(articulated, by_bullet(articulated), treel, by_bullet(treel), direct,
-                                           by_bullet(direct), hybrid, by_bullet(iterative)),
+                                           by_bullet(direct), hybrid),
                          name_of);
 
 Surface with_friction(double friction) {

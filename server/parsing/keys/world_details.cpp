@@ -120,8 +120,8 @@ bodies on flat ground have only a position in the plane and a heading:
 engine, Cohort warns and ignores the name.
 
 **Solver.** `convex` solves all joints and contacts of a group of bodies at once, by the same equations for any
-robot. `iterative` uses sequential impulses, and other methods where these would leave large errors; it is faster,
-above all for robots that grip each other. `direct` uses Dantzig's algorithm, which solves each group of bodies
+robot. `iterative` makes a few passes of sequential impulses. It is less exact and faster, above all for robots
+that grip each other. `direct` uses Dantzig's algorithm, which solves each group of bodies
 that are connected or in contact simultaneously. `hybrid` solves small groups directly and large groups
 iteratively.
 )md"},

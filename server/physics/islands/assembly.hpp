@@ -110,10 +110,6 @@ struct Assembly {
   void record_outside();
   /// Adds the loads of this step to the belts; call it like `record_outside`.
   void load_belts();
-  /// Returns whether an end is on a light part of its body.
-  bool is_light(const Connection::End& end) const {
-    return end.member != Anchors::nobody && members[end.member].multibody->mechanism().is_light(end.segment);
-  }
   /// Returns X_WS of the segment that an end is on; the identity for the world.
   Pose pose_of(const Connection::End& end) const {
     return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->motion().segment_pose(end.segment);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/physics/solvers/active_set_solver.hpp"
 #include "server/physics/solvers/direct_solver.hpp"
 #include "server/physics/solvers/iterative_solver.hpp"
 
@@ -14,20 +13,12 @@ namespace {
 // A pass that changes velocities by less than this share of what gravity adds in a step has settled them.
 constexpr double settled_share = 1e-4;
 constexpr double settled_without_gravity = 1e-5;  // [m/s or rad/s]
-// Islands of up to this many bodies with connections at light links, such as an arm that lifts a robot, are solved by
-// Newton's method. More bodies would take too long, and connected bodies of similar mass do not need it.
-constexpr std::size_t most_lightly_connected = 6;
-// Newton's method solves islands more precisely than passes, by this factor of the settled change.
-constexpr double precise_share = 1e-2;
-// A single body with disc-shaped friction is solved by passes. If the last pass still changes velocities by this
-// multiple of the settled change, as in a robot with many legs, Newton's method finds one minimum instead.
-constexpr double far_from_settled = 1e4;
-// Where Newton's method finds no solution, up to this multiple of the usual number of passes settles an island.
+// Up to this multiple of the usual number of passes settles an island without connections.
 constexpr std::uint32_t passes_of_unsettled = 5;
+// A large heap at rest takes a few steps of Newton's method. If it takes more than this, passes cost less.
+constexpr std::uint32_t steps_for_heap = 30;
 // Damping of a calm heap [1/s]: what still rocks there has stopped after a few tenths of a second.
 constexpr double damping_of_calm = 10.0;
-// A single rigid body is nearly at rest below this share of what gravity adds in a step.
-constexpr double slow_share = 0.1;
 // Fast-spinning bodies need more passes: their equations are not symmetric, as the other solvers require.
 constexpr std::uint32_t passes_where_fast = 10;
 
@@ -124,23 +115,23 @@ void IslandSolver::take(const Assembly& assembly, std::span<const std::uint32_t>
     if (assembly.members[member].is_awake()) sound_.push_back(member);
 }
 
-std::optional<double> IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
+std::optional<Convergence::Outcome> IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
   take(assembly, members);
-  error_.reset();
+  outcome_.reset();
   while (!sound_.empty() && !try_to_solve(assembly)) {
     leave_out_broken(sound_, assembly);
-    error_.reset();
+    outcome_.reset();
   }
-  return error_;
+  return outcome_;
 }
 
-bool IslandSolver::solve_by_newton(Assembly& assembly, std::span<const std::uint32_t> members) {
+std::optional<Convergence::Outcome> IslandSolver::solve_calm_heap(Assembly& assembly,
+                                                                  std::span<const std::uint32_t> members) {
+  if (assembly.settings.solver != description::Solver::convex || !is_calm_heap(members, assembly)) return std::nullopt;
   take(assembly, members);
-  if (!set_up(assembly) || find_iterative_method(assembly) != Method::newton ||
-      !newton_.solve(problem_, precise_share * settled_change(assembly)))
-    return false;
-  damp_calm_heap(sound_, assembly, bodies_);
-  return finish(assembly);
+  if (!set_up(assembly) || method_ != Method::convex) return std::nullopt;
+  outcome_ = convex_.solve(problem_, steps_for_heap);
+  return outcome_ && finish(assembly) ? outcome_ : std::nullopt;
 }
 
 bool IslandSolver::try_to_solve(Assembly& assembly) {
@@ -163,17 +154,14 @@ bool IslandSolver::set_up(Assembly& assembly) {
 
   problem_.clear();
   for (const std::uint32_t member : sound_) assembly.add_own_rows(member, problem_);
-  has_light_connections_ = false;
   has_connections_ = false;
   for (const std::uint32_t member : sound_)
     assembly.connections.for_each_of(member, [&](Connection& connection) {
       assembly.add_connection_rows(connection, problem_);
       has_connections_ = true;
-      has_light_connections_ =
-          has_light_connections_ || assembly.is_light(connection.a()) || assembly.is_light(connection.b());
     });
   method_ = find_method(assembly);
-  const FrictionStart start = find_start(assembly);
+  const FrictionStart start = method_ == Method::convex ? FrictionStart::last : FrictionStart::shared;
   for (const std::uint32_t member : sound_)
     assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_, start); });
   impacts_.solve(problem_, assembly.step * assembly.gravity.norm());
@@ -189,61 +177,23 @@ bool IslandSolver::finish(Assembly& assembly) {
   return true;
 }
 
-FrictionStart IslandSolver::find_start(const Assembly& assembly) const {
-  if (method_ == Method::convex) return FrictionStart::last;
-  if (sound_.size() > 1) return method_ == Method::newton ? FrictionStart::last : FrictionStart::shared;
-  const Multibody& body = *assembly.members[sound_.front()].multibody;
-  if (!body.mechanism().is_free_body()) return FrictionStart::shared;
-  // Friction that is shared by load would let a body creep that leans on something.
-  const Eigen::Map<const Eigen::Vector3d> velocity(body.motion().velocities() + 3);
-  return velocity.norm() < slow_share * assembly.step * assembly.gravity.norm() ? FrictionStart::last
-                                                                                : FrictionStart::shared;
-}
-
 IslandSolver::Method IslandSolver::find_method(const Assembly& assembly) const {
   const bool is_symmetric = std::ranges::all_of(
       sound_, [&](std::uint32_t member) { return bodies_[assembly.anchors.index_of_member[member]].is_symmetric(); });
   if (!is_symmetric) return Method::many_passes;
   if (is_solved_directly(assembly.settings, sound_.size())) return Method::direct;
-  if (assembly.settings.solver == description::Solver::convex) return Method::convex;
-  return find_iterative_method(assembly);
-}
-
-// For the iterative solver, and for islands that are too large for the convex one.
-IslandSolver::Method IslandSolver::find_iterative_method(const Assembly& assembly) const {
-  if (has_connections_)
-    return has_light_connections_ && sound_.size() <= most_lightly_connected ? Method::newton : Method::passes;
-  return sound_.size() == 1 || has_carried(sound_, assembly) ? Method::newton : Method::passes;
+  return assembly.settings.solver == description::Solver::convex ? Method::convex : Method::passes;
 }
 
 void IslandSolver::solve_rows(const Assembly& assembly) {
-  const double settled = settled_change(assembly);
-  const bool is_alone = sound_.size() == 1;
-  if (method_ == Method::direct && solve_directly(problem_)) return;
-  if (method_ == Method::convex) {
-    if (problem_.row_count() == 0) return;
-    error_ = convex_.solve(problem_);
-    if (error_) return;
-    method_ = find_iterative_method(assembly);
+  if (problem_.row_count() == 0 || (method_ == Method::direct && solve_directly(problem_))) return;
+  if (method_ == Method::convex || method_ == Method::direct) {
+    outcome_ = convex_.solve(problem_);
+    if (outcome_) return;
   }
-  if (method_ != Method::direct && solve_by_active_set(problem_)) return;
-  if (method_ == Method::newton && !(is_alone && has_cones()) && newton_.solve(problem_, precise_share * settled))
-    return;
-
   const std::uint32_t passes = assembly.settings.iterations * (method_ == Method::many_passes ? passes_where_fast : 1);
-  const std::uint32_t most = is_alone || has_connections_ ? passes : passes_of_unsettled * passes;
-  Equations& body = bodies_[0];
-  without_impulses_.assign(body.velocity(), body.velocity() + body.stride());
-  const double change =
-      solve_iteratively(problem_, {passes, most, settled}, has_connections_ ? start_of_connected : 1.0);
-  if (!is_alone || method_ != Method::newton || change <= far_from_settled * settled) return;
-  std::swap_ranges(without_impulses_.begin(), without_impulses_.end(), body.velocity());
-  if (!newton_.solve(problem_, settled, 1))
-    std::copy(without_impulses_.begin(), without_impulses_.end(), body.velocity());
-}
-
-bool IslandSolver::has_cones() const {
-  return std::ranges::any_of(problem_.rows(), [](const Row& row) { return row.limits == Row::Limits::cone; });
+  const std::uint32_t most = sound_.size() == 1 || has_connections_ ? passes : passes_of_unsettled * passes;
+  solve_iteratively(problem_, {passes, most, settled_change(assembly)}, has_connections_ ? start_of_connected : 1.0);
 }
 
 }  // namespace cohort::physics

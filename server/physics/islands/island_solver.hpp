@@ -7,7 +7,6 @@
 #include "server/physics/islands/assembly.hpp"
 #include "server/physics/solvers/convex_solver.hpp"
 #include "server/physics/solvers/impacts.hpp"
-#include "server/physics/solvers/newton_solver.hpp"
 
 namespace cohort::physics {
 
@@ -15,14 +14,15 @@ namespace cohort::physics {
 class IslandSolver {
  public:
   /// Solves the island. A body whose state breaks keeps its pose, and the rest of the island is solved without it.
-  /// Returns the error that is left, as in Convergence, if the convex solver has solved rows.
-  std::optional<double> solve(Assembly& assembly, std::span<const std::uint32_t> members);
-  /// Solves a large heap by Newton's method. Returns false, without moving any body, if it is no heap, if that would
-  /// cost too much, if there is no solution, or if a velocity is invalid.
-  bool solve_by_newton(Assembly& assembly, std::span<const std::uint32_t> members);
+  /// Returns the outcome if the convex solver has solved rows.
+  std::optional<Convergence::Outcome> solve(Assembly& assembly, std::span<const std::uint32_t> members);
+
+  /// Solves a large island that is nearly at rest as one problem. Returns nothing, without moving any body, if the
+  /// world has another solver, if that would cost too much, or if a velocity is invalid.
+  std::optional<Convergence::Outcome> solve_calm_heap(Assembly& assembly, std::span<const std::uint32_t> members);
 
  private:
-  enum class Method : std::uint8_t { convex, passes, many_passes, direct, newton };
+  enum class Method : std::uint8_t { convex, passes, many_passes, direct };
 
   void take(const Assembly& assembly, std::span<const std::uint32_t> members);
   bool try_to_solve(Assembly& assembly);
@@ -30,22 +30,16 @@ class IslandSolver {
   bool set_up(Assembly& assembly);
   bool finish(Assembly& assembly);
   Method find_method(const Assembly& assembly) const;
-  Method find_iterative_method(const Assembly& assembly) const;
-  FrictionStart find_start(const Assembly& assembly) const;
   void solve_rows(const Assembly& assembly);
-  bool has_cones() const;
 
   IslandBodies bodies_;
   Problem problem_{bodies_};
-  NewtonSolver newton_;
   ConvexSolver convex_;
   Impacts impacts_;
-  std::vector<std::uint32_t> sound_;      // members
-  std::vector<double> without_impulses_;  // velocities of the first body
+  std::vector<std::uint32_t> sound_;  // members
   bool has_connections_ = false;
-  bool has_light_connections_ = false;
   Method method_ = Method::passes;
-  std::optional<double> error_;  // that the convex solver has left
+  std::optional<Convergence::Outcome> outcome_;  // empty: not by the convex solver
 };
 
 /// Returns the change of a row's velocity in a pass below which the island has settled [m/s or rad/s].

@@ -270,19 +270,18 @@ void MultibodyWorld::solve_islands() {
     const std::size_t bodies = islands_.members(island).size();
     return bodies >= LargeIslandSolver::least_bodies && !is_solved_directly(assembly_.settings, bodies);
   };
-  errors_.assign(islands_.count(), std::nullopt);
+  outcomes_.assign(islands_.count(), std::nullopt);
   workers_.for_each_chunk(islands_.count(), islands_at_once, [&](std::size_t begin, std::size_t end, unsigned) {
     IslandSolver& solver = solver_of_this_thread();
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
-      if (!is_large(island)) errors_[island] = solver.solve(assembly_, islands_.members(island));
+      if (!is_large(island)) outcomes_[island] = solver.solve(assembly_, islands_.members(island));
   });
-  count_unconverged();
   for (std::uint32_t island = 0; island < islands_.count(); ++island) {
     if (!is_large(island)) continue;
-    const std::span<const std::uint32_t> members = islands_.members(island);
-    if (!is_calm_heap(members, assembly_) || !solver_of_this_thread().solve_by_newton(assembly_, members))
-      large_island_solver_.solve(assembly_, members);
+    outcomes_[island] = solver_of_this_thread().solve_calm_heap(assembly_, islands_.members(island));
+    if (!outcomes_[island]) large_island_solver_.solve(assembly_, islands_.members(island));
   }
+  count_outcomes();
   if (!assembly_.settings.sleeping) return;
   workers_.for_each_chunk(islands_.count(), islands_at_once, [&](std::size_t begin, std::size_t end, unsigned) {
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
@@ -290,16 +289,20 @@ void MultibodyWorld::solve_islands() {
   });
 }
 
-void MultibodyWorld::count_unconverged() {
+void MultibodyWorld::count_outcomes() {
   for (std::uint32_t island = 0; island < islands_.count(); ++island) {
-    const std::optional<double>& error = errors_[island];
-    if (!error) continue;
+    const std::optional<Convergence::Outcome>& outcome = outcomes_[island];
+    if (!outcome) continue;
     ++convergence_.solved;
-    if (*error <= Convergence::bound) continue;
+    convergence_.minima += outcome->minima;
+    convergence_.steps += outcome->steps;
+    convergence_.factorisations += outcome->factorisations;
+    convergence_.most_minima = std::max(convergence_.most_minima, outcome->minima);
+    if (outcome->error <= Convergence::bound) continue;
     ++convergence_.unconverged;
-    convergence_.worst = std::max(convergence_.worst, *error);
+    convergence_.worst = std::max(convergence_.worst, outcome->error);
     const std::uint32_t first = islands_.members(island).front();
-    convergence_.of_last_step.push_back({assembly_.members[first].multibody->body(), *error});
+    convergence_.of_last_step.push_back({assembly_.members[first].multibody->body(), outcome->error});
   }
 }
 

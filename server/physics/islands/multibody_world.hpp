@@ -93,7 +93,7 @@ class MultibodyWorld final : public World, private WorldConnections {
   void detect();
   void find_islands();
   void solve_islands();
-  void count_unconverged();
+  void count_outcomes();
   void quarantine();
   void report_contacts();
   void report_contacts_of(std::uint32_t member);
@@ -120,7 +120,7 @@ class MultibodyWorld final : public World, private WorldConnections {
   LargeIslandSolver large_island_solver_;
   std::vector<Contact> contacts_;
   std::vector<Quarantine> quarantined_;
-  std::vector<std::optional<double>> errors_;  // by island, as in Convergence
+  std::vector<std::optional<Convergence::Outcome>> outcomes_;  // by island
   Convergence convergence_;
   Sleep sleep_;
   std::vector<std::uint32_t> awake_;              // members, ascending

@@ -82,7 +82,7 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
       followers_.push_back({follower.first_dof, leader.first_dof, coupling.multiplier, coupling.offset});
   }
   turn_to_principal_axes();
-  find_light_segments();
+  sum_masses();
   if (has_kinematic_root()) make_root_immovable();
   find_outputs();
 }
@@ -146,13 +146,11 @@ void Mechanism::turn_to_principal_axes() {
   }
 }
 
-void Mechanism::find_light_segments() {
-  constexpr double light_share = 0.25;
+void Mechanism::sum_masses() {
   std::vector<double> masses;  // each segment with everything it carries
   for (const Segment& segment : segments_) masses.push_back(segment.mass);
   for (std::size_t s = segments_.size(); s-- > 0;)
     if (segments_[s].parent >= 0) masses[static_cast<std::size_t>(segments_[s].parent)] += masses[s];
-  for (const double mass : masses) is_light_.push_back(mass < light_share * masses[0] ? 1 : 0);
   mass_beyond_.resize(dofs_.size());
   for (std::size_t s = 0; s < segments_.size(); ++s)
     std::fill_n(mass_beyond_.begin() + segments_[s].first_dof, segments_[s].dofs, masses[s]);

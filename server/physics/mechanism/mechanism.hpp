@@ -93,10 +93,6 @@ class Mechanism {
   /// Returns whether wheels are simulated; the motors of their joints then drive the robot.
   bool has_wheels() const { return has_wheels_; }
 
-  /// Returns whether a segment and everything it carries have less than a quarter of the total mass. A connection there
-  /// easily moves this part and hardly moves the rest.
-  bool is_light(int segment) const { return is_light_[static_cast<std::size_t>(segment)] != 0; }
-
   /// Returns the mass of everything that forces can move [kg].
   double moving_mass() const { return moving_mass_; }
   /// Returns the mass that moves with a dof [kg].
@@ -117,7 +113,7 @@ class Mechanism {
                   const description::JointAxis* axis);
   void turn_to_principal_axes();
   void find_outputs();
-  void find_light_segments();
+  void sum_masses();
   void make_root_immovable();
   void add_mass(int index, const description::Inertial& inertial, const Pose& X_SL);
 
@@ -130,7 +126,6 @@ class Mechanism {
   DeviceOutputs outputs_;
   std::vector<double> zero_coordinates_;
   std::vector<int> parents_;
-  std::vector<char> is_light_;       // by segment
   std::vector<double> mass_beyond_;  // by dof
   double moving_mass_ = 0.0;
   bool is_chain_ = true;

@@ -5,16 +5,26 @@
 #include <vector>
 
 #include "server/physics/multibody/rows.hpp"
-#include "server/physics/solvers/newton_on_rows.hpp"
+#include "server/physics/solvers/block_cholesky.hpp"
 
 namespace cohort::physics {
 
-/// A row of ConvexRows.
-struct ConvexTerm : SmoothRow {
+/// A row, or the two rows of a friction disc, whose impulse is a function of the velocity along it.
+struct ConvexTerm {
+  std::size_t row = 0;
+  std::size_t count = 1;  ///< number of rows
+  double lower = 0.0;
+  double upper = 0.0;       ///< radius of a disc
   double compliance = 0.0;  ///< velocity by which the row yields to a unit impulse beyond its guess
   double softness = 0.0;    ///< that the row itself has
   std::array<double, 2> guess{};
-  bool has_guess = false;  ///< friction, a motor or the like
+  bool has_guess = false;            ///< friction, a motor or the like
+  std::array<double, 2> velocity{};  ///< along each row
+  std::array<double, 2> change{};    ///< change of the velocity by a whole step
+  std::array<double, 2> impulse{};
+  std::array<double, 3> stiffness{};             ///< negative derivative of the impulse: first, second, mixed
+  std::array<double, 3> factorised{};            ///< the stiffness in the present factors
+  std::array<BlockCholesky::Block, 3> blocks{};  ///< first body, second body, both
 };
 
 /// The rows of a problem as functions of the velocities. The impulse of a row is a guess plus (target - velocity) /
@@ -28,8 +38,6 @@ struct ConvexTerm : SmoothRow {
 /// Reuses its memory.
 class ConvexRows {
  public:
-  using Term = ConvexTerm;
-
   /// Takes the rows of `problem`, which must outlive this. The limits of friction are those of the loads in the last
   /// step; new contacts have the loads that would stop the bodies. `inertia`: by body, the diagonal of its mass matrix.
   void gather(Problem& problem, const std::vector<std::vector<double>>& inertia);

@@ -18,25 +18,28 @@ constexpr double settled = 1e-9;  // residual with new guesses and limits at whi
 
 }  // namespace
 
-std::optional<double> ConvexSolver::solve(Problem& problem) {
+std::optional<Convergence::Outcome> ConvexSolver::solve(Problem& problem, std::uint32_t most_steps) {
   double mass = 0.0;
   for (int body = 0; body < problem.body_count(); ++body) {
     if (!problem.equations(body).is_symmetric()) return std::nullopt;
     mass += problem.equations(body).mechanism().moving_mass();
   }
   if (mass == 0.0 || !take_bodies(problem) || !take_inertia()) return std::nullopt;
+  outcome_ = {};
+  most_steps_ = most_steps;
   start();
   minimise(From::impulses);
-  const double residual = settle();
+  outcome_.error = settle();
+  if (outcome_.steps > most_steps) return std::nullopt;
   apply();
-  return residual;
+  return outcome_;
 }
 
 // Finds one minimum after the other, each with guesses and limits from the last, until they satisfy the rows. Returns
 // the residual.
 double ConvexSolver::settle() {
   double residual = 0.0;
-  for (int minimum = 1; minimum < most_minima; ++minimum) {
+  for (int minimum = 1; minimum < most_minima && outcome_.steps <= most_steps_; ++minimum) {
     rows_.update(minimum == 1 ? 1.0 : share_of_limits);
     const bool is_same = evaluate();
     find_step();
@@ -75,17 +78,22 @@ void ConvexSolver::start() {
 
 // Makes steps to the minimum; afterwards the impulses belong to the velocities.
 void ConvexSolver::minimise(From from) {
+  ++outcome_.minima;
   bool is_predicted = from == From::impulses;
   bool is_same = false;
   if (is_predicted)
     for (ConvexTerm& term : rows_.terms()) rows_.extend(term);
   else if (from == From::velocities)
     is_same = evaluate();
-  for (int i = 0; i < most_steps_a_minimum; ++i) {
+  for (int i = 0; i < most_steps_a_minimum && outcome_.steps <= most_steps_; ++i) {
     if (i > 0 || from != From::step) {
-      if (!is_factorised_ || !(is_same || is_near())) factorise();
+      if (!is_factorised_ || !(is_same || is_near())) {
+        factorise();
+        ++outcome_.factorisations;
+      }
       find_step();
     }
+    ++outcome_.steps;
     const bool is_minimum = !is_predicted && share_of_change(missing_) <= minimal;
     double share = 1.0;
     if (!is_predicted && !is_minimum) share = find_share(-dot(step_.data(), missing_.data(), length()));

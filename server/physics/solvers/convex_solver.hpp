@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
-#include "server/physics/solvers/convex_rows.hpp"
+#include "server/physics/solvers/newton_on_rows.hpp"
+#include "server/physics/world/convergence.hpp"
 
 namespace cohort::physics {
 
@@ -23,13 +26,16 @@ namespace cohort::physics {
 /// at them.
 ///
 /// Reuses its memory; each worker has one.
-class ConvexSolver : private NewtonOnRows<ConvexRows> {
+class ConvexSolver : private NewtonOnRows {
  public:
-  /// Solves the rows. Returns the residual when the last minimum was tested: the change of the velocities that new
-  /// guesses and limits would make, as a share of what forces and impulses change. Both are measured by the mass
-  /// matrix, so that the residual does not depend on units, masses, sizes or gravity. Returns nothing, without any
-  /// change, if the response of a body is not symmetric or if it would cost too much.
-  std::optional<double> solve(Problem& problem);
+  /// Solves the rows. The error of the outcome is the residual when the last minimum was tested: the change of the
+  /// velocities that new guesses and limits would make. It is a share of what forces and impulses change. Both are
+  /// measured by the mass matrix, so that the residual does not depend on units, masses, sizes or gravity. Returns
+  /// nothing, without any change, if the response of a body is not symmetric or if a factorisation would cost too much.
+  /// It does the same after more than `most_steps` of Newton's method.
+  std::optional<Convergence::Outcome> solve(Problem& problem, std::uint32_t most_steps = unlimited_steps);
+
+  static constexpr std::uint32_t unlimited_steps = std::numeric_limits<std::uint32_t>::max();
 
  private:
   /// Where the search for a minimum begins. `velocities`: at the present ones. `impulses`: with each row at or between
@@ -44,7 +50,9 @@ class ConvexSolver : private NewtonOnRows<ConvexRows> {
 
   std::vector<std::vector<double>> diagonals_;  // by body: diagonal of its mass matrix
   std::vector<double> without_impulses_;        // velocities
-  double by_forces_ = 0.0;                      // square of what forces change, measured by the mass matrix
+  Convergence::Outcome outcome_;
+  std::uint32_t most_steps_ = unlimited_steps;
+  double by_forces_ = 0.0;  // square of what forces change, measured by the mass matrix
 };
 
 }  // namespace cohort::physics

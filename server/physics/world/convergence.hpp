@@ -20,9 +20,21 @@ struct Convergence {
     double error = 0.0;
   };
 
+  /// How one island was solved in one step.
+  struct Outcome {
+    double error = 0.0;
+    std::uint32_t minima = 0;          ///< minima found, each with given limits of friction
+    std::uint32_t steps = 0;           ///< steps of Newton's method to these minima
+    std::uint32_t factorisations = 0;  ///< matrices factorised for these steps
+  };
+
   std::uint64_t solved = 0;          ///< islands since the world was built, counted in each step
   std::uint64_t unconverged = 0;     ///< number of them that have not converged
   double worst = 0.0;                ///< greatest error of those
+  std::uint64_t minima = 0;          ///< sum over the islands that were solved
+  std::uint64_t steps = 0;           ///< sum over these islands
+  std::uint64_t factorisations = 0;  ///< sum over these islands
+  std::uint32_t most_minima = 0;     ///< for one island
   std::vector<Island> of_last_step;  ///< islands that have not converged in the last step, by their first body
 };
 

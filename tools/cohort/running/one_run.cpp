@@ -8,6 +8,7 @@
 #include "tools/cohort/cli/exit_codes.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/cli/picture_file.hpp"
+#include "tools/cohort/running/profile.hpp"
 #include "tools/cohort/running/run_recording.hpp"
 #include "tools/cohort/running/summary_file.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
@@ -39,6 +40,7 @@ void OneRun::begin(const description::Experiment& experiment, const Simulation& 
 
 session::RunListener OneRun::listener() {
   watchdog_.emplace(stop_, log_);
+  if (command_.profile) watchdog_->measure(stage_times_);
   session::RunListener listener = {
       .progress = [&](const session::Progress& progress) { terminal_->progress(progress); },
       .news = [&](const session::RunEvent& event) { terminal_->event(event); },
@@ -62,7 +64,9 @@ session::RunListener OneRun::listener() {
 int OneRun::finish(RunResult result, double cpu_seconds) {
   using enum RunResult::End;
   const bool was_recorded = !recorder_ || close_recording(result);
-  terminal_->summary(*experiment_, result, cpu_seconds, table_ && table_->is_on_stdout() ? stderr : stdout);
+  std::FILE* const stream = table_ && table_->is_on_stdout() ? stderr : stdout;
+  terminal_->summary(*experiment_, result, cpu_seconds, stream);
+  if (command_.profile) std::fputs(profile_text(result, stage_times_).c_str(), stream);
   const bool is_complete = write_files(result, cpu_seconds);
   const bool ended_for_that = result.end == failed && recorder_ && result.error == recorder_->error();
   if (!was_recorded && (ended_for_that || (command_.record_or_stop && result.end == finished))) return exit_unrecorded;
@@ -84,7 +88,7 @@ bool OneRun::write_files(const RunResult& result, double cpu_seconds) {
   };
   bool written = true;
   if (!outputs_.summary.empty())
-    written &= try_to([&] { write_summary(outputs_.summary, *experiment_, result, cpu_seconds); });
+    written &= try_to([&] { write_summary(outputs_.summary, *experiment_, result, cpu_seconds, stage_times_); });
   if (trace_)
     written &= try_to([&] {
       const PlotCaption caption = {experiment_->name, result.sim_time, result.state_hash};

@@ -42,6 +42,7 @@ class OneRun {
   const bool is_of_several_ = command_.is_part || !command_.seeds.empty();  // the results are in a table
   const description::Experiment* experiment_ = nullptr;
   const Simulation* simulation_ = nullptr;
+  StageTimes stage_times_;            // empty unless `command_.profile`
   std::optional<Watchdog> watchdog_;  // while it runs
   std::optional<Terminal> terminal_;
   std::optional<TraceRecorder> trace_;

@@ -44,6 +44,7 @@ struct RunCommand {
   bool record_or_stop = false;  ///< the run ends when its recording does
   bool ros2 = false;            ///< ROS 2 nodes drive the robots of the experiment's `ros2`
   bool quiet = false;
+  bool profile = false;                      ///< print the time of each stage of a tick
   bool paused = false;                       ///< start paused
   bool view = false;                         ///< show the run in a browser
   bool view_controls = false;                ///< viewers may control the run

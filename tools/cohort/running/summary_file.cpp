@@ -22,7 +22,7 @@ nlohmann::ordered_json quantiles(const lockstep::LatencyHistogram& histogram) {
 }  // namespace
 
 void write_summary(const std::filesystem::path& file, const description::Experiment& experiment,
-                   const session::RunResult& result, double cpu_seconds) {
+                   const session::RunResult& result, double cpu_seconds, const StageTimes& times) {
   const double wall = seconds(result.wall_time);
   nlohmann::ordered_json events = nlohmann::ordered_json::array();
   for (const session::RunEvent& event : result.events)
@@ -38,7 +38,7 @@ void write_summary(const std::filesystem::path& file, const description::Experim
                       {"robot", name_of(miss.robot)},
                       {"on_late", word_of(miss.consequence)},
                       {"waited_s", seconds(miss.waited)}});
-  const nlohmann::ordered_json summary = {
+  nlohmann::ordered_json summary = {
       {"experiment", experiment.name},
       {"seed", experiment.seed},
       {"version", this_build().version},
@@ -67,8 +67,14 @@ void write_summary(const std::filesystem::path& file, const description::Experim
       {"convergence",
        {{"groups", result.convergence.solved},
         {"unconverged", result.convergence.unconverged},
-        {"worst", result.convergence.worst}}},
+        {"worst", result.convergence.worst},
+        {"minima", result.convergence.minima},
+        {"steps", result.convergence.steps},
+        {"factorisations", result.convergence.factorisations}}},
   };
+  for (const StageTimes::Stage& stage : times.stages())
+    summary["stages_s"][std::string(stage.name)] = seconds(stage.time);
+  if (!times.stages().empty()) summary["stages_s"]["controllers"] = seconds(result.barrier.sum());
   write_file("the summary", file, json_text(summary, 2) + "\n");
 }
 

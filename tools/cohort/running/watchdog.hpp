@@ -26,6 +26,8 @@ class Watchdog {
   Watchdog& operator=(const Watchdog&) = delete;
   ~Watchdog();
 
+  /// Measures the stages of the ticks; `times` must outlive this.
+  void measure(StageTimes& times) { stage_.measure(&times); }
   /// Notes the tick; called at each boundary, on the thread of the run.
   void reached(std::uint64_t tick) {
     tick_ = tick;

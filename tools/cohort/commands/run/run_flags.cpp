@@ -54,6 +54,9 @@ void add_run_options(CommandLine line, RunCommand& command, LogFlags& flags) {
       .check(max_or_number_above_zero(1e9))
       .type_name("max|X");
   line.add_option("--summary", command.outputs.summary, "Write the summary to this file as JSON").type_name("FILE");
+  line.add_flag("--profile", command.profile,
+                "Print the wall time of each stage of a tick, and the work of the solver of contacts and joints")
+      .excludes(seeds);
   line.add_option("--plot", command.outputs.plot,
                   "Plot the arena, paths and contacts to this file (.svg, .png or .pdf)")
       .type_name("FILE");

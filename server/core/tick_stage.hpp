@@ -48,7 +48,7 @@ class TickStage {
   const char* name() const { return name_.load(std::memory_order_relaxed); }
   /// Returns how many ticks, or requests between ticks, have begun.
   std::uint64_t begun() const { return begun_.load(std::memory_order_relaxed); }
-  /// Measures the stages from now on. Call it on the thread that marks them; null: no longer.
+  /// Measures the stages of all ticks. Call it before the first of them.
   void measure(StageTimes* times) { times_ = times; }
 
   /// The stage that this thread marks; null without a watchdog.

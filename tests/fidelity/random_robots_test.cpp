@@ -23,8 +23,8 @@ constexpr int robots_at_each_step = 125;
 struct RandomRobot {
   description::Model model;
   double size = 0.0;              // length of the trunk [m]
-  double height = 0.0;            // of the trunk's centre above the lowest foot [m]
-  double friction = 0.0;          // of the floor
+  double height = 0.0;            // the trunk's centre above the lowest foot [m]
+  double friction = 0.0;          // the floor's
   std::vector<std::size_t> feet;  // links, each with its foot as the only collision, at the origin
 };
 

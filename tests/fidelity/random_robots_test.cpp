@@ -64,7 +64,7 @@ std::size_t add_limb(RandomRobot& robot, const std::vector<LimbPart>& parts, con
     model.links.push_back({"link" + name, {end}, inertial, {}});
     const std::size_t link = model.links.size() - 1;
     model.joints.push_back(joint_of("joint" + name, description::JointType::revolute, parent, link, part.axis, -along));
-    const double strength = 1e3 * model.links[0].inertial.mass * robot.size;  // 100 times what holds the trunk
+    const double strength = 1e3 * model.links[0].inertial.mass * robot.size;  // 100 times its weight at its length
     model.devices.push_back(description::VelocityMotor{"motor" + name, model.joints.size() - 1, 10.0, strength});
     parent = link;
   }
@@ -154,6 +154,7 @@ TEST_P(RandomRobots, StandStillInTheirPlaneOfSymmetryOnFeetThatDoNotSinkIn) {
     all.unconverged += its.unconverged;
     all.worst = std::max(all.worst, its.worst);
   }
+  // While they land. The bounds were set after 0.7 % and 1.5e-3 were measured.
   EXPECT_LT(static_cast<double>(all.unconverged), 0.01 * static_cast<double>(all.solved));
   EXPECT_LT(all.worst, 1e-2);
 }

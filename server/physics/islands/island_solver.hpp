@@ -17,8 +17,8 @@ class IslandSolver {
   /// Returns the outcome if the convex solver has solved rows.
   std::optional<Convergence::Outcome> solve(Assembly& assembly, std::span<const std::uint32_t> members);
 
-  /// Solves a large island that is nearly at rest as one problem. Returns nothing, without moving any body, if the
-  /// world has another solver, if that would cost too much, or if a velocity is invalid.
+  /// Solves a large island that is nearly at rest as one problem. Returns nothing, without moving any body, if it is
+  /// not at rest, if the world has another solver, if that would cost too much, or if a velocity is invalid.
   std::optional<Convergence::Outcome> solve_calm_heap(Assembly& assembly, std::span<const std::uint32_t> members);
 
  private:

@@ -25,6 +25,7 @@ void OneRun::begin(const description::Experiment& experiment, const Simulation& 
                    recording::Beginning beginning) {
   experiment_ = &experiment;
   simulation_ = &simulation;
+  stage_times_ = {};
   const bool own_controllers = command_.controllers != Controllers::external && !has_keyboard(experiment);
   if (!terminal_)  // it remembers what it has told
     terminal_.emplace(log_, Terminal::Options{.quiet = command_.quiet || is_of_several_,

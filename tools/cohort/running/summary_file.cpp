@@ -69,6 +69,7 @@ void write_summary(const std::filesystem::path& file, const description::Experim
         {"unconverged", result.convergence.unconverged},
         {"worst", result.convergence.worst},
         {"minima", result.convergence.minima},
+        {"most_minima", result.convergence.most_minima},
         {"steps", result.convergence.steps},
         {"factorisations", result.convergence.factorisations}}},
   };

@@ -91,6 +91,31 @@ TEST(PythonThreads, OneThatWaitsForAnotherWithoutACallGoesOnAndIsReported) {
       << told;
 }
 
+// The interpreter reads the clock for each lock, and how many locks an import takes depends on the machine.
+TEST(PythonThreads, OneThatTakesManyLocksDoesNotSpin) {
+  const Ran ran = run_script(
+      "import threading, time\n"
+      "lock = threading.Lock()\n"
+      "for _ in range(5000):\n"
+      "    with lock: pass\n"
+      "print(time.monotonic())\n");
+  EXPECT_EQ(ran.output, "0.0\n");
+}
+
+TEST(PythonThreads, OneThatReadsTheClockBetweenLocksSpins) {
+  const Ran ran = run_script(
+      "import queue, threading, time\n"
+      "empty, lock = queue.Queue(), threading.Lock()\n"
+      "while time.monotonic() < 0.01:\n"
+      "    with lock: pass\n"
+      "while time.monotonic() < 0.02:\n"
+      "    try: empty.get_nowait()\n"
+      "    except queue.Empty: pass\n"
+      "print(time.monotonic())\n");
+  EXPECT_EQ(ran.output, "0.02\n");
+  EXPECT_EQ(ran.told, std::vector<std::string>{});
+}
+
 TEST(PythonThreads, OneThatAMessageWakesGoesOnWhileTheProgramsTimeIsHeld) {
   const ScratchFolder folder;
   write_file(folder / "script.py",

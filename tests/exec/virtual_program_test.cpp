@@ -213,5 +213,17 @@ TEST(VirtualProgram, NamesAGoProgramThatLoadsTheLibraryButDoesNotCallIt) {
       << told[0];
 }
 
+TEST(VirtualProgram, NamesAThreadThatSleepsWithoutTheCLibraryButNoneOfDds) {
+  const std::string program = COHORT_BUILD_DIR "/bin/sleep_in_real_time";
+  const Ran kernel = run({program, "kernel"}, 1h);
+  EXPECT_EQ(kernel.exit_code, 0);
+  ASSERT_EQ(kernel.told.size(), 1u);
+  EXPECT_TRUE(kernel.told[0].ends_with("' sleeps in real time: it makes system calls without the C library"))
+      << kernel.told[0];
+  const Ran dds = run({program, "dds"}, 1h);
+  EXPECT_EQ(dds.exit_code, 0);
+  EXPECT_EQ(dds.told, std::vector<std::string>{});
+}
+
 }  // namespace
 }  // namespace cohort::test

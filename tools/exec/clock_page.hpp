@@ -10,9 +10,10 @@
 /// library `preload/`, which replaces the calls that read clocks and wait. Times are in nanoseconds.
 namespace cohort::exec {
 
-inline constexpr std::uint32_t page_version = 3;
+inline constexpr std::uint32_t page_version = 4;
 inline constexpr const char* page_variable = "COHORT_EXEC_PAGE";  ///< environment variable with the page's file
 inline constexpr std::size_t most_processes = 256;
+inline constexpr std::size_t most_real_sleepers = 256;
 inline constexpr std::size_t most_waits = 2048;
 inline constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 
@@ -72,6 +73,8 @@ struct ClockPage {
   std::atomic<std::uint64_t> next_order{0};
   std::atomic<std::uint32_t> waits_used{0};
   std::array<Process, most_processes> processes{};
+  /// Threads that have slept in real time by a call that is replaced, as those of DDS do; 0: free.
+  std::array<std::atomic<std::int32_t>, most_real_sleepers> real_sleepers{};
   std::array<Wait, most_waits> waits{};
 };
 

@@ -75,13 +75,19 @@ bool RealTimeReports::has_library(pid_t process) const {
   });
 }
 
+// Threads of DDS do.
+bool RealTimeReports::sleeps_by_library(pid_t thread) const {
+  return std::ranges::any_of(page_.real_sleepers, [thread](const auto& id) { return id == thread; });
+}
+
 std::vector<std::string> RealTimeReports::new_sleepers(const ThreadWatch& watch) {
   std::vector<std::string> texts;
   for (const ThreadWatch::SystemCall& call : watch.system_calls()) {
     const bool sleeps = call.number == SYS_nanosleep || call.number == SYS_clock_nanosleep;
-    if (!sleeps || known_[call.process].is_real || !sleepers_.insert(call.thread).second) continue;
+    if (!sleeps || known_[call.process].is_real || sleeps_by_library(call.thread)) continue;
+    if (!sleepers_.insert(call.thread).second) continue;
     texts.push_back("thread " + std::to_string(call.thread) + " of '" + name_ +
-                    "' sleeps in real time: it makes system calls without the C library, or is a thread of DDS");
+                    "' sleeps in real time: it makes system calls without the C library");
   }
   return texts;
 }

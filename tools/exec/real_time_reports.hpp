@@ -41,6 +41,7 @@ class RealTimeReports {
     std::size_t number = 0;
   };
   bool has_library(pid_t process) const;
+  bool sleeps_by_library(pid_t thread) const;
 
   ClockPage& page_;
   std::string name_;

@@ -7,6 +7,7 @@
 #include <threads.h>
 #include <unistd.h>
 
+#include "tools/exec/preload/turns.hpp"
 #include "tools/exec/preload/virtual_clock.hpp"
 
 using namespace cohort::exec;
@@ -28,6 +29,12 @@ std::int64_t sleep_for(std::int64_t time) {
   return 0;
 }
 
+template <class Sleep>
+auto sleep_in_real_time(const Sleep& sleep) {
+  note_real_sleep();
+  return sleep();
+}
+
 int fail(int error) {
   errno = error;
   return -1;
@@ -39,6 +46,7 @@ COHORT_REPLACES int clock_gettime(clockid_t clock, timespec* time) {
   COHORT_NEXT(clock_gettime);
   if (is_real(COHORT_CALLER) || !is_virtual(clock)) return real(clock, time);
   *time = to_timespec(read_clock(clock));
+  if (clock == CLOCK_MONOTONIC && is_interpreter(COHORT_CALLER)) after_read_of_clock();
   return 0;
 }
 
@@ -84,7 +92,7 @@ std::int64_t cohort_system_now() { return chrono_time(COHORT_CALLER, CLOCK_REALT
 
 COHORT_REPLACES int nanosleep(const timespec* time, timespec* left) {
   COHORT_NEXT(nanosleep);
-  if (is_real(COHORT_CALLER)) return real(time, left);
+  if (is_real(COHORT_CALLER)) return sleep_in_real_time([&] { return real(time, left); });
   if (time == nullptr) return fail(EFAULT);
   if (!is_valid(*time)) return fail(EINVAL);
   const std::int64_t rest = sleep_for(nanoseconds(*time));
@@ -97,7 +105,8 @@ COHORT_REPLACES int __nanosleep(const timespec*, timespec*) __attribute__((alias
 
 COHORT_REPLACES int clock_nanosleep(clockid_t clock, int flags, const timespec* time, timespec* left) {
   COHORT_NEXT(clock_nanosleep);
-  if (is_real(COHORT_CALLER) || !is_virtual(clock)) return real(clock, flags, time, left);
+  if (is_real(COHORT_CALLER) || !is_virtual(clock))
+    return sleep_in_real_time([&] { return real(clock, flags, time, left); });
   if (!is_valid(*time)) return EINVAL;
   if ((flags & TIMER_ABSTIME) != 0) {
     const std::int64_t deadline = on_page(clock, nanoseconds(*time));
@@ -112,19 +121,19 @@ COHORT_REPLACES int clock_nanosleep(clockid_t clock, int flags, const timespec* 
 
 COHORT_REPLACES int usleep(useconds_t time) {
   COHORT_NEXT(usleep);
-  if (is_real(COHORT_CALLER)) return real(time);
+  if (is_real(COHORT_CALLER)) return sleep_in_real_time([&] { return real(time); });
   return sleep_for(std::int64_t{time} * 1000) == 0 ? 0 : fail(EINTR);
 }
 
 COHORT_REPLACES unsigned sleep(unsigned time) {
   COHORT_NEXT(sleep);
-  if (is_real(COHORT_CALLER)) return real(time);
+  if (is_real(COHORT_CALLER)) return sleep_in_real_time([&] { return real(time); });
   return static_cast<unsigned>((sleep_for(std::int64_t{time} * second) + second - 1) / second);
 }
 
 COHORT_REPLACES int thrd_sleep(const timespec* time, timespec* left) {
   COHORT_NEXT(thrd_sleep);
-  if (is_real(COHORT_CALLER)) return real(time, left);
+  if (is_real(COHORT_CALLER)) return sleep_in_real_time([&] { return real(time, left); });
   const std::int64_t rest = sleep_for(nanoseconds(*time));
   if (rest == 0) return 0;
   if (left != nullptr) *left = to_timespec(rest);
@@ -146,6 +155,7 @@ COHORT_REPLACES void dds_sleepfor(std::int64_t time) {
   // As Cyclone DDS does it. Its own function cannot be found where a program has loaded DDS for itself alone, as Python
   // does.
   COHORT_NEXT(nanosleep);
+  note_real_sleep();
   timespec rest = to_timespec(time > 0 ? time : 0);
   while (real(&rest, &rest) != 0 && errno == EINTR) {
   }

@@ -109,6 +109,13 @@ COHORT_REPLACES int sem_wait(sem_t* semaphore) {
   return error == is_over ? real(semaphore) : result_of(error);
 }
 
+COHORT_REPLACES int sem_trywait(sem_t* semaphore) noexcept {
+  COHORT_NEXT(sem_trywait);
+  const int result = real(semaphore);
+  if (is_interpreter(COHORT_CALLER) && is_virtual_for(COHORT_CALLER)) after_try_to_take(result == 0);
+  return result;
+}
+
 COHORT_REPLACES int sem_timedwait(sem_t* semaphore, const timespec* limit) {
   COHORT_NEXT(sem_timedwait);
   return take_semaphore(COHORT_CALLER, semaphore, CLOCK_REALTIME, *limit,

@@ -6,6 +6,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <utility>
+
 namespace cohort::exec {
 
 ClockPage* the_page = nullptr;
@@ -92,6 +94,14 @@ void enter_process() {
   this_process->real_calls = 0;
   this_process->turn = 0;
   the_page->threads.fetch_add(1);
+}
+
+void note_real_sleep() {
+  if (the_page == nullptr || std::exchange(self.has_slept_really, true)) return;
+  for (std::atomic<std::int32_t>& each : the_page->real_sleepers) {
+    std::int32_t free = 0;
+    if (each.compare_exchange_strong(free, id_of_thread())) return;
+  }
 }
 
 ClockPage* page() { return the_page; }

@@ -19,6 +19,7 @@ struct Thread {
   bool creates_threads_of_dds;
   bool is_helper;
   int uses_real_time;  // how many times it was told to
+  bool has_slept_really;
   std::uint32_t reads;
   int event;  // descriptor + 1; 0: none
   std::int64_t overridden;
@@ -28,6 +29,7 @@ struct Thread {
   const void* first_mutex;
   bool has_signalled;    // that it releases the interpreter's lock
   bool has_interpreter;  // has that lock
+  bool has_read_clock;   // since it last tried to take a lock of the program
   struct Verdict {
     const void* caller;
     std::uint8_t what;  // bits: 1 known, 2 DDS, 4 this library, 8 the interpreter

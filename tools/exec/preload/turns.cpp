@@ -2,6 +2,8 @@
 
 #include <errno.h>
 
+#include <utility>
+
 #include "tools/exec/preload/this_program.hpp"
 
 namespace cohort::exec {
@@ -13,6 +15,9 @@ std::atomic<std::uint32_t> in_line{0};  // threads of this process
 // The interpreter releases it before its second thread begins.
 std::atomic<const pthread_mutex_t*> its_mutex{nullptr};
 std::atomic<const pthread_cond_t*> its_condition{nullptr};
+
+// Since version 3.11 it reads the clock before it takes any lock of its program; earlier ones do so for time limits.
+std::atomic<bool> reads_clock_for_locks{true};
 
 void note_ready() {
   if (the_page->host_looks != 0) return note_change();
@@ -129,6 +134,13 @@ int wait_for_interpreter(pthread_cond_t* condition, pthread_mutex_t* mutex, bool
   }
   lock(mutex);
   return has_turns() ? 0 : ETIMEDOUT;
+}
+
+void after_read_of_clock() { self.has_read_clock = true; }
+
+void after_try_to_take(bool is_taken) {
+  if (!std::exchange(self.has_read_clock, false)) reads_clock_for_locks = false;
+  if (is_taken && reads_clock_for_locks && self.reads > 0) --self.reads;
 }
 
 }  // namespace cohort::exec

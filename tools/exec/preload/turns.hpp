@@ -41,4 +41,10 @@ void before_unlock(const pthread_mutex_t* mutex);
 /// variable: 0 or ETIMEDOUT. `is_done` is false if this is to be waited for in real time.
 int wait_for_interpreter(pthread_cond_t* condition, pthread_mutex_t* mutex, bool& is_done);
 
+/// The interpreter has read the clock.
+void after_read_of_clock();
+/// The interpreter has tried to take a lock of its program. A read of the clock that is part of taking one is not
+/// counted as one of a thread that spins: how many locks an import takes depends on what other processes do.
+void after_try_to_take(bool is_taken);
+
 }  // namespace cohort::exec

@@ -128,6 +128,7 @@ void forget_waits() {
   self.has_order = false;
   self.event = 0;
   self.id = 0;
+  self.has_slept_really = false;
   has_helper = false;
   forget_turns();
   for (Ending& ending : endings) ending = {};

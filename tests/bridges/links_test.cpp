@@ -249,6 +249,21 @@ TEST(Conversations, WaitNoLongerThanTheirPatience) {
   EXPECT_THROW(bridge.receive(), GaveUp);
 }
 
+TEST(Conversations, HearTheNextFirmwareInTheNextCall) {
+  Conversing bridge("tcp:127.0.0.1:0");
+  const Patience soon{Silence::hold, std::chrono::milliseconds(100)};
+  auto first = std::make_unique<Peer>(SOCK_STREAM, bridge.conversation.place());
+  EXPECT_EQ(bridge.receive(soon), "silence");
+  EXPECT_EQ(bridge.conversation.connections(), 1u);
+  const Peer second(SOCK_STREAM, bridge.conversation.place());
+  second.write("second\n");
+  first.reset();
+  EXPECT_EQ(bridge.receive(soon), "silence");
+  EXPECT_EQ(bridge.conversation.connections(), 1u);
+  EXPECT_EQ(bridge.receive(soon), "second\n");
+  EXPECT_EQ(bridge.conversation.connections(), 2u);
+}
+
 TEST(Links, ThatCannotBeOpenedSayWhy) {
   for (const auto& [place, text] : std::vector<std::pair<std::string, std::string>>{
            {"carrier:pigeon", "expected a link tcp:ADDRESS:PORT"},

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <memory>
 #include <thread>
 
 #include "tests/bridges/bridged_run.hpp"
@@ -172,6 +173,19 @@ TEST_F(Px4Rover, APx4ThatConnectsAgainGoesOnFromWhereTheRunIsWithTheSameBitsTwic
     hashes.push_back(run.summary()["state_hash"]);
   }
   EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST_F(Px4Rover, AnotherPx4ThatHasWaitedDrivesOnceTheFirstHasLeft) {
+  BridgedRun run(with_px4("autopilot_rover", "2"));
+  const std::uint16_t port = run.port();
+  auto first = std::make_unique<Px4Program>(port);
+  first->steers_by_two_sides = true;
+  first->fly(drive_to_the_north, 200);
+  Px4Program second(port);
+  second.steers_by_two_sides = true;
+  first.reset();
+  second.fly(drive_to_the_north);
+  EXPECT_EQ(run.summary()["ticks"], 500);
 }
 
 TEST_F(Px4Rover, HalfAMessageIsNamedWhenItsPx4Leaves) {

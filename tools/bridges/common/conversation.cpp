@@ -61,13 +61,12 @@ std::optional<std::vector<std::uint8_t>> Conversation::receive(const Framing& fr
     }
     if (!waits && patience.at_most && !deadline) deadline = Clock::now() + *patience.at_most;
     if (auto message = take(framing)) return message;
-    if (!is_connected_) {
-      if (!waits) return std::nullopt;
-      continue;
-    }
-    if (read_more()) continue;
+    const bool has_more = is_connected_ && read_more();
+    // Whoever connects next is not heard here: it would be taken for the one that was asked.
+    if (!is_connected_ && !waits) return std::nullopt;
+    if (has_more || !is_connected_) continue;
     if (deadline && Clock::now() >= *deadline) return std::nullopt;
-    if (is_connected_) wait_for(POLLIN, deadline.value_or(Clock::time_point::max()));
+    wait_for(POLLIN, deadline.value_or(Clock::time_point::max()));
   }
 }
 

@@ -163,8 +163,7 @@ std::optional<mavlink::HilActuatorControls> Autopilot::next_controls(bridges::Co
     const auto left = std::max(Clock::duration::zero(), deadline - Clock::now());
     const auto bytes =
         px4.receive(mavlink::size_at, {bridges::Silence::hold, std::chrono::ceil<std::chrono::milliseconds>(left)});
-    // One that has connected meanwhile is another one.
-    if (!bytes || px4.connections() != connection_) break;
+    if (!bytes) break;
     const mavlink::Piece piece = mavlink::piece_of(*bytes);
     if (!piece.packet) count_broken(px4, bytes->size());
     if (!piece.packet || !piece.is_known) continue;

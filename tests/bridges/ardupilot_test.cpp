@@ -15,12 +15,6 @@ BridgedRun::Options alone(const std::string& experiment, const std::string& seco
   return {experiment, "cohort-ardupilot-bridge", "0", seconds};
 }
 
-struct Flown {
-  Seen seen;
-  int steps = 0;
-  std::string hash;
-};
-
 // Two quadcopters, each flown by a SITL of its own.
 std::array<Flown, 2> fly_two(const std::string& seconds, const std::string& threads) {
   auto options = alone("ardupilot", seconds);
@@ -57,7 +51,7 @@ TEST(ArdupilotBridge, TwoCoptersTakeOffAndHoverWithTheSameBitsInTwoRunsAndWithTw
   EXPECT_EQ(fly_two("8", "2")[0].hash, first[0].hash);
 }
 
-Flown drive(const std::string& experiment, const std::string& seconds, Pilot pilot) {
+Flown drive_by_sitl(const std::string& experiment, const std::string& seconds, Pilot pilot) {
   BridgedRun run(alone(experiment, seconds));
   SitlProgram sitl(run.port());
   sitl.run_ends_at = std::stod(seconds);
@@ -69,18 +63,18 @@ Flown drive(const std::string& experiment, const std::string& seconds, Pilot pil
 }
 
 TEST(ArdupilotBridge, ARoverDrivesToItsWaypoint) {
-  const Flown flown = drive("autopilot_rover", "12", drive_to_the_north);
+  const Flown flown = drive_by_sitl("autopilot_rover", "12", drive_to_the_north);
   EXPECT_NEAR(flown.seen.position[0], 1.0, 0.1);
   EXPECT_NEAR(flown.seen.position[1], 0.5, 0.1);
-  EXPECT_EQ(drive("autopilot_rover", "12", drive_to_the_north).hash, flown.hash);
+  EXPECT_EQ(drive_by_sitl("autopilot_rover", "12", drive_to_the_north).hash, flown.hash);
 }
 
 TEST(ArdupilotBridge, ABoatCrossesTheWaterToItsWaypoint) {
-  const Flown flown = drive("autopilot_boat", "20", cross_the_water);
+  const Flown flown = drive_by_sitl("autopilot_boat", "20", cross_the_water);
   EXPECT_NEAR(flown.seen.position[0], 8.0, 0.5);
   EXPECT_NEAR(flown.seen.position[1], 6.0, 0.5);
   EXPECT_NEAR(flown.seen.position[2], 0.05, 0.02) << "the keel under the water";
-  EXPECT_EQ(drive("autopilot_boat", "20", cross_the_water).hash, flown.hash);
+  EXPECT_EQ(drive_by_sitl("autopilot_boat", "20", cross_the_water).hash, flown.hash);
 }
 
 TEST(ArdupilotBridge, AnswersInTheFramesOfArduPilot) {
@@ -105,7 +99,7 @@ TEST(ArdupilotBridge, AnswersInTheFramesOfArduPilot) {
 class ArdupilotRover : public ::testing::Test {
  protected:
   static std::string undisturbed() {
-    static const std::string hash = drive("autopilot_rover", "2", drive_to_the_north).hash;
+    static const std::string hash = drive_by_sitl("autopilot_rover", "2", drive_to_the_north).hash;
     return hash;
   }
 };

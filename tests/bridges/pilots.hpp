@@ -33,4 +33,11 @@ Outputs cross_the_water(const Seen& seen);
 /// [rad], clockwise from north.
 double yaw_of(const Seen& seen);
 
+/// A vehicle at the end of its run, after so many steps of its pilot.
+struct Flown {
+  Seen seen;
+  int steps = 0;
+  std::string hash;
+};
+
 }  // namespace cohort::test

@@ -25,12 +25,6 @@ BridgedRun::Options with_px4(const std::string& experiment, const std::string& s
   return {experiment, "cohort-px4-bridge", "0", seconds, "1", std::move(more)};
 }
 
-struct Flown {
-  Seen seen;
-  int steps = 0;
-  std::string hash;
-};
-
 // `late`: so many HIL_SENSOR arrive at each between its first controls and the HIL_SENSOR that they answer.
 std::array<Flown, 2> fly_two(const std::string& seconds, const std::string& threads, int boot,
                              std::array<int, 2> late) {
@@ -67,7 +61,7 @@ TEST(Px4Bridge, TwoCoptersTakeOffAndHoverWithTheSameBitsHoweverLongTheyBootAndWi
   EXPECT_EQ(fly_two("8", "2", 10, {1, 7})[0].hash, first[0].hash);
 }
 
-Flown drive(const std::string& experiment, const std::string& seconds, Pilot pilot) {
+Flown drive_by_px4(const std::string& experiment, const std::string& seconds, Pilot pilot) {
   BridgedRun run(with_px4(experiment, seconds));
   Px4Program px4(run.port());
   px4.steers_by_two_sides = true;
@@ -79,13 +73,13 @@ Flown drive(const std::string& experiment, const std::string& seconds, Pilot pil
 }
 
 TEST(Px4Bridge, ARoverDrivesToItsWaypoint) {
-  const Flown flown = drive("autopilot_rover", "12", drive_to_the_north);
+  const Flown flown = drive_by_px4("autopilot_rover", "12", drive_to_the_north);
   EXPECT_NEAR(flown.seen.position[0], 1.0, 0.1);
   EXPECT_NEAR(flown.seen.position[1], 0.5, 0.1);
 }
 
 TEST(Px4Bridge, ABoatCrossesTheWaterToItsWaypoint) {
-  const Flown flown = drive("autopilot_boat", "20", cross_the_water);
+  const Flown flown = drive_by_px4("autopilot_boat", "20", cross_the_water);
   EXPECT_NEAR(flown.seen.position[0], 8.0, 0.5);
   EXPECT_NEAR(flown.seen.position[1], 6.0, 0.5);
 }
@@ -93,7 +87,7 @@ TEST(Px4Bridge, ABoatCrossesTheWaterToItsWaypoint) {
 class Px4Rover : public ::testing::Test {
  protected:
   static std::string undisturbed() {
-    static const std::string hash = drive("autopilot_rover", "2", drive_to_the_north).hash;
+    static const std::string hash = drive_by_px4("autopilot_rover", "2", drive_to_the_north).hash;
     return hash;
   }
   static void finish(BridgedRun& run, Px4Program& px4) {

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "tests/support/process.hpp"
+#include <utility>
+
+#include "tests/commands/bench_command.hpp"
 
 // Output of `cohort bench lockstep`. Durations are not checked.
 namespace cohort::test {
@@ -8,28 +10,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-struct Measured {
-  Ended ended;
-  Json json;
-  std::string svg;
-};
-
-Measured measure(std::vector<std::string> arguments, bool draws = true) {
-  const ScratchFolder folder;
-  arguments.insert(arguments.begin(), {cohort_program(), "bench", "lockstep", "--repetitions", "2"});
-  arguments.insert(arguments.end(), {"--json", (folder / "results.json").string()});
-  if (draws) arguments.insert(arguments.end(), {"--svg", (folder / "graph.svg").string()});
-  Measured measured{run_to_end(arguments), {}, {}};
-  EXPECT_EQ(measured.ended.exit_code, 0) << measured.ended.err;
-  measured.json = read_json(folder / "results.json");
-  if (draws) measured.svg = read_file(folder / "graph.svg");
-  return measured;
-}
-
-void expect_spread(const Json& spread) {
-  EXPECT_GT(spread.value("min", 0.0), 0.0) << spread;
-  EXPECT_LE(spread.value("min", 0.0), spread.value("median", 0.0)) << spread;
-  EXPECT_LE(spread.value("median", 0.0), spread.value("max", 0.0)) << spread;
+Measured measure_lockstep(std::vector<std::string> arguments, bool draws = true) {
+  arguments.insert(arguments.begin(), "lockstep");
+  return measure(std::move(arguments), draws);
 }
 
 // Both methods, with any durations.
@@ -47,7 +30,7 @@ void expect_row(const Json& row) {
 }
 
 TEST(BenchLockstep, PrintsBothMethodsAndTheirRatioForEachPlacement) {
-  const Measured measured = measure({"--robots", "1,8", "--seconds", "0.2"});
+  const Measured measured = measure_lockstep({"--robots", "1,8", "--seconds", "0.2"});
   const Json& rows = measured.json["results"];
   ASSERT_EQ(rows.size(), 6u) << measured.json;
   std::size_t i = 0;
@@ -68,14 +51,15 @@ TEST(BenchLockstep, PrintsBothMethodsAndTheirRatioForEachPlacement) {
 }
 
 TEST(BenchLockstep, MeasuresClientsWithASeparateThread) {
-  const Measured measured = measure({"--robots", "2", "--placement", "each", "--seconds", "0.1", "--own-thread"});
+  const Measured measured =
+      measure_lockstep({"--robots", "2", "--placement", "each", "--seconds", "0.1", "--own-thread"});
   ASSERT_EQ(measured.json["results"].size(), 1u) << measured.json;
   EXPECT_EQ(measured.json.value("inline", true), false);
   expect_row(measured.json["results"][0]);
 }
 
 TEST(BenchLockstep, MeasuresLookAheadWithADelay) {
-  const Measured measured = measure({"--look-ahead", "--seconds", "0.1"}, false);
+  const Measured measured = measure_lockstep({"--look-ahead", "--seconds", "0.1"}, false);
   const Json& rows = measured.json["results"];
   ASSERT_EQ(rows.size(), 6u) << measured.json;
   for (std::size_t i = 0; i < rows.size(); i += 2) {

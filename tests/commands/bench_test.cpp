@@ -4,29 +4,13 @@
 #include <map>
 #include <set>
 
-#include "tests/support/process.hpp"
+#include "tests/commands/bench_command.hpp"
 
 // Output of `cohort bench`. Durations are not checked.
 namespace cohort::test {
 namespace {
 
 using Json = nlohmann::json;
-
-struct Measured {
-  Ended ended;
-  Json json;
-};
-
-Measured measure(std::vector<std::string> arguments) {
-  const ScratchFolder folder;
-  const std::string file = (folder / "results.json").string();
-  arguments.insert(arguments.begin(), {cohort_program(), "bench"});
-  arguments.insert(arguments.end(), {"--repetitions", "2", "--json", file});
-  Measured measured{run_to_end(arguments), {}};
-  EXPECT_EQ(measured.ended.exit_code, 0) << measured.ended.err;
-  measured.json = read_json(file);
-  return measured;
-}
 
 std::vector<std::string> known_engines() {
   return {"cohort", "cohort-matrix", "bullet", "ode-worldstep", "ode-quickstep", "mujoco", "enki"};
@@ -48,12 +32,6 @@ std::vector<Json> measured_engines(const Json& all, const Json& result) {
     EXPECT_EQ(mentioned, 1) << name << " in " << result.dump(2);
   }
   return measured;
-}
-
-void expect_spread(const Json& spread) {
-  EXPECT_GT(spread.value("min", 0.0), 0.0) << spread;
-  EXPECT_LE(spread.value("min", 0.0), spread.value("median", 0.0)) << spread;
-  EXPECT_LE(spread.value("median", 0.0), spread.value("max", 0.0)) << spread;
 }
 
 TEST(Bench, MeasuresAllEnginesOnTheSameCrowd) {

@@ -4,16 +4,12 @@
 #include <csignal>
 #include <filesystem>
 
+#include "tests/commands/cohort_command.hpp"
 #include "tests/commands/small_experiment.hpp"
 #include "tests/support/process.hpp"
 
 namespace cohort::test {
 namespace {
-
-Ended cohort(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), cohort_program());
-  return run_to_end(arguments);
-}
 
 TEST(Examples, AreListedWithDescriptions) {
   const Ended listed = cohort({"examples"});

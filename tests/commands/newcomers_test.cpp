@@ -5,6 +5,7 @@
 #include <regex>
 #include <sstream>
 
+#include "tests/commands/cohort_command.hpp"
 #include "tests/support/controlled_run.hpp"
 
 // Things that people try in their first hour: each works, or the message says what does.
@@ -12,11 +13,6 @@ namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-Ended cohort(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), cohort_program());
-  return run_to_end(arguments);
-}
 
 void expect_in(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << "expected " << part << "\ngot " << text;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "server/recording/recording.hpp"
+#include "tests/commands/cohort_command.hpp"
 #include "tests/support/control.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/support/worlds/field_of_robots.hpp"
@@ -9,11 +10,6 @@ namespace cohort::test {
 namespace {
 
 // Runs `cohort` with these arguments.
-Ended cohort(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), cohort_program());
-  return run_to_end(arguments);
-}
-
 // Two robots that drive for two seconds, recorded.
 class Recordings : public ::testing::Test {
  protected:

@@ -53,7 +53,7 @@ TEST(RecoverCommand, WritesAnotherFileAndKeepsTheFirst) {
   EXPECT_EQ(McapReader(whole).statistics().message_count, 20U);
 }
 
-void expect_refused(const std::vector<std::string>& arguments, const std::string& reason) {
+void expect_not_recovered(const std::vector<std::string>& arguments, const std::string& reason) {
   const Ended ended = recover(arguments);
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_NE(ended.err.find(reason), std::string::npos) << ended.err;
@@ -62,15 +62,15 @@ void expect_refused(const std::vector<std::string>& arguments, const std::string
 
 TEST(RecoverCommand, RejectsFilesThatItCannotReadOrWrite) {
   const ScratchFolder folder;
-  expect_refused({folder / "none.mcap"}, "cannot be read: No such file or directory");
+  expect_not_recovered({folder / "none.mcap"}, "cannot be read: No such file or directory");
   write_file(folder / "text.mcap", "something else");
-  expect_refused({folder / "text.mcap"}, "text.mcap: byte 0: this is not an MCAP file");
+  expect_not_recovered({folder / "text.mcap"}, "text.mcap: byte 0: this is not an MCAP file");
   const std::string file = folder / "run.mcap";
   test::write_bytes(file, test::small_recording(3));
-  expect_refused({file, "-o", folder / "no_folder/run.mcap"}, "cannot be written to");
+  expect_not_recovered({file, "-o", folder / "no_folder/run.mcap"}, "cannot be written to");
   recording::DiskFile being_recorded(file);
   being_recorded.write(test::small_recording(3));
-  expect_refused({file}, "another process is recording to it");
+  expect_not_recovered({file}, "another process is recording to it");
 }
 
 // Header and attachments are complete, and the only chunk is truncated.
@@ -84,10 +84,10 @@ TEST(RecoverCommand, DoesNotReplaceAFileByOneWithoutMessages) {
     SCOPED_TRACE(size);
     const Bytes part(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     test::write_bytes(file, part);
-    expect_refused({file}, "no message in the file can be read");
+    expect_not_recovered({file}, "no message in the file can be read");
     EXPECT_EQ(test::read_bytes(file), part);
   }
-  expect_refused({file}, "only 1 attachment and 0 records of metadata, which '-o' writes to another file");
+  expect_not_recovered({file}, "only 1 attachment and 0 records of metadata, which '-o' writes to another file");
   EXPECT_EQ(recover({file, "-o", folder / "rest.mcap"}).exit_code, 0);
   EXPECT_EQ(McapReader(folder / "rest.mcap").attachments().size(), 1U);
 }

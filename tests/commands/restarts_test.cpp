@@ -15,7 +15,7 @@ std::size_t times(const std::string& text, const std::string& part) {
   return count;
 }
 
-const std::string aborted = " was terminated by signal 6 (Aborted)";
+const std::string was_aborted = " was terminated by signal 6 (Aborted)";
 
 TEST(Restarts, KeepTheHashOfTheRun) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 1.0);
@@ -25,7 +25,7 @@ TEST(Restarts, KeepTheHashOfTheRun) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(times(run.err, "restarting it"), 1u) << run.err;
   EXPECT_NE(run.err.find("team 'pair' (r0 and 1 more): controller process "), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find(aborted + "; restarting it (1 of 3)"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find(was_aborted + "; restarting it (1 of 3)"), std::string::npos) << run.err;
   const auto hash = [](const Ended& ended) { return ended.out.substr(ended.out.find("state hash")); };
   EXPECT_EQ(hash(run), hash(expected));
 }
@@ -38,7 +38,7 @@ TEST(Restarts, EndTheRunAtTheFourthDeath) {
   EXPECT_NE(run.err.find("cohort: error: the run ended at tick 20: team 'pair' (r0 and 1 more): controller process "),
             std::string::npos)
       << run.err;
-  EXPECT_NE(run.err.find(aborted + "; it had been restarted 3 times before\n"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find(was_aborted + "; it had been restarted 3 times before\n"), std::string::npos) << run.err;
   EXPECT_NE(run.out.find("state hash"), std::string::npos) << run.out;
 }
 
@@ -49,7 +49,7 @@ TEST(Restarts, NeverEndsTheRunAndNamesTeamRobotsAndSignal) {
   EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_EQ(times(run.err, "restarting it"), 0u) << run.err;
   EXPECT_NE(run.err.find("team 'pair' (r1): controller process "), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find(aborted + "; the experiment specifies 'restart: never'\n"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find(was_aborted + "; the experiment specifies 'restart: never'\n"), std::string::npos) << run.err;
   EXPECT_EQ(times(run.err, "cohort: "), 1u) << "nothing else is said\n" << run.err;
 }
 

@@ -12,9 +12,9 @@ namespace cohort::test {
 namespace {
 
 // An observer of a run, so that a test can act during it.
-class Observer {
+class SeenTicks {
  public:
-  explicit Observer(std::uint32_t domain)
+  explicit SeenTicks(std::uint32_t domain)
       : participant_(wire::Participant::client(domain)),
         reader_(participant_, {[this](const wire::WorldState& state, const wire::Sender&) { tick_ = state.tick; }, {}},
                 "view") {}
@@ -45,7 +45,7 @@ class DisturbedRun : public ::testing::Test {
   Process server{
       {cohort_program(), "serve", demo_experiment(), "--duration", "10", "--paused", "--domain", domain.text()},
       {{"COHORT_LOG", "info"}}};
-  Observer observer{domain.number()};
+  SeenTicks observer{domain.number()};
 };
 
 TEST_F(DisturbedRun, AKilledAndRestartedControllerKeepsTheBits) {

@@ -9,7 +9,7 @@
 #include <functional>
 #include <map>
 
-#include "tests/ros2/nodes.hpp"
+#include "tests/ros2/services_helper.hpp"
 #include "tools/bridges/ros2/services/service_frames.hpp"
 #include "tools/bridges/ros2/services/service_process.hpp"
 
@@ -19,12 +19,6 @@ namespace {
 using namespace bridges::ros2;
 
 constexpr std::uint32_t camera = 0, trigger = 1;
-const std::string helper_program = COHORT_BUILD_DIR "/bin/cohort-ros2-services";
-
-std::string missing_for_services() {
-  if (!std::filesystem::exists(helper_program)) return "no cohort-ros2-services: libfastrtps-dev is not installed";
-  return missing_for_ros2();
-}
 
 OfferService offer(std::uint32_t service, const std::string& name, const std::string& type) {
   return {.service = service,

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "tests/ros2/nodes.hpp"
+#include "tests/ros2/services_helper.hpp"
 #include "tests/ros2/simulation_interfaces.hpp"
 
 /// Nodes of ROS control a run by the services of simulation_interfaces.
@@ -11,15 +11,9 @@ namespace cohort::test {
 namespace {
 
 const std::string bridge_program = COHORT_BUILD_DIR "/bin/cohort-ros2-bridge";
-const std::string helper_program = COHORT_BUILD_DIR "/bin/cohort-ros2-services";
 const std::string caller_program = COHORT_BUILD_DIR "/bin/cyclone_caller";
 const std::string experiment = COHORT_SOURCE_DIR "/worlds/experiments/turtlebot3.yaml";
 const std::string calls = "100";
-
-std::string missing_for_clients() {
-  if (!std::filesystem::exists(helper_program)) return "no cohort-ros2-services: libfastrtps-dev is not installed";
-  return missing_for_ros2();
-}
 
 // A run in a network of its own, with a bridge. It is paused unless the server has options.
 class ControlledRun {
@@ -73,7 +67,7 @@ class Ros2Simulation : public ::testing::TestWithParam<std::size_t> {
 };
 
 TEST_P(Ros2Simulation, AnUnmodifiedNodeControlsARunByEachService) {
-  if (const std::string missing = missing_for_clients(); !missing.empty()) GTEST_SKIP() << missing;
+  if (const std::string missing = missing_for_services(); !missing.empty()) GTEST_SKIP() << missing;
   const auto with_interfaces = environment();
   ControlledRun run(version() == SimulationInterfaces::former ? std::vector<std::string>()
                                                               : std::vector<std::string>{"--ros-distro", "rolling"});
@@ -84,7 +78,7 @@ TEST_P(Ros2Simulation, AnUnmodifiedNodeControlsARunByEachService) {
 }
 
 TEST_P(Ros2Simulation, ANodeDrivesARobotThatItAdds) {
-  if (const std::string missing = missing_for_clients(); !missing.empty()) GTEST_SKIP() << missing;
+  if (const std::string missing = missing_for_services(); !missing.empty()) GTEST_SKIP() << missing;
   const auto with_interfaces = environment();
   ControlledRun run({}, bridge_program, {"--duration", "3600"});
   const auto node = run.network().start_node(distribution(), "spawner.py", {"drive"}, with_interfaces);
@@ -93,7 +87,7 @@ TEST_P(Ros2Simulation, ANodeDrivesARobotThatItAdds) {
 }
 
 TEST_P(Ros2Simulation, AnswersFitTheirFramesWhileRobotsComeAndGo) {
-  if (const std::string missing = missing_for_clients(); !missing.empty()) GTEST_SKIP() << missing;
+  if (const std::string missing = missing_for_services(); !missing.empty()) GTEST_SKIP() << missing;
   const auto with_interfaces = environment();
   const ScratchFolder folder;
   ControlledRun run({}, bridge_program, {"--duration", "3600", "--summary", folder / "summary.json"});
@@ -107,7 +101,7 @@ TEST_P(Ros2Simulation, AnswersFitTheirFramesWhileRobotsComeAndGo) {
 }
 
 TEST_P(Ros2Simulation, ClientsOnBothImplementationsOfDdsGetOneReplyEach) {
-  if (const std::string missing = missing_for_clients(); !missing.empty()) GTEST_SKIP() << missing;
+  if (const std::string missing = missing_for_services(); !missing.empty()) GTEST_SKIP() << missing;
   const auto with_interfaces = environment();
   const ControlledRun run;
   const auto cyclone = run.network().start({caller_program, calls, calls});
@@ -132,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(OfEachDistribution, Ros2Simulation, ::testing::Values(0
                          [](const auto& tested) { return ros2_distributions()[tested.param].name; });
 
 TEST(Ros2SimulationControl, ContinuesAfterTheHelperHasEnded) {
-  if (const std::string missing = missing_for_clients(); !missing.empty()) GTEST_SKIP() << missing;
+  if (const std::string missing = missing_for_services(); !missing.empty()) GTEST_SKIP() << missing;
   ControlledRun run;
   const auto first = run.network().start({caller_program, "1", "0"});
   EXPECT_EQ(first->wait_for_exit(), 0);

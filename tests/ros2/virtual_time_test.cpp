@@ -16,7 +16,8 @@ struct TwoNodes {
 };
 
 // `of_first`: arguments of the first node after its robot.
-TwoNodes run_two(const Ros2Distribution& distribution, const std::string& threads, const std::string& of_first = "0.1") {
+TwoNodes run_two(const Ros2Distribution& distribution, const std::string& threads,
+                 const std::string& of_first = "0.1") {
   BridgedNodes::Options options{.experiment = "arduino", .seconds = "3", .threads = threads};
   const std::string first = node(distribution, "/robot_0 " + of_first);
   options.bridge = {"--run", first + " & " + node(distribution, "/robot_1") + " & wait"};

@@ -10,6 +10,7 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/parsing/keys/extensions.hpp"
 #include "server/parsing/plugins/gazebo_plugins.hpp"
+#include "tests/guarantees/same_hash/names_of_experiments.hpp"
 #include "tests/support/process.hpp"
 
 namespace cohort::test {
@@ -56,14 +57,7 @@ TEST_P(ShippedExperiments, GiveTheSameHashWithAndWithoutFma) {
             run_experiment(experiment, arguments, without_fma)["state_hash"]);
 }
 
-std::vector<std::string> shipped_experiments() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(COHORT_SOURCE_DIR "/worlds/experiments"))
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-INSTANTIATE_TEST_SUITE_P(SameHashAnyCpu, ShippedExperiments, ::testing::ValuesIn(shipped_experiments()),
+INSTANTIATE_TEST_SUITE_P(SameHashAnyCpu, ShippedExperiments, ::testing::ValuesIn(names_of_experiments()),
                          [](const auto& experiment) { return experiment.param; });
 
 TEST(SameHashAnyCpu, OfAWorldWithEveryDeviceAndEveryPlugin) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/guarantees/same_hash/names_of_experiments.hpp"
 #include "tests/support/process.hpp"
 
 // A program that loads Cohort as a library already has sin, cos … of the C library. Calls of Bullet, and our own, must
@@ -18,14 +19,6 @@ std::string hash_from(std::vector<std::string> command) {
   return ended.out;
 }
 
-std::vector<std::string> shipped_experiments() {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(COHORT_SOURCE_DIR "/worlds/experiments"))
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
-  std::ranges::sort(names);
-  return names;
-}
-
 class SameHashInALibrary : public testing::TestWithParam<std::string> {};
 
 TEST_P(SameHashInALibrary, OfEveryShippedExperiment) {
@@ -37,7 +30,7 @@ TEST_P(SameHashInALibrary, OfEveryShippedExperiment) {
   EXPECT_EQ(program.size(), 17u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Experiments, SameHashInALibrary, testing::ValuesIn(shipped_experiments()),
+INSTANTIATE_TEST_SUITE_P(Experiments, SameHashInALibrary, testing::ValuesIn(names_of_experiments()),
                          [](const auto& name) { return name.param; });
 
 // Otherwise the test above would pass with any binding.

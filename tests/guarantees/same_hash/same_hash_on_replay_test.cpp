@@ -6,6 +6,7 @@
 
 #include "server/recording/mcap/writing/mcap_writer.hpp"
 #include "server/recording/replay.hpp"
+#include "tests/guarantees/same_hash/names_of_experiments.hpp"
 #include "tests/support/controlled_run.hpp"
 #include "tests/support/free_domain.hpp"
 
@@ -30,12 +31,10 @@ void expect_identical(const Verification& found, std::uint64_t boundaries) {
   EXPECT_EQ(found.boundaries, boundaries);
 }
 
-std::vector<std::string> shipped_experiments() {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(COHORT_SOURCE_DIR "/worlds/experiments"))
-    if (entry.path().extension() == ".yaml" && entry.path().stem() != "teleop")  // its robot is driven by a person
-      names.push_back(entry.path().stem());
-  std::ranges::sort(names);
+// All but the one whose robot is driven by a person.
+std::vector<std::string> replayed_experiments() {
+  std::vector<std::string> names = names_of_experiments();
+  std::erase(names, "teleop");
   return names;
 }
 
@@ -55,7 +54,7 @@ TEST_P(SameHashOnReplay, OfAShippedExperiment) {
     expect_identical(verified(file, 7.0, 8.0, 1), static_cast<std::uint64_t>(std::chrono::seconds(1) / step) + 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Experiments, SameHashOnReplay, ::testing::ValuesIn(shipped_experiments()),
+INSTANTIATE_TEST_SUITE_P(Experiments, SameHashOnReplay, ::testing::ValuesIn(replayed_experiments()),
                          [](const auto& each) { return each.param; });
 
 TEST(SameHashOnReplayOf, ARunWithDeletedFiles) {

@@ -20,7 +20,9 @@ std::string visual(const std::string& content, const std::string& name = "v") {
   return "<visual name=\"" + name + "\">" + content + "</visual>";
 }
 std::string link_of(const std::string& visuals) { return static_model_sdf("<link name=\"l\">" + visuals + "</link>"); }
-std::string mesh(const std::string& uri) { return "<geometry><mesh>\n<uri>" + uri + "</uri></mesh></geometry>"; }
+std::string geometry_of_mesh(const std::string& uri) {
+  return "<geometry><mesh>\n<uri>" + uri + "</uri></mesh></geometry>";
+}
 
 const Visual& visual_of(const World& world, std::size_t index = 0) { return world.models[0].links[0].visuals[index]; }
 const MeshTextures& textures_of(const World& world) {
@@ -87,7 +89,7 @@ TEST_F(Textures, AreOneObjectIfTheirContentIsEqual) {
 
 TEST_F(Textures, OfMaterialsOfObjFilesHaveTheirCoordinates) {
   write_obj("Kd 1 0 0\nmap_Kd wood.png\n");
-  const World world = read(link_of(visual(mesh("sign.obj"))));
+  const World world = read(link_of(visual(geometry_of_mesh("sign.obj"))));
   const MeshTextures& textures = textures_of(world);
   ASSERT_EQ(textures.images.size(), 1u) << texts_of(world.warnings);
   ASSERT_NE(textures.images[0], nullptr);
@@ -102,7 +104,7 @@ TEST_F(Textures, OfMeshesMayBeInTheFolderOfMaterialsBesideThem) {
   write("meshes/sign.mtl", "newmtl sign\nmap_Kd ..\\art\\wall.png\n");
   write("meshes/sign.obj", "mtllib sign.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl sign\nf 1/1 2/1 3/1\n");
   write("materials/textures/wall.png", png_of(6, 6));
-  const World world = read(link_of(visual(mesh("meshes/sign.obj"))));
+  const World world = read(link_of(visual(geometry_of_mesh("meshes/sign.obj"))));
   ASSERT_EQ(textures_of(world).images.size(), 1u);
   ASSERT_NE(textures_of(world).images[0], nullptr) << texts_of(world.warnings);
   EXPECT_EQ(textures_of(world).images[0]->size.width, 6u);
@@ -130,7 +132,7 @@ TEST_F(Textures, OfMaterialsOfColladaFilesAreRead) {
 <technique_common><instance_material symbol="m" target="#paint"><bind_vertex_input semantic="UV"
 input_semantic="TEXCOORD" input_set="0"/></instance_material></technique_common></bind_material></instance_geometry>
 </node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)");
-  const World world = read(link_of(visual(mesh("sign.dae"))));
+  const World world = read(link_of(visual(geometry_of_mesh("sign.dae"))));
   ASSERT_EQ(textures_of(world).images.size(), 1u);
   ASSERT_NE(textures_of(world).images[0], nullptr) << texts_of(world.warnings);
   EXPECT_EQ(textures_of(world).images[0]->bytes, png_of(4, 2));
@@ -143,7 +145,7 @@ TEST_F(Textures, OfGltfFilesAreEmbeddedOrBesideThem) {
   write("in.glb", glb_of(R"({"bufferView":3,"mimeType":"image/png"})", embedded));
   write("beside.glb", glb_of(R"({"uri":"wood.png"})"));
   for (const auto& [file, image] : {std::pair{"in.glb", embedded}, std::pair{"beside.glb", png_of(4, 2)}}) {
-    const World world = read(link_of(visual(mesh(file))));
+    const World world = read(link_of(visual(geometry_of_mesh(file))));
     const TriangleMesh& triangles = *std::get<Mesh>(visual_of(world).shape).triangles;
     ASSERT_EQ(triangles.triangles.size(), 1u) << file;
     ASSERT_EQ(triangles.textures.images.size(), 1u) << file;
@@ -176,7 +178,7 @@ TEST_F(Textures, ThatAreBadAreAWarningAndThePlainColourIsShown) {
   }
   for (const auto& [file, message] : bad) {
     write_obj("Kd 1 0 0\nmap_Kd " + file + "\n");
-    const World world = read(link_of(visual(mesh("sign.obj")) + visual(mesh("sign.obj"), "w")));
+    const World world = read(link_of(visual(geometry_of_mesh("sign.obj")) + visual(geometry_of_mesh("sign.obj"), "w")));
     expect_one_warning(world, "geometry/mesh/uri", message);
     EXPECT_EQ(textures_of(world).images[0], nullptr);
     EXPECT_EQ(std::get<Mesh>(visual_of(world).shape).triangles->colors[0], (std::array<std::uint8_t, 3>{255, 0, 0}));
@@ -187,7 +189,7 @@ TEST_F(Textures, ThatAreEmbeddedAndBadAreAWarning) {
   for (const auto& [bytes, message] : {std::pair<std::string, std::string>{"text", "expected a PNG or JPEG image"},
                                        {png_of(1, 1, std::string(most_image_bytes, ' ')), "of at most 8 MiB"}}) {
     write("in.glb", glb_of(R"({"bufferView":3,"mimeType":"image/png"})", bytes));
-    const World world = read(link_of(visual(mesh("in.glb"))));
+    const World world = read(link_of(visual(geometry_of_mesh("in.glb"))));
     expect_one_warning(world, "geometry/mesh/uri", message);
     EXPECT_EQ(textures_of(world).images[0], nullptr);
   }
@@ -200,7 +202,8 @@ TEST_F(Textures, AreOnlyReadFromTrustedFolders) {
   expect_one_warning(read(link_of(visual(box + albedo_map(uri)))), "material/pbr/metal/albedo_map",
                      "outside of all allowed folders");
   write_obj("map_Kd " + uri + "\n");
-  expect_one_warning(read(link_of(visual(mesh("sign.obj")))), "geometry/mesh/uri", "outside of all allowed folders");
+  expect_one_warning(read(link_of(visual(geometry_of_mesh("sign.obj")))), "geometry/mesh/uri",
+                     "outside of all allowed folders");
 }
 
 TEST_F(Textures, OfAWorldAreLimited) {
@@ -228,7 +231,7 @@ TEST_F(Textures, OfAWorldAreLimited) {
 
 TEST_F(Textures, AreKeptWithTheOtherFilesOfAnExperiment) {
   write_obj("map_Kd stone.jpg\n");
-  write_world(link_of(visual(mesh("sign.obj")) + visual(box + albedo_map("wood.png"), "b")));
+  write_world(link_of(visual(geometry_of_mesh("sign.obj")) + visual(box + albedo_map("wood.png"), "b")));
   const auto file = write("experiment.yaml", "world: world.sdf\nduration: 1\nteams: []\n");
   const Experiment experiment = parsing::read_experiment(file);
   const auto kept = std::make_shared<const KeptFiles>(*experiment.inputs);

@@ -34,6 +34,7 @@ constexpr std::chrono::milliseconds before_accepting_again{100};
 constexpr std::size_t largest_message = std::size_t{1} << 20;  // from a client [bytes]
 constexpr std::uint32_t largest_header = 8192;
 constexpr std::chrono::seconds request_time{10};
+constexpr bool has_compression = false;  // of messages: pages are near, and compiling it takes long
 
 constexpr const char* policy_but_for_frames =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
@@ -184,7 +185,7 @@ class WebServer::State::WebSocket : public std::enable_shared_from_this<WebSocke
 
   State& state_;
   const std::uint64_t visitor_ = ++state_.visitors;
-  websocket::stream<beast::tcp_stream> stream_;
+  websocket::stream<beast::tcp_stream, has_compression> stream_;
   beast::flat_buffer buffer_;
   ClientSession session_;
   std::optional<ClientSession::Outgoing> outgoing_;  // lives while it is written

@@ -7,7 +7,7 @@
 
 namespace cohort::test {
 
-/// What `cohort bench` printed and wrote.
+/// The output of `cohort bench`, and its files.
 struct Measured {
   Ended ended;
   nlohmann::json json;

@@ -62,7 +62,7 @@ std::optional<std::vector<std::uint8_t>> Conversation::receive(const Framing& fr
     if (!waits && patience.at_most && !deadline) deadline = Clock::now() + *patience.at_most;
     if (auto message = take(framing)) return message;
     const bool has_more = is_connected_ && read_more();
-    // Whoever connects next is not heard here: it would be taken for the one that was asked.
+    // The next firmware is not heard here: its message would be taken for an answer of the one that has left.
     if (!is_connected_ && !waits) return std::nullopt;
     if (has_more || !is_connected_) continue;
     if (deadline && Clock::now() >= *deadline) return std::nullopt;

@@ -43,8 +43,8 @@ int wait_for_interpreter(pthread_cond_t* condition, pthread_mutex_t* mutex, bool
 
 /// The interpreter has read the clock.
 void after_read_of_clock();
-/// The interpreter has tried to take a lock of its program. A read of the clock that is part of taking one is not
-/// counted as one of a thread that spins: how many locks an import takes depends on what other processes do.
+/// The interpreter has tried to take a lock of its program. The read of the clock that belongs to it does not count as
+/// one of a thread that spins. How many locks an import takes depends on what other processes do.
 void after_try_to_take(bool is_taken);
 
 }  // namespace cohort::exec

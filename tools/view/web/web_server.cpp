@@ -34,7 +34,7 @@ constexpr std::chrono::milliseconds before_accepting_again{100};
 constexpr std::size_t largest_message = std::size_t{1} << 20;  // from a client [bytes]
 constexpr std::uint32_t largest_header = 8192;
 constexpr std::chrono::seconds request_time{10};
-constexpr bool has_compression = false;  // of messages: pages are near, and compiling it takes long
+constexpr bool has_compression = false;  // pages are near, and compiling it takes long
 
 constexpr const char* policy_but_for_frames =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 namespace cohort::test {
@@ -37,7 +38,7 @@ double yaw_of(const Seen& seen);
 struct Flown {
   Seen seen;
   int steps = 0;
-  std::string hash;
+  std::string hash{};
 };
 
 }  // namespace cohort::test

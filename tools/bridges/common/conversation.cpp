@@ -54,18 +54,13 @@ std::optional<std::vector<std::uint8_t>> Conversation::receive(const Framing& fr
     if (program_->runs()) return std::nullopt;
   }
   for (;;) {
-    if (!connect()) {
-      if (!waits) return std::nullopt;
-      wait_for(POLLIN, Clock::time_point::max());
-      continue;
+    if (connect()) {
+      if (!waits && patience.at_most && !deadline) deadline = Clock::now() + *patience.at_most;
+      if (auto message = take(framing)) return message;
+      if (is_connected_ && read_more() && is_connected_) continue;
     }
-    if (!waits && patience.at_most && !deadline) deadline = Clock::now() + *patience.at_most;
-    if (auto message = take(framing)) return message;
-    const bool has_more = is_connected_ && read_more();
     // The next firmware is not heard here: its message would be taken for an answer of the one that has left.
-    if (!is_connected_ && !waits) return std::nullopt;
-    if (has_more || !is_connected_) continue;
-    if (deadline && Clock::now() >= *deadline) return std::nullopt;
+    if (!waits && (!is_connected_ || (deadline && Clock::now() >= *deadline))) return std::nullopt;
     wait_for(POLLIN, deadline.value_or(Clock::time_point::max()));
   }
 }

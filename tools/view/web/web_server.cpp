@@ -310,9 +310,9 @@ void WebServer::State::accept() {
 // used longest ago, so that a client that opens many closes only its own. WebSockets stay.
 void WebServer::State::give_way() {
   std::map<asio::ip::address, std::size_t> held;
-  for (const Page* const page : pages) ++held[page->address()];
+  for (const Page* const open : pages) ++held[open->address()];
   const std::size_t most = std::ranges::max_element(held, {}, [](const auto& each) { return each.second; })->second;
-  (*std::ranges::find_if(pages, [&](const Page* page) { return held[page->address()] == most; }))->close();
+  (*std::ranges::find_if(pages, [&](const Page* open) { return held[open->address()] == most; }))->close();
 }
 
 void WebServer::State::pump() {

@@ -126,7 +126,10 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
     monitor.start();
     Exchange::Frame frame;  // reused
     while (!monitor.is_over()) {
-      if (stop) return monitor.finish(RunResult::End::interrupted);
+      if (stop) {
+        monitor.at_boundary();
+        return monitor.finish(RunResult::End::interrupted);
+      }
       if (simulation.robot_count() > admitted) {  // robots have joined
         exchange.add_newcomers();
         std::ranges::move(start_controllers(simulation, admitted, controllers, wire::StartReason::first),

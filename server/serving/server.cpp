@@ -108,9 +108,9 @@ RunResult Server::end_early() {
   }
   note_misses(refused);
   if (!error.empty()) return end_run(RunResult::End::failed, error);
+  if (run_->started) run_->monitor.at_boundary();  // the last one, of which no frames may have been sent
   if (!control_.ending()) return end_run(RunResult::End::interrupted);
   const Control::Ending ending = *control_.ending();
-  if (run_->started) run_->monitor.at_boundary();
   RunResult result = end_run(ending.how);
   result.next = ending.next;
   return result;

@@ -327,5 +327,21 @@ TEST(InProcessRun, StopsWhenAskedTo) {
   EXPECT_EQ(result.ticks, 0u);
 }
 
+TEST(InProcessRun, ShowsTheLastBoundaryAlsoWhenItIsStopped) {
+  const auto experiment = experiment_of({{}});
+  Simulation simulation(experiment, 1);
+  std::atomic<bool> stop = false;
+  std::vector<std::uint64_t> boundaries;
+  RunListener listener;
+  listener.boundary = [&] {
+    boundaries.push_back(simulation.tick());
+    stop = simulation.tick() >= 2;
+  };
+  const RunResult result = run_in_process(experiment, simulation, {kind_of(straight)}, {}, listener, stop);
+  EXPECT_EQ(result.end, RunResult::End::interrupted);
+  EXPECT_EQ(result.ticks, 3u);
+  EXPECT_EQ(boundaries, (std::vector<std::uint64_t>{0, 1, 2, 3}));
+}
+
 }  // namespace
 }  // namespace cohort::session

@@ -96,6 +96,18 @@ void offer_snapshot(const RunListener& listener, const std::function<SessionSnap
   }
 }
 
+// Gives the controllers their states in the snapshot that the run starts from, and asks for answers that it lacks.
+void load_states(const SessionSnapshot& snapshot, const std::vector<Driven>& all,
+                 const description::Experiment& experiment, const Simulation& simulation, Exchange& exchange,
+                 RunMonitor& monitor) {
+  for (const Driven& driven : all) {
+    for (const std::string& notice : driven.host->load(states_of(snapshot, driven.robots)))
+      monitor.add_event("unsaved", "team '" + simulation.experiment().teams[driven.team].name + "': " + notice);
+    ask_again(exchange, experiment, driven.robots, simulation.tick(), *driven.host);
+  }
+  monitor.note_left_out(snapshot);
+}
+
 }  // namespace
 
 RunResult run_in_process(const description::Experiment& experiment, Simulation& simulation,
@@ -109,19 +121,11 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
     return monitor.finish(RunResult::End::failed, why);
   };
   if (listener.can_fail) listener.can_fail(fail);
-  const std::vector<description::Team>& teams = simulation.experiment().teams;
   try {
     std::vector<Driven> all = start_controllers(simulation, 0, controllers,
                                                 options.from ? wire::StartReason::restored : wire::StartReason::first);
     std::uint32_t admitted = simulation.robot_count();
-    if (options.from) {
-      for (const Driven& driven : all) {
-        for (const std::string& notice : driven.host->load(states_of(*options.from, driven.robots)))
-          monitor.add_event("unsaved", "team '" + teams[driven.team].name + "': " + notice);
-        ask_again(exchange, experiment, driven.robots, simulation.tick(), *driven.host);
-      }
-      monitor.note_left_out(*options.from);
-    }
+    if (options.from) load_states(*options.from, all, experiment, simulation, exchange, monitor);
 
     monitor.start();
     Exchange::Frame frame;  // reused

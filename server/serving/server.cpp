@@ -145,14 +145,26 @@ bool Server::welcome_newcomers() {
   return lacks_controllers;
 }
 
+// A run at a pace is late by so much at the boundary before a tick, but for the first.
+void Server::note_lateness(Clock::time_point due) {
+  if (run_->monitor.speed() > 0.0 && run_->simulation.tick() > 0) run_->monitor.add_lateness(Clock::now() - due);
+}
+
+// Publishes the state of a run that is held, since no tick will, if it may have changed. Returns false if the run has
+// to end.
+bool Server::show_held_run(bool may_have_changed) {
+  if (may_have_changed) publish_world_state();
+  publish_scene(may_have_changed ? SceneBroadcast::When::at_once : SceneBroadcast::When::for_newcomers);
+  if (!decide_claims()) return false;
+  report_progress(false);
+  return true;
+}
+
 // Carries out requests at the boundary before a tick. Waits while the run is paused or ahead of its pace, or while a
 // new robot lacks a required controller. Returns false if the run has to end.
 bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
   RunMonitor& monitor = run_->monitor;
   control_.reach_boundary();
-  const auto due = [&] {
-    return control_.holds() ? std::nullopt : std::optional(monitor.due_time().value_or(Clock::time_point::min()));
-  };
   bool was_held = false;
   for (;;) {
     handle_inbox();
@@ -160,17 +172,15 @@ bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
     if (!control_.perform(Control::Moment::boundary)) return false;
     if (monitor.is_over()) return true;
     const bool lacks_controllers = welcome_newcomers();
-    const auto go_on_at = lacks_controllers ? std::nullopt : due();
+    std::optional<Clock::time_point> go_on_at;
+    if (!lacks_controllers && !control_.holds()) go_on_at = monitor.due_time().value_or(Clock::time_point::min());
     if (go_on_at && Clock::now() >= *go_on_at) {
-      if (monitor.speed() > 0.0 && run_->simulation.tick() > 0) monitor.add_lateness(Clock::now() - *go_on_at);
+      note_lateness(*go_on_at);
       return true;
     }
     if (control_.holds() || lacks_controllers) {
-      if (!was_held || had_work) publish_world_state();  // no tick will publish it
-      publish_scene(was_held && !had_work ? SceneBroadcast::When::for_newcomers : SceneBroadcast::When::at_once);
+      if (!show_held_run(!was_held || had_work)) return false;
       was_held = true;
-      if (!decide_claims()) return false;
-      report_progress(false);
     }
     std::unique_lock lock(mutex_);
     if (!run_->error.empty() || stop) return false;

@@ -69,6 +69,8 @@ class Server {
   RunResult end_early();
   bool wait_for_controllers(const std::atomic<bool>& stop);
   bool welcome_newcomers();
+  void note_lateness(Clock::time_point due);
+  bool show_held_run(bool may_have_changed);
   bool stand_at_boundary(const std::atomic<bool>& stop);
   bool run_tick(const std::atomic<bool>& stop);
   bool decide_claims();

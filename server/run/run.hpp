@@ -85,7 +85,7 @@ struct RunListener {
   /// Called after each step and at the start of the run, before the frames of this tick are sent.
   std::function<void()> stepped{};
   /// Called when the state of a tick is complete and its frames are sent: once for each tick, from the run's first to
-  /// its last.
+  /// its last. The last one has no frames if the run ends there.
   std::function<void()> boundary{};
   /// Only for a run in one process: called at each boundary, before its frames are sent. `take` takes a snapshot of the
   /// current run.

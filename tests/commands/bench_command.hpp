@@ -16,7 +16,7 @@ struct Measured {
   std::string svg{};
 };
 
-/// Runs `cohort bench` twice, as its medians need. It writes a picture only if it `draws`.
+/// Runs `cohort bench` with two repetitions. It writes a picture if it `draws`.
 inline Measured measure(std::vector<std::string> arguments, bool draws = false) {
   const ScratchFolder folder;
   arguments.insert(arguments.begin(), {cohort_program(), "bench"});

@@ -55,9 +55,9 @@ class Conversation {
   /// have it. Throws std::runtime_error that says why they cannot be the start of a message.
   using Framing = std::function<std::size_t(std::span<const std::uint8_t> bytes)>;
 
-  /// Returns the next message. Nothing if firmware is silent, or has left, beyond what `patience` has for it. If the
-  /// connection is lost here, a call that does not wait returns nothing: the next firmware is heard by the next call.
-  /// Throws GaveUp, also where messages never end.
+  /// Returns the next message. Nothing if firmware is silent, or has left, beyond what `patience` has for it. In
+  /// real time, a call that does not wait and loses the connection returns nothing: the next firmware is heard by the
+  /// next call. Throws GaveUp, also where messages never end.
   std::optional<std::vector<std::uint8_t>> receive(const Framing& framing, const Patience& patience);
 
   /// Waits until firmware is connected. Returns false if none is and `patience` does not wait. Throws GaveUp.

@@ -29,10 +29,11 @@ std::int64_t sleep_for(std::int64_t time) {
   return 0;
 }
 
-template <class Sleep>
-auto sleep_in_real_time(const Sleep& sleep) {
+// Returns whether a caller sleeps in real time, and notes it.
+bool sleeps_really(const void* caller) {
+  if (!is_real(caller)) return false;
   note_real_sleep();
-  return sleep();
+  return true;
 }
 
 int fail(int error) {
@@ -92,7 +93,7 @@ std::int64_t cohort_system_now() { return chrono_time(COHORT_CALLER, CLOCK_REALT
 
 COHORT_REPLACES int nanosleep(const timespec* time, timespec* left) {
   COHORT_NEXT(nanosleep);
-  if (is_real(COHORT_CALLER)) return sleep_in_real_time([&] { return real(time, left); });
+  if (sleeps_really(COHORT_CALLER)) return real(time, left);
   if (time == nullptr) return fail(EFAULT);
   if (!is_valid(*time)) return fail(EINVAL);
   const std::int64_t rest = sleep_for(nanoseconds(*time));
@@ -105,8 +106,7 @@ COHORT_REPLACES int __nanosleep(const timespec*, timespec*) __attribute__((alias
 
 COHORT_REPLACES int clock_nanosleep(clockid_t clock, int flags, const timespec* time, timespec* left) {
   COHORT_NEXT(clock_nanosleep);
-  if (is_real(COHORT_CALLER) || !is_virtual(clock))
-    return sleep_in_real_time([&] { return real(clock, flags, time, left); });
+  if (!is_virtual(clock) || sleeps_really(COHORT_CALLER)) return real(clock, flags, time, left);
   if (!is_valid(*time)) return EINVAL;
   if ((flags & TIMER_ABSTIME) != 0) {
     const std::int64_t deadline = on_page(clock, nanoseconds(*time));
@@ -121,19 +121,19 @@ COHORT_REPLACES int clock_nanosleep(clockid_t clock, int flags, const timespec* 
 
 COHORT_REPLACES int usleep(useconds_t time) {
   COHORT_NEXT(usleep);
-  if (is_real(COHORT_CALLER)) return sleep_in_real_time([&] { return real(time); });
+  if (sleeps_really(COHORT_CALLER)) return real(time);
   return sleep_for(std::int64_t{time} * 1000) == 0 ? 0 : fail(EINTR);
 }
 
 COHORT_REPLACES unsigned sleep(unsigned time) {
   COHORT_NEXT(sleep);
-  if (is_real(COHORT_CALLER)) return sleep_in_real_time([&] { return real(time); });
+  if (sleeps_really(COHORT_CALLER)) return real(time);
   return static_cast<unsigned>((sleep_for(std::int64_t{time} * second) + second - 1) / second);
 }
 
 COHORT_REPLACES int thrd_sleep(const timespec* time, timespec* left) {
   COHORT_NEXT(thrd_sleep);
-  if (is_real(COHORT_CALLER)) return sleep_in_real_time([&] { return real(time, left); });
+  if (sleeps_really(COHORT_CALLER)) return real(time, left);
   const std::int64_t rest = sleep_for(nanoseconds(*time));
   if (rest == 0) return 0;
   if (left != nullptr) *left = to_timespec(rest);
@@ -151,11 +151,10 @@ COHORT_REPLACES std::int64_t dds_time() {
   return is_real(COHORT_CALLER) ? real_time(CLOCK_REALTIME) : read_clock(CLOCK_REALTIME);
 }
 COHORT_REPLACES void dds_sleepfor(std::int64_t time) {
-  if (!is_real(COHORT_CALLER)) return void(sleep_for(time));
+  if (!sleeps_really(COHORT_CALLER)) return void(sleep_for(time));
   // As Cyclone DDS does it. Its own function cannot be found where a program has loaded DDS for itself alone, as Python
   // does.
   COHORT_NEXT(nanosleep);
-  note_real_sleep();
   timespec rest = to_timespec(time > 0 ? time : 0);
   while (real(&rest, &rest) != 0 && errno == EINTR) {
   }

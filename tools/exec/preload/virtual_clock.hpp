@@ -104,7 +104,7 @@ void note_real_time() {
   note_real_time(number);
 }
 
-/// Notes that this thread, which belongs to DDS or does its work, is about to sleep in real time.
+/// Notes that the calling thread is about to sleep in real time, as those of DDS do: the host warns of others.
 void note_real_sleep();
 
 /// Notes that the calling thread is about to do what may wake another one.

@@ -31,7 +31,7 @@ Wait* take_wait() {
     return &wait;
   }
   constexpr char text[] = "cohort exec: too many threads and timers for virtual time\n";
-  (void)!::write(STDERR_FILENO, text, sizeof text - 1);
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, sizeof text - 1);
   return nullptr;
 }
 
@@ -49,7 +49,7 @@ void end_wait(const Ending& ending) {
     case Ending::Kind::none: return;
     case Ending::Kind::write_event: {
       const std::uint64_t one = 1;
-      (void)!::write(ending.descriptor, &one, sizeof one);
+      [[maybe_unused]] const ssize_t written = ::write(ending.descriptor, &one, sizeof one);
       return;
     }
     case Ending::Kind::broadcast: ::pthread_cond_broadcast(static_cast<pthread_cond_t*>(ending.object)); return;

@@ -34,7 +34,7 @@ constexpr std::chrono::milliseconds before_accepting_again{100};
 constexpr std::size_t largest_message = std::size_t{1} << 20;  // from a client [bytes]
 constexpr std::uint32_t largest_header = 8192;
 constexpr std::chrono::seconds request_time{10};
-constexpr bool has_compression = false;  // pages are near, and compiling it takes long
+constexpr bool has_compression = false;  // off unless asked for, and long to compile
 
 constexpr const char* policy_but_for_frames =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
@@ -310,9 +310,9 @@ void WebServer::State::accept() {
 // used longest ago, so that a client that opens many closes only its own. WebSockets stay.
 void WebServer::State::give_way() {
   std::map<asio::ip::address, std::size_t> held;
-  for (const Page* const open : pages) ++held[open->address()];
+  for (const Page* const each : pages) ++held[each->address()];
   const std::size_t most = std::ranges::max_element(held, {}, [](const auto& each) { return each.second; })->second;
-  (*std::ranges::find_if(pages, [&](const Page* open) { return held[open->address()] == most; }))->close();
+  (*std::ranges::find_if(pages, [&](const Page* each) { return held[each->address()] == most; }))->close();
 }
 
 void WebServer::State::pump() {

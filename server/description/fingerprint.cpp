@@ -17,6 +17,8 @@ void add_link(StateHash& hash, const Link& link) {
   add_pose(hash, link.inertial.X_LI);
   hash.add(link.inertial.mass);
   for (const double number : link.inertial.inertia.reshaped()) hash.add(number);
+  if (link.inertial.added_mass)
+    for (const double number : link.inertial.added_mass->reshaped()) hash.add(number);
   add_count(hash, link.collisions.size());
   for (const Collision& collision : link.collisions) {
     add_count(hash, collision.shape.index());

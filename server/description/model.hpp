@@ -70,10 +70,15 @@ struct Visual {
   std::shared_ptr<const Image> texture{};  ///< shown instead of the colour; null if there is none
 };
 
+/// A linear map of spatial vectors: angular, then linear.
+using SpatialMatrix = Eigen::Matrix<double, 6, 6>;
+
 struct Inertial {
   double mass = 1.0;                                      ///< [kg], > 0
   Pose X_LI;                                              ///< I: at the centre of mass, with the axes of `inertia`
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre of mass, in I [kg m^2]
+  /// The inertia of the fluid around the link, about the origin of L, in L [kg m^2], [kg m], [kg]; symmetric.
+  std::shared_ptr<const SpatialMatrix> added_mass{};  ///< null if there is none
 };
 
 /// Returns the colour of a link without a colour of its own.

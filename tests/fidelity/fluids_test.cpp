@@ -629,6 +629,159 @@ TEST_P(Fluids, JointsCarryTheThrustOfARotor) {
   EXPECT_LT((wrench.torque_W - Vector3d(0, -0.3 * thrust, -moment_constant * thrust)).norm(), 1e-9);
 }
 
+// ---- Added mass ----
+
+using description::SpatialMatrix;
+
+// Returns a diagonal matrix by what it adds to the moments of inertia [kg m^2] and to the mass [kg] along each axis.
+std::shared_ptr<SpatialMatrix> added_mass(const Vector3d& moments, const Vector3d& masses) {
+  auto matrix = std::make_shared<SpatialMatrix>(SpatialMatrix::Zero());
+  matrix->diagonal() << moments, masses;
+  return matrix;
+}
+
+TEST_P(Fluids, AddedMassHasInertiaButNoWeight) {
+  SmallWorld small(air());
+  Model model = loose("ball", description::Sphere{0.1}, solid_sphere(1.0, 0.1));
+  model.links[0].inertial.added_mass = added_mass({0, 0, 0}, {1.0, 0.0, 3.0});
+  const auto falling = small.add(model, at(0, 0, 50));
+  const auto lying = small.add(model, turned(0, 5, 50, Vector3d::UnitY(), pi / 2));
+  small.run(0.5);
+  EXPECT_NEAR(small.velocity(falling).z(), -g * 0.5 / 4.0, 1e-9);
+  EXPECT_NEAR(small.velocity(lying).z(), -g * 0.5 / 2.0, 1e-9);
+}
+
+// A push beside the origin of the link, which the matrix is about, turns a ball whose centre is there.
+TEST_P(Fluids, AddedMassIsAboutTheOriginOfItsLink) {
+  SmallWorld small(air());
+  small.description.gravity.setZero();
+  Model model = loose("ball", description::Sphere{0.1}, solid_sphere(1.0, 0.1));
+  const double moment = model.links[0].inertial.inertia(0, 0);
+  const Vector3d arm(0.2, 0, 0);
+  model.links[0].inertial.X_LI.position = arm;
+  model.links[0].inertial.added_mass = added_mass({0, 0, 0}, {0.0, 2.0, 0.0});
+  const auto body = small.add(model, at(0, 0, 5));
+  const double force = 3.0, time = 0.01;
+  small.world().push_body(body, LinkId{0}, {force * Vector3d::UnitY(), Vector3d::Zero()});
+  small.world().step();
+  // Kirchhoff's equations at rest: (m + 2) v - 2 * 0.2 w = f t, of the centre; I w + 2 * 0.2 (0.2 w - v) = 0.
+  const Eigen::Matrix2d inertia{{3.0, -0.4}, {-0.4, moment + 0.08}};
+  const Eigen::Vector2d expected = inertia.inverse() * Eigen::Vector2d(force * time, 0.0);
+  const physics::Twist twist = small.world().link_twist(body, LinkId{0});
+  const Vector3d arm_W = small.world().link_pose(body, LinkId{0}).orientation * arm;
+  EXPECT_NEAR(twist.angular_W.z(), expected[1], 1e-9);
+  EXPECT_NEAR((twist.linear_W + twist.angular_W.cross(arm_W)).y(), expected[0], 1e-9);
+}
+
+// The motion of a body in a fluid at rest, by Kirchhoff's equations in its own axes (Lamb, "Hydrodynamics", 1932,
+// section 124), by the method of Runge and Kutta.
+struct Kirchhoff {
+  Eigen::Matrix<double, 6, 1> velocity;  // angular, then linear
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  SpatialMatrix inertia;
+
+  double energy() const { return 0.5 * velocity.dot(inertia * velocity); }
+  Vector3d momentum_W() const { return rotation * Vector3d((inertia * velocity).tail<3>()); }
+  Eigen::Matrix<double, 6, 1> acceleration(const Eigen::Matrix<double, 6, 1>& at) const {
+    const Eigen::Matrix<double, 6, 1> momentum = inertia * at;
+    const Vector3d w = at.head<3>(), v = at.tail<3>(), h = momentum.head<3>(), p = momentum.tail<3>();
+    Eigen::Matrix<double, 6, 1> rate;
+    rate << h.cross(w) + p.cross(v), p.cross(w);
+    return inertia.inverse() * rate;
+  }
+  void advance(double time) {
+    constexpr double step = 1e-3;
+    for (double t = 0.0; t < time - 0.5 * step; t += step) {
+      const Eigen::Matrix<double, 6, 1> k1 = acceleration(velocity), k2 = acceleration(velocity + 0.5 * step * k1),
+                                        k3 = acceleration(velocity + 0.5 * step * k2),
+                                        k4 = acceleration(velocity + step * k3);
+      const Vector3d turn = step * (velocity + 0.5 * step * k1).head<3>();
+      rotation = (rotation * Eigen::AngleAxisd(turn.norm(), turn.normalized())).normalized();
+      velocity += step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    }
+  }
+};
+
+TEST_P(Fluids, AddedMassTurnsALongBodyAcrossItsWay) {
+  const Vector3d size(1.0, 0.2, 0.2);
+  Model model = loose("hull", Box{size}, solid_box(20.0, size));
+  const auto of_fluid = added_mass({0.1, 1.0, 1.2}, {2.0, 18.0, 15.0});
+  (*of_fluid)(1, 5) = (*of_fluid)(5, 1) = 0.8;
+  model.links[0].inertial.added_mass = of_fluid;
+  Kirchhoff expected;
+  expected.velocity << 0.05, -0.1, 0.1, 1.0, 0.1, 0.05;
+  expected.inertia = *of_fluid;
+  expected.inertia.topLeftCorner<3, 3>() += model.links[0].inertial.inertia;
+  expected.inertia.bottomRightCorner<3, 3>() += 20.0 * Eigen::Matrix3d::Identity();
+  const double energy = expected.energy();
+  const Vector3d momentum_W = expected.momentum_W();
+  expected.advance(3.0);
+  ASSERT_NEAR(expected.energy(), energy, 1e-6 * energy);
+  ASSERT_LT((expected.momentum_W() - momentum_W).norm(), 1e-4 * momentum_W.norm());
+  ASSERT_GT(expected.rotation.angularDistance(Eigen::Quaterniond::Identity()), 0.8) << "the fluid has turned it";
+
+  std::vector<double> errors;
+  for (const double step : {0.01, 0.005}) {
+    SmallWorld small(air());
+    small.description.gravity.setZero();
+    small.description.step = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(step));
+    const auto body = small.add(model, at(0, 0, 5));
+    small.world().set_root_twist(body, {Vector3d(0.05, -0.1, 0.1), Vector3d(1.0, 0.1, 0.05)});
+    small.run(3.0);
+    const Pose X_WL = small.world().link_pose(body, LinkId{0});
+    const physics::Twist twist = small.world().link_twist(body, LinkId{0});
+    Kirchhoff found = expected;
+    found.velocity << X_WL.orientation.conjugate() * twist.angular_W, X_WL.orientation.conjugate() * twist.linear_W;
+    EXPECT_NEAR(found.energy(), energy, 0.01 * energy);
+    errors.push_back(X_WL.orientation.angularDistance(expected.rotation));
+  }
+  EXPECT_LT(errors[0], 0.05);
+  EXPECT_LT(errors[1], 0.6 * errors[0]);
+}
+
+// No torque acts about a hinge. The force on it changes the momentum of the pendulum and of the fluid around it.
+TEST_P(Fluids, JointsFeelAddedMass) {
+  SmallWorld small(air());
+  Model model = anchored();
+  model.links.push_back({"pendulum", at(0, 0, 0), solid_box(2.0, {0.1, 0.1, 0.4}), {}});
+  const Vector3d centre(0, 0, -0.5), masses(3.0, 5.0, 1.0);
+  model.links[1].inertial.X_LI.position = centre;
+  model.links[1].inertial.added_mass = added_mass({0.02, 0.03, 0.04}, masses);
+  model.joints.push_back(joint_of("hinge", description::JointType::revolute, 0, 1, Vector3d::UnitY(), {0, 0, 0.3}));
+  const auto body = small.add(model, at(0, 0, 5));
+  small.world().record(body);
+  const std::vector<double> angle{0.7}, speed{1.5};
+  small.world().set_joint_state(body, JointId{1}, angle, speed);
+  const auto momentum_W = [&] {
+    const physics::Twist twist = small.world().link_twist(body, LinkId{1});
+    const Pose X_WL = small.world().link_pose(body, LinkId{1});
+    const Vector3d linear_L = X_WL.orientation.conjugate() * twist.linear_W;
+    return Vector3d(2.0 * (twist.linear_W + twist.angular_W.cross(X_WL.orientation * centre)) +
+                    X_WL.orientation * Vector3d(masses.cwiseProduct(linear_L)));
+  };
+  small.run(0.2);
+  const Vector3d before = momentum_W();
+  small.world().step();
+  const Vector3d change = (momentum_W() - before) / 0.01;
+  const physics::Wrench wrench = small.world().joint_wrench(body, JointId{1});
+  EXPECT_GT(change.norm(), 10.0);
+  EXPECT_LT((wrench.force_W - (change + Vector3d(0, 0, 2.0 * g))).norm(), 0.02 * change.norm());
+  EXPECT_NEAR(wrench.torque_W.y(), 0.0, 1e-6);
+}
+
+TEST_P(Fluids, ABodyWithAddedMassRestsOnTheGround) {
+  SmallWorld small(water());
+  place(small.description, static_shape("bed", description::Plane{}, {}), "bed", {});
+  const Vector3d size(0.4, 0.2, 0.2);
+  Model model = floating(Box{size}, size.prod(), 1.2, size);
+  model.links[0].inertial.added_mass = added_mass({0.1, 0.3, 0.3}, {4.0, 16.0, 16.0});
+  const auto body = small.add(model, at(0, 0, 0.2));
+  small.description.water->level = 5.0;
+  small.run(10.0);
+  EXPECT_LT(small.velocity(body).norm(), 1e-6);
+  EXPECT_NEAR(small.position(body).z(), 0.1, 1e-3);
+}
+
 // Too many degrees of freedom for the inverse of its mass matrix.
 TEST(FluidsByBothDynamics, AgreeOnATowedChainOfFloats) {
   const auto places_by = [](description::Dynamics dynamics) {
@@ -764,6 +917,9 @@ TEST(PlanarFluids, AreRejected) {
   model = plain;
   model.drags.emplace_back().name = "hull";
   EXPECT_EQ(reason(model, nothing), "model 'box': planar physics does not support drag 'hull'");
+  model = plain;
+  model.links[0].inertial.added_mass = added_mass(Vector3d::Ones(), Vector3d::Ones());
+  EXPECT_EQ(reason(model, nothing), "model 'box': planar physics does not support <fluid_added_mass>");
   model = plain;
   model.links[0].feels_wind = true;
   EXPECT_EQ(reason(model, nothing), "");

@@ -28,7 +28,9 @@ void try_to(const std::string& bytes, const std::string& name, Read&& read) {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it so.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  const auto mesh = [](auto& input, const auto& file) { parsing::read_mesh(input, file, Eigen::Vector3d::Ones()); };
+  const auto mesh = [](auto& input, const auto& file) {
+    parsing::MeshReader().read(input, file, Eigen::Vector3d::Ones());
+  };
   for (const char* const name : {"/a.obj", "/a.stl", "/a.dae", "/a.glb"}) try_to(bytes, name, mesh);
   try_to(bytes, "/a.png",
          [](auto& input, const auto& file) { parsing::read_height_image(input, file, Eigen::Vector3d::Ones()); });

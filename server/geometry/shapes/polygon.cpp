@@ -109,11 +109,10 @@ void expect_simple(const Points& corners) {
                                     text_of_point(corners[j]) + " cross or touch each other");
 }
 
+bool is_lower(const Vector2d& a, const Vector2d& b) { return std::pair(a.y(), a.x()) < std::pair(b.y(), b.x()); }
+
 // Makes the corners counter-clockwise. The polygon is convex at its lowest corner.
 void orient(Points& corners) {
-  const auto is_lower = [](const Vector2d& a, const Vector2d& b) {
-    return std::pair(a.y(), a.x()) < std::pair(b.y(), b.x());
-  };
   const auto lowest = static_cast<std::size_t>(std::ranges::min_element(corners, is_lower) - corners.begin());
   const std::size_t count = corners.size();
   if (side_of(corners[(lowest + count - 1) % count], corners[lowest], corners[(lowest + 1) % count]) < 0)
@@ -121,6 +120,67 @@ void orient(Points& corners) {
 }
 
 using Triangle = std::array<std::uint32_t, 3>;
+using Ring = std::vector<std::uint32_t>;  // indices of corners
+
+const char* const too_large = "the polygon cannot be divided into triangles, because its coordinates are too large";
+
+// Returns whether an edge of a ring crosses the way between two corners.
+bool is_crossed(const Points& corners, const Ring& ring, std::uint32_t from, std::uint32_t to) {
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const std::uint32_t a = ring[i], b = ring[(i + 1) % ring.size()];
+    if (a == from || b == from || a == to || b == to) continue;
+    if (meet(corners[from], corners[to], corners[a], corners[b])) return true;
+  }
+  return false;
+}
+
+// Returns whether a point that is on no edge is in the angle of the polygon at a corner of its counter-clockwise ring.
+bool is_in_angle(const Points& corners, const Ring& ring, std::size_t i, const Vector2d& point) {
+  const Vector2d& before = corners[ring[(i + ring.size() - 1) % ring.size()]];
+  const Vector2d& corner = corners[ring[i]];
+  const Vector2d& after = corners[ring[(i + 1) % ring.size()]];
+  const bool left_of_first = side_of(before, corner, point) > 0;
+  const bool left_of_second = side_of(corner, after, point) > 0;
+  return side_of(before, corner, after) >= 0 ? left_of_first && left_of_second : left_of_first || left_of_second;
+}
+
+// Cuts from the lowest corner of a clockwise hole, which sees a corner of another ring, to the nearest corner of
+// `outer` that is visible from there. No other corner is on the way to that one.
+bool cut_to_hole(const Points& corners, const std::vector<Ring>& rings, const Ring& hole, Ring& outer) {
+  const auto lowest = std::ranges::min_element(
+      hole, [&](std::uint32_t a, std::uint32_t b) { return is_lower(corners[a], corners[b]); });
+  const std::uint32_t from = *lowest;
+  const auto is_visible = [&](std::uint32_t to) {
+    return !is_crossed(corners, outer, from, to) &&
+           std::ranges::none_of(rings, [&](const Ring& ring) { return is_crossed(corners, ring, from, to); });
+  };
+  std::vector<std::size_t> nearest(outer.size());
+  for (std::size_t i = 0; i < nearest.size(); ++i) nearest[i] = i;
+  std::ranges::stable_sort(nearest, {},
+                           [&](std::size_t i) { return (corners[outer[i]] - corners[from]).squaredNorm(); });
+  for (const std::size_t i : nearest) {
+    if (!is_in_angle(corners, outer, i, corners[from]) || !is_visible(outer[i])) continue;
+    Ring way(lowest, hole.end());
+    way.insert(way.end(), hole.begin(), lowest);
+    way.push_back(from);
+    way.push_back(outer[i]);
+    outer.insert(outer.begin() + static_cast<std::ptrdiff_t>(i) + 1, way.begin(), way.end());
+    return true;
+  }
+  return false;
+}
+
+// Returns one ring around the polygon, which is the first ring, and its holes. A hole that sees only other holes waits
+// for them.
+Ring with_cuts(const Points& corners, const std::vector<Ring>& rings) {
+  Ring outer = rings.front();
+  std::vector<const Ring*> holes;
+  for (std::size_t i = 1; i < rings.size(); ++i) holes.push_back(&rings[i]);
+  while (!holes.empty())
+    if (std::erase_if(holes, [&](const Ring* hole) { return cut_to_hole(corners, rings, *hole, outer); }) == 0)
+      throw std::invalid_argument(too_large);
+  return outer;
+}
 
 // Returns whether a triangle of three consecutive corners can be cut off.
 bool is_ear(const Points& corners, const std::vector<std::uint32_t>& ring, const Triangle& ear) {
@@ -133,10 +193,8 @@ bool is_ear(const Points& corners, const std::vector<std::uint32_t>& ring, const
   });
 }
 
-// Returns the triangles of a simple polygon with counter-clockwise corners.
-std::vector<Triangle> triangles_of(const Points& corners) {
-  std::vector<std::uint32_t> ring(corners.size());
-  for (std::uint32_t i = 0; i < ring.size(); ++i) ring[i] = i;
+// Returns the triangles of a polygon with counter-clockwise corners.
+std::vector<Triangle> triangles_of(const Points& corners, Ring ring) {
   std::vector<Triangle> triangles;
   while (ring.size() > 2) {
     const std::size_t count = ring.size();
@@ -147,9 +205,7 @@ std::vector<Triangle> triangles_of(const Points& corners) {
       ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(i));
       break;
     }
-    if (ring.size() == count)
-      throw std::invalid_argument(
-          "the polygon cannot be divided into triangles, because its coordinates are too large");
+    if (ring.size() == count) throw std::invalid_argument(too_large);
   }
   return triangles;
 }
@@ -169,26 +225,40 @@ bool contains(const Points& polygon, const Vector2d& point) {
 
 }  // namespace
 
-description::TriangleMesh extruded(const std::vector<Vector2d>& polygon, double height) {
-  if (polygon.size() > most_polygon_points)
-    throw std::invalid_argument("the polygon has " + std::to_string(polygon.size()) + " points; expected at most " +
+description::TriangleMesh extruded(const Points& polygon, const std::vector<Points>& holes, double height) {
+  std::size_t points = polygon.size();
+  for (const Points& hole : holes) points += hole.size();
+  if (points > most_polygon_points)
+    throw std::invalid_argument("the polygon has " + std::to_string(points) + " points; expected at most " +
                                 std::to_string(most_polygon_points));
-  Points corners = corners_of(polygon);
-  expect_simple(corners);
-  orient(corners);
+  Points corners;
+  std::vector<Ring> rings;
+  const auto add_ring = [&](const Points& outline, bool is_hole) {
+    Points own = corners_of(outline);
+    expect_simple(own);
+    orient(own);
+    if (is_hole) std::ranges::reverse(own);
+    Ring& ring = rings.emplace_back();
+    for (std::size_t i = 0; i < own.size(); ++i) ring.push_back(static_cast<std::uint32_t>(corners.size() + i));
+    corners.insert(corners.end(), own.begin(), own.end());
+  };
+  add_ring(polygon, false);
+  for (const Points& hole : holes) add_ring(hole, true);
+
   description::TriangleMesh mesh;
   const auto count = static_cast<std::uint32_t>(corners.size());
   for (const double z : {0.0, height})
     for (const Vector2d& corner : corners) mesh.vertices.emplace_back(corner.x(), corner.y(), z);
-  for (const auto& [a, b, c] : triangles_of(corners)) {
+  for (const auto& [a, b, c] : triangles_of(corners, with_cuts(corners, rings))) {
     mesh.triangles.push_back({a, c, b});
     mesh.triangles.push_back({count + a, count + b, count + c});
   }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t next = (i + 1) % count;
-    mesh.triangles.push_back({i, next, count + next});
-    mesh.triangles.push_back({i, count + next, count + i});
-  }
+  for (const Ring& ring : rings)
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const std::uint32_t a = ring[i], next = ring[(i + 1) % ring.size()];
+      mesh.triangles.push_back({a, next, count + next});
+      mesh.triangles.push_back({a, count + next, count + a});
+    }
   return mesh;
 }
 

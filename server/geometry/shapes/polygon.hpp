@@ -12,12 +12,15 @@ namespace cohort::geometry {
 /// Clipping ears takes a time that may grow with the cube of the number of points.
 inline constexpr std::size_t most_polygon_points = 1000;
 
-/// Returns the polygon extruded along z, from 0 to `height`, as a closed mesh. Points on a straight line between others
-/// are left out. Throws std::invalid_argument with the flaw of a polygon that is not simple, has no area, or has
-/// more than `most_polygon_points`.
+/// Returns the polygon without its holes, extruded along z from 0 to `height`, as a closed mesh. Points on a straight
+/// line between others are left out. The holes are inside the polygon, and none is inside of another. Throws
+/// std::invalid_argument with the flaw of a polygon that is not simple, has no area, or has more than
+/// `most_polygon_points`.
 ///
-/// Ear clipping (Meisters, "Polygons have ears", American Mathematical Monthly 82(6), 1975).
-description::TriangleMesh extruded(const std::vector<Eigen::Vector2d>& polygon, double height);
+/// Ear clipping (Meisters, "Polygons have ears", American Mathematical Monthly 82(6), 1975). Before it, a cut from each
+/// hole to the nearest corner that is visible from there makes one polygon of all.
+description::TriangleMesh extruded(const std::vector<Eigen::Vector2d>& polygon,
+                                   const std::vector<std::vector<Eigen::Vector2d>>& holes, double height);
 
 enum class PolygonPlace { apart, inside, around, crossing };
 

@@ -25,6 +25,7 @@ constexpr int has_finished = 0;
 constexpr int is_out_of_memory = 70;
 constexpr int cannot_be_limited = 71;
 constexpr int has_thrown = 72;
+constexpr int cannot_be_copied = 73;
 
 // ---- In the child ----
 
@@ -81,19 +82,56 @@ int leave_files_of_parent(int socket) {
   return socket;
 }
 
-[[noreturn]] void be_child(int socket, pid_t parent, const ChildLimits& limits, const LimitedChild::Work& work) {
+void die_with(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(cannot_be_limited);  // it has died meanwhile
-  prctl(PR_SET_DUMPABLE, 0);                          // no core files
-  leave_signals_of_parent();
-  ChildStream stream(leave_files_of_parent(socket));
+}
+
+// The process ends without destructors, which are the parent's.
+[[noreturn]] void do_work(ChildStream& stream, const ChildLimits& limits, const LimitedChild::Work& work) {
   if (!set_limits(limits)) _exit(cannot_be_limited);
   try {
     work(stream);
   } catch (...) {
     _exit(has_thrown);
   }
-  _exit(has_finished);  // without destructors, which are the parent's
+  _exit(has_finished);
+}
+
+// Ends this process as one with this status has ended.
+[[noreturn]] void end_like(int status) {
+  if (WIFSIGNALED(status)) kill(getpid(), WTERMSIG(status));
+  _exit(WIFEXITED(status) ? WEXITSTATUS(status) : has_thrown);
+}
+
+[[noreturn]] void do_work_many_times(ChildStream& stream, const ChildLimits& limits, const LimitedChild::Work& work) {
+  try {
+    while (true) {
+      stream.receive<char>();
+      const pid_t parent = getpid();
+      const pid_t copy = fork();
+      if (copy < 0) _exit(cannot_be_copied);
+      if (copy == 0) {
+        die_with(parent);
+        do_work(stream, limits, work);
+      }
+      int status = 0;
+      while (waitpid(copy, &status, 0) < 0 && errno == EINTR) continue;
+      if (status != 0) end_like(status);
+    }
+  } catch (const ChildStream::Lost&) {  // no more work
+    _exit(has_finished);
+  }
+}
+
+[[noreturn]] void be_child(int socket, pid_t parent, const ChildLimits& limits, const LimitedChild::Work& work,
+                           LimitedChild::Times times) {
+  die_with(parent);
+  prctl(PR_SET_DUMPABLE, 0);  // no core files
+  leave_signals_of_parent();
+  ChildStream stream(leave_files_of_parent(socket));
+  if (times == LimitedChild::Times::many) do_work_many_times(stream, limits, work);
+  do_work(stream, limits, work);
 }
 
 // ---- In the parent ----
@@ -115,6 +153,7 @@ std::string why_ended(int status, const ChildLimits& limits) {
   if (code == is_out_of_memory) return "needed more than " + text_of(limits.memory) + " of memory";
   if (code == cannot_be_limited)
     return "could not be started with limits on its memory and time; check that /proc is mounted";
+  if (code == cannot_be_copied) return "could not be started; check the limits of processes (ulimit -u) and of memory";
   return "crashed (exit code " + std::to_string(code) + ")";
 }
 
@@ -152,13 +191,14 @@ LimitedChild::Ends::Ends() {
   of_child = ends[1];
 }
 
-LimitedChild::LimitedChild(const ChildLimits& limits, const Work& work) : LimitedChild(Ends(), limits, work) {}
+LimitedChild::LimitedChild(const ChildLimits& limits, const Work& work, Times times)
+    : LimitedChild(Ends(), limits, work, times) {}
 
-LimitedChild::LimitedChild(Ends ends, const ChildLimits& limits, const Work& work)
+LimitedChild::LimitedChild(Ends ends, const ChildLimits& limits, const Work& work, Times times)
     : limits_(limits), stream_(ends.of_parent) {
   const pid_t parent = getpid();
   process_ = fork();
-  if (process_ == 0) be_child(ends.of_child, parent, limits, work);
+  if (process_ == 0) be_child(ends.of_child, parent, limits, work, times);
   const int error = errno;
   close(ends.of_child);
   if (process_ < 0 && error == EAGAIN) throw ThreadLimit("a process");

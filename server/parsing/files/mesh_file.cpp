@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "server/parsing/files/limited_child.hpp"
 #include "server/parsing/files/mesh_import.hpp"
 
 namespace cohort::parsing {
@@ -59,12 +59,11 @@ std::vector<Item> receive_items(ChildStream& stream) {
 
 // ---- In the importer's process ----
 
-// The file of the mesh is in the memory that both processes share. All other files come from the parent, which keeps
-// what it reads.
+// The files come from the parent, which keeps what it reads.
 class SourcesOfParent : public MeshSources {
  public:
-  SourcesOfParent(ChildStream& stream, std::string file, const std::string& content)
-      : stream_(stream), file_(std::move(file)), content_(content) {}
+  SourcesOfParent(ChildStream& stream, std::string file, std::string content)
+      : stream_(stream), file_(std::move(file)), content_(std::move(content)) {}
 
   bool is_file(const std::string& file) override {
     if (file == file_) return true;
@@ -89,14 +88,18 @@ class SourcesOfParent : public MeshSources {
 
   ChildStream& stream_;
   std::string file_;
-  const std::string& content_;
+  std::string content_;
   std::map<std::string, std::string> others_;
 };
 
-void import_and_send(ChildStream& stream, MeshSources& sources, const std::filesystem::path& file,
-                     const Eigen::Vector3d& scale, const MeshPart& which) {
+void import_and_send(ChildStream& stream) {
+  const auto scale = stream.receive<std::array<double, 3>>();
+  const auto is_centered = stream.receive<bool>();
+  const std::string submesh = receive_text(stream);
+  const std::string file = receive_text(stream);
+  SourcesOfParent sources(stream, file, receive_text(stream, std::numeric_limits<std::uint64_t>::max()));
   try {
-    const ImportedMesh mesh = import_mesh(sources, file, scale, which);
+    const ImportedMesh mesh = import_mesh(sources, file, Eigen::Vector3d(scale.data()), {submesh, is_centered});
     stream.send(Message::mesh);
     send_items(stream, mesh.vertices);
     send_items(stream, mesh.triangles);
@@ -189,21 +192,29 @@ const std::string& content_of(InputFiles& input, const std::filesystem::path& fi
 
 }  // namespace
 
-ImportedMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale,
-                       const MeshPart& which) {
+ImportedMesh MeshReader::read(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale,
+                              const MeshPart& which) {
   check_format(file);
   const std::string& content = content_of(input, file);
-  LimitedChild importer({}, [&](ChildStream& stream) {
-    SourcesOfParent sources(stream, file.string(), content);
-    import_and_send(stream, sources, file, scale, which);
-  });
+  // Kept for the next file only if this one is read: otherwise, half a message may be on its way.
+  std::unique_ptr<LimitedChild> importer = std::move(importer_);
+  if (!importer) importer = std::make_unique<LimitedChild>(ChildLimits(), &import_and_send, LimitedChild::Times::many);
   const auto failed = [&](const std::string& why) {
     return ImporterFailed("'" + file.string() + "' cannot be imported: the importer " + why);
   };
+  ChildStream& stream = importer->stream();
   try {
-    return answer_until_mesh(importer.stream(), input);
+    importer->begin();
+    stream.send(std::array{scale.x(), scale.y(), scale.z()});
+    stream.send(which.is_centered);
+    send_text(stream, which.submesh);
+    send_text(stream, file.string());
+    send_text(stream, content, content.size());
+    ImportedMesh mesh = answer_until_mesh(stream, input);
+    importer_ = std::move(importer);
+    return mesh;
   } catch (const ChildStream::Lost&) {
-    throw failed(importer.end());
+    throw failed(importer->end());
   } catch (const Garbled& error) {
     throw failed(error.what());
   }

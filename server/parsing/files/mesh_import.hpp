@@ -36,7 +36,7 @@ struct MeshPart {
   bool is_centered = false;  ///< the centre of its bounding box is moved to the origin
 };
 
-/// Does the same as read_mesh in this process: a malicious file can crash Assimp, or make it exhaust the memory.
+/// Does the same as MeshReader in this process: a malicious file can crash Assimp, or make it exhaust the memory.
 ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale,
                          const MeshPart& which = {});
 

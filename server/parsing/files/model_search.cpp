@@ -255,16 +255,15 @@ fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder, bo
       path = *beside;
     else
       is_model ? fail_to_find(name) : fail_to_find_file(inside, folder);
-  } else if (uri.starts_with(file_scheme)) {
-    path = uri.substr(file_scheme.size());
-  } else if (uri.find("://") != std::string::npos) {
+  } else if (!uri.starts_with(file_scheme) && uri.find("://") != std::string::npos) {
     path = find_fetched(uri);
   } else {
-    path = folder / uri;
-    const std::size_t slash = std::min(uri.find('/'), uri.size());
-    if (uri.find_first_not_of('.') < slash && !input_.is_file(path) && !input_.is_folder(path))
-      if (const fs::path rest = fs::path(uri.substr(slash)).relative_path();
-          const auto found = look_for(uri.substr(0, slash), folder, rest))
+    const std::string written = uri.starts_with(file_scheme) ? uri.substr(file_scheme.size()) : uri;
+    path = folder / written;
+    const std::size_t slash = std::min(written.find('/'), written.size());
+    if (written.find_first_not_of('.') < slash && !input_.is_file(path) && !input_.is_folder(path))
+      if (const fs::path rest = fs::path(written.substr(slash)).relative_path();
+          const auto found = look_for(written.substr(0, slash), folder, rest))
         path = *found / rest;
   }
   path = path.lexically_normal();

@@ -11,9 +11,9 @@ namespace fs = std::filesystem;
 
 constexpr int levels_above = 4;
 // Usual folders for files of worlds and models, in Cohort, Gazebo and ROS.
-constexpr const char* usual_names[] = {"arenas", "experiments", "launch",  "materials", "media",
-                                       "meshes", "models",      "objects", "robots",    "samples",
-                                       "sdf",    "urdf",        "worlds",  "xacro",     "description"};
+constexpr const char* usual_names[] = {"arenas",  "assets", "description", "experiments", "launch",  "materials",
+                                       "media",   "mesh",   "meshes",      "models",      "objects", "robots",
+                                       "samples", "sdf",    "urdf",        "worlds",      "xacro"};
 
 bool is_below(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();

@@ -46,7 +46,7 @@ Light read_light_values(const Element* element, const SdfReport& report) {
   else if (written.norm() > 0.0 && written.allFinite())
     light.direction_E = written.normalized();
   else if (direction)
-    report.problem(direction, "expected a direction that is not zero");
+    report.flaw(direction, "expected a direction that is not zero", "the default direction is used");
   if (light.kind == Light::Kind::spot) {
     // SDF gives full cone angles.
     light.inner_angle = 0.5 * number(find(element, {"spot", "inner_angle"}), 0.0, report);

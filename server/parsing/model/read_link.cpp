@@ -1,9 +1,11 @@
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "server/geometry/shapes/convex_hull.hpp"
@@ -132,6 +134,40 @@ Inertial read_written_inertial(const Element* element, const Link& link, const S
     inertial.inertia = 0.5 * (nearest + nearest.transpose());
   }
   return inertial;
+}
+
+// Returns the spatial inertia of a link about its origin.
+SpatialMatrix spatial_inertia(const Inertial& inertial) {
+  const Eigen::Matrix3d R = inertial.X_LI.orientation.toRotationMatrix();
+  const Eigen::Vector3d& centre = inertial.X_LI.position;
+  Eigen::Matrix3d cross;
+  cross << 0.0, -centre.z(), centre.y(), centre.z(), 0.0, -centre.x(), -centre.y(), centre.x(), 0.0;
+  SpatialMatrix matrix;
+  matrix << R * inertial.inertia * R.transpose() - inertial.mass * cross * cross, inertial.mass * cross,
+      -inertial.mass * cross, inertial.mass * Eigen::Matrix3d::Identity();
+  return matrix;
+}
+
+// Reads the upper triangle of a matrix in the order of SDF: x, y, z, then the rotations p, q, r about them.
+std::shared_ptr<const SpatialMatrix> read_added_mass(const Element& link, const Inertial& inertial,
+                                                     const SdfReport& report) {
+  const Element* const element = find(&link, {"inertial", "fluid_added_mass"});
+  if (element == nullptr) return nullptr;
+  constexpr std::string_view axes = "pqrxyz";
+  constexpr std::string_view order = "xyzpqr";
+  SpatialMatrix matrix;
+  for (int i = 0; i < matrix.rows(); ++i) {
+    for (int j = 0; j < matrix.cols(); ++j) {
+      std::string name{axes[static_cast<std::size_t>(i)], axes[static_cast<std::size_t>(j)]};
+      if (order.find(name[0]) > order.find(name[1])) std::swap(name[0], name[1]);
+      matrix(i, j) = element->real(name);
+    }
+  }
+  if (matrix.isZero(0.0)) return nullptr;
+  const Eigen::LLT<SpatialMatrix> whole(spatial_inertia(inertial) + matrix);
+  if (!matrix.allFinite() || whole.info() != Eigen::Success)
+    report.problem(element, "expected a matrix that makes the inertia of the link positive definite");
+  return std::make_shared<const SpatialMatrix>(matrix);
 }
 
 // Returns <cohort:density> of a link or a collision; nothing if it has none.
@@ -354,6 +390,7 @@ Link read_link(const Element& element, const Frames& frames, const ModelReading&
   link.is_kinematic = element.flag("kinematic");
   const auto computed = read_inertial_from_density(&element, link, reading.report);
   link.inertial = computed ? *computed : read_written_inertial(&element, link, reading.report);
+  link.inertial.added_mass = read_added_mass(element, link.inertial, reading.report);
   return link;
 }
 

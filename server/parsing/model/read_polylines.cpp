@@ -14,6 +14,7 @@ namespace {
 struct ReadPolyline {
   const Element* element;
   Polyline polyline;
+  int depth = 0;  // number of others around it; if it is odd, this is a hole
 };
 
 // Returns nothing if a number is NaN.
@@ -38,32 +39,43 @@ void append(const TriangleMesh& one, TriangleMesh& all) {
   for (const auto& [a, b, c] : one.triangles) all.triangles.push_back({first + a, first + b, first + c});
 }
 
-// Adds a polyline to those that do not contain each other.
-void add_apart(ReadPolyline added, const SdfReport* report, std::vector<ReadPolyline>& polylines) {
-  const auto leave_out = [&](const Element* element) {
-    if (report != nullptr)
-      report->warning(element, "lies inside another <polyline>; holes are not supported, and this one is filled");
-  };
-  std::vector<ReadPolyline> apart;
-  for (ReadPolyline& other : polylines) {
-    switch (geometry::place_of_polygon(added.polyline.points, other.polyline.points)) {
-      case geometry::PolygonPlace::crossing:
-        throw PolylineFlaw(added.element, "crosses or touches another <polyline> of the <geometry>");
-      case geometry::PolygonPlace::inside: return leave_out(added.element);
-      case geometry::PolygonPlace::around: leave_out(other.element); break;
-      case geometry::PolygonPlace::apart: apart.push_back(other); break;
-    }
-  }
-  apart.push_back(std::move(added));
-  polylines = std::move(apart);
-}
-
-TriangleMesh extruded_polyline(const ReadPolyline& read) {
+TriangleMesh extruded_polyline(const ReadPolyline& read, const std::vector<std::vector<Eigen::Vector2d>>& holes = {}) {
   try {
-    return geometry::extruded(read.polyline.points, read.polyline.height);
+    return geometry::extruded(read.polyline.points, holes, read.polyline.height);
   } catch (const std::invalid_argument& error) {
     throw PolylineFlaw(read.element, error.what());
   }
+}
+
+// Counts the others around the last polyline, and counts it for the others inside it.
+void nest(std::vector<ReadPolyline>& polylines) {
+  ReadPolyline& added = polylines.back();
+  for (ReadPolyline& other : polylines) {
+    if (&other == &added) continue;
+    switch (geometry::place_of_polygon(added.polyline.points, other.polyline.points)) {
+      case geometry::PolygonPlace::crossing:
+        throw PolylineFlaw(added.element, "crosses or touches another <polyline> of the <geometry>");
+      case geometry::PolygonPlace::inside: ++added.depth; break;
+      case geometry::PolygonPlace::around: ++other.depth; break;
+      case geometry::PolygonPlace::apart: break;
+    }
+  }
+}
+
+// Returns the holes of a polyline: those inside it that are inside no other hole of it.
+std::vector<std::vector<Eigen::Vector2d>> holes_of(const ReadPolyline& outer,
+                                                   const std::vector<ReadPolyline>& polylines,
+                                                   const SdfReport* report) {
+  std::vector<std::vector<Eigen::Vector2d>> holes;
+  for (const ReadPolyline& each : polylines) {
+    if (each.depth != outer.depth + 1 ||
+        geometry::place_of_polygon(each.polyline.points, outer.polyline.points) != geometry::PolygonPlace::inside)
+      continue;
+    if (report != nullptr && each.polyline.height != outer.polyline.height)
+      report->warning(each.element, "is a hole of another <polyline>; it has the height of that one");
+    holes.push_back(each.polyline.points);
+  }
+  return holes;
 }
 
 }  // namespace
@@ -78,11 +90,13 @@ std::optional<TriangleMesh> read_polylines(const Element& geometry, bool convex,
     if (points > geometry::most_polygon_points)
       throw PolylineFlaw(element, "expected at most " + std::to_string(geometry::most_polygon_points) +
                                       " points in all polylines of a <geometry>");
-    static_cast<void>(extruded_polyline({element, *polyline}));  // it must be valid to be compared
-    add_apart({element, *polyline}, report, polylines);
+    polylines.push_back({element, *polyline});
+    static_cast<void>(extruded_polyline(polylines.back()));  // it must be valid to be compared
+    nest(polylines);
   }
   TriangleMesh mesh;
-  for (const ReadPolyline& each : polylines) append(extruded_polyline(each), mesh);
+  for (const ReadPolyline& each : polylines)
+    if (each.depth % 2 == 0) append(extruded_polyline(each, holes_of(each, polylines, report)), mesh);
   if (convex) {
     try {
       mesh = geometry::convex_hull(mesh.vertices);

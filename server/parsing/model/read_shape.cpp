@@ -48,7 +48,8 @@ std::optional<Shape> replaced_mesh(const Element* uri, const std::string& proble
     case MissingMesh::skip: reading.report.warning_once(uri, problem + "; " + left_out); return std::nullopt;
     case MissingMesh::refused: break;
   }
-  report_lost(uri, problem, reading);
+  const bool has_remedy = !reading.is_static && reading.shape_files.is_missing(uri);
+  report_lost(uri, problem + (has_remedy ? "; --missing-meshes box or skip reads the model without it" : ""), reading);
   return std::nullopt;
 }
 
@@ -204,8 +205,12 @@ std::optional<Shape> read_shape(const Element& geometry, const ModelReading& rea
     if (shape->name() == "polyline") return read_polyline_shape(geometry, reading);
     if (shape->name() == "heightmap") return read_heightmap(*shape, reading);
   }
-  const Element* const kind =
-      geometry.name() == "geometry" && !geometry.children().empty() ? geometry.children().front() : nullptr;
+  if (geometry.name() != "geometry") {
+    reading.report.flaw(&geometry, "missing: <geometry>", left_out);
+    return std::nullopt;
+  }
+  const Element* const kind = !geometry.children().empty() ? geometry.children().front() : nullptr;
+  if (kind != nullptr && kind->rule() != nullptr) return std::nullopt;  // <empty>
   report_lost(
       &geometry,
       (kind != nullptr ? "<" + kind->name() + "> is not supported; expected " : "expected ") + std::string(geometries),

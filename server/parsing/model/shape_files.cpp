@@ -7,7 +7,6 @@
 
 #include "server/geometry/shapes/convex_hull.hpp"
 #include "server/parsing/files/height_image.hpp"
-#include "server/parsing/files/mesh_file.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -52,9 +51,13 @@ std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const Element* uri, const E
   const std::filesystem::path file = files_.find_file(uri);
   ReadMesh& mesh = meshes_[key_of(file, which, scale, convex)];
   if (mesh.triangles) return mesh.triangles;
-  ImportedMesh read = read_mesh(files_.input(), file, scale, which);
-  TriangleMesh triangles = convex ? hull_of(read, file, uri->node().file->is_foreign)
-                                  : TriangleMesh(std::move(static_cast<TriangleMesh&>(read)));
+  const auto whole = convex ? meshes_.find(key_of(file, which, scale, false)) : meshes_.end();
+  const bool is_read = whole != meshes_.end() && whole->second.triangles != nullptr;
+  ImportedMesh read;
+  if (!is_read) read = reader_.read(files_.input(), file, scale, which);
+  TriangleMesh triangles = convex
+                               ? hull_of(is_read ? *whole->second.triangles : read, file, uri->node().file->is_foreign)
+                               : TriangleMesh(std::move(static_cast<TriangleMesh&>(read)));
   triangles.file = file;
   triangles.scale = scale;
   triangles.submesh = which.submesh;
@@ -64,11 +67,16 @@ std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const Element* uri, const E
   return mesh.triangles;
 }
 
-MissingMesh ShapeFiles::replacement_of(const Element* uri) {
+bool ShapeFiles::is_missing(const Element* uri) const {
   try {
-    if (files_.input().is_file(files_.find_file(uri))) return MissingMesh::refused;
+    return !files_.input().is_file(files_.find_file(uri));
   } catch (const std::runtime_error&) {  // no place is known for it
+    return true;
   }
+}
+
+MissingMesh ShapeFiles::replacement_of(const Element* uri) {
+  if (!is_missing(uri)) return MissingMesh::refused;
   std::pair mesh(uri->node().file->path.parent_path(), uri->text());
   const MissingMesh replacement = replacement_of_mesh(files_.input(), mesh.first, mesh.second);
   if (replacement != MissingMesh::refused) replaced_.insert(std::move(mesh));

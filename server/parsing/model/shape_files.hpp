@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/description/shape.hpp"
+#include "server/parsing/files/mesh_file.hpp"
 #include "server/parsing/files/mesh_import.hpp"
 #include "server/parsing/files/missing_meshes.hpp"
 #include "server/parsing/files/sample_file.hpp"
@@ -37,6 +38,7 @@ class ShapeFiles {
   std::shared_ptr<const TriangleMesh> mesh(const Element* uri, const Eigen::Vector3d& scale, bool convex,
                                            const MeshPart& which = {});
 
+  bool is_missing(const Element* uri) const;  ///< returns whether a mesh has no file
   /// Returns what takes the place of the mesh that `uri` names, which could not be read; always an error if it exists.
   MissingMesh replacement_of(const Element* uri);
   /// Returns the number of meshes with a replacement.
@@ -61,6 +63,7 @@ class ShapeFiles {
 
   const SdfFiles& files_;
   ImageFiles images_;
+  MeshReader reader_;
   /// A file, the part of it, its scale, and whether the mesh is convex.
   using MeshKey = std::tuple<std::filesystem::path, std::string, bool, double, double, double, bool>;
   static MeshKey key_of(const std::filesystem::path& file, const MeshPart& which, const Eigen::Vector3d& scale,

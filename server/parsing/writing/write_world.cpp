@@ -1,7 +1,9 @@
 #include "server/parsing/writing/write_world.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "server/parsing/files/sdf_version.hpp"
@@ -161,6 +163,15 @@ class WorldWriter {
     for (const Device& device : model.devices) write_device(element, model, device, folder_);
   }
 
+  static void write_added_mass(XmlNode& inertial, const SpatialMatrix& added_mass) {
+    XmlNode& element = add(inertial, "fluid_added_mass");
+    constexpr std::string_view axes = "xyzpqr";
+    constexpr std::array<int, axes.size()> in_matrix = {3, 4, 5, 0, 1, 2};
+    for (std::size_t row = 0; row < axes.size(); ++row)
+      for (std::size_t column = row; column < axes.size(); ++column)
+        add_value(element, std::string{axes[row], axes[column]}, added_mass(in_matrix[row], in_matrix[column]));
+  }
+
   void write_link(XmlNode& parent, const Model& model, std::size_t index) const {
     const Link& link = model.links[index];
     const bool is_static = model.is_static;
@@ -178,6 +189,7 @@ class WorldWriter {
       for (int row = 0; row < 3; ++row)
         for (int column = row; column < 3; ++column)
           add_value(inertia, std::string("i") + axes[row] + axes[column], link.inertial.inertia(row, column));
+      if (link.inertial.added_mass) write_added_mass(inertial, *link.inertial.added_mass);
     }
     if (link.color != default_color()) {
       XmlNode& visual = add_named(element, "visual", "color");

@@ -8,12 +8,6 @@ using Eigen::Vector3d;
 
 constexpr int free_root = 6;  // its degrees of freedom
 
-Matrix3d cross_matrix(const Vector3d& v) {
-  Matrix3d matrix;
-  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return matrix;
-}
-
 }  // namespace
 
 void ArticulatedBody::set_up(const BodyMotion& body, const std::vector<double>& added_inertia, double share) {
@@ -64,7 +58,8 @@ void ArticulatedBody::move_outwards(const BodyMotion& body) {
       part.joint_velocity += body.velocities()[i] * axes_.col(i);
     find_drifts(part);
     part.velocity += part.joint_velocity;
-    find_force(segment, X_WS, R, part);
+    const auto& added_masses = body.mechanism().added_masses();
+    find_force(segment, X_WS, R, added_masses.empty() ? nullptr : &added_masses[s], part);
   }
 }
 
@@ -103,7 +98,8 @@ void ArticulatedBody::find_drifts(const Part& part) {
 }
 
 // Computes H of the segment alone. Its force is I a + v x I v; dv changes both factors of the second term.
-void ArticulatedBody::find_force(const Segment& segment, const Pose& X_WS, const Matrix3d& R, Part& part) const {
+void ArticulatedBody::find_force(const Segment& segment, const Pose& X_WS, const Matrix3d& R,
+                                 const SpatialMatrix* added_mass, Part& part) const {
   const Vector3d arm = X_WS.position + R * segment.centre_S - part.point_W;
   const Matrix3d moment = cross_matrix(segment.mass * arm);
   Matrix6 inertia;
@@ -112,6 +108,7 @@ void ArticulatedBody::find_force(const Segment& segment, const Pose& X_WS, const
   inertia.topRightCorner<3, 3>() = moment;
   inertia.bottomLeftCorner<3, 3>() = -moment;
   inertia.bottomRightCorner<3, 3>() = segment.mass * Matrix3d::Identity();
+  if (added_mass != nullptr) inertia += moved_inertia(*added_mass, X_WS, part.point_W);
   part.force.leftCols<6>() = inertia;
   part.force.rightCols<6>() = inertia;
   if (share_ == 0.0) return;

@@ -9,6 +9,9 @@ void BiasForces::set_up(const BodyMotion& body, const std::vector<Spatial>& axes
   axes_ = &axes;
   inertias_.resize(mechanism_->segments().size());
   motions_.resize(inertias_.size());
+  added_masses_ = mechanism_->added_masses();
+  for (std::size_t s = 0; s < added_masses_.size(); ++s)
+    added_masses_[s] = moved_inertia(added_masses_[s], body.segment_pose(static_cast<int>(s)), body.reference());
   for (std::size_t s = 0; s < inertias_.size(); ++s) {
     const Segment& segment = mechanism_->segments()[s];
     const Pose& X_WS = body.segment_pose(static_cast<int>(s));
@@ -65,6 +68,7 @@ void BiasForces::move_outwards(const double* velocities, const Vector3d& gravity
           motion.velocity.angular.cross(joint.linear) + motion.velocity.linear.cross(joint.angular);
     }
     take_force(motion, inertias_[s]);
+    if (!added_masses_.empty()) add_force_of_fluid(motion, added_masses_[s], gravity);
   }
 }
 
@@ -74,10 +78,20 @@ void BiasForces::take_force(SegmentMotion& motion, const SpatialInertia& segment
   const Vector3d angular_momentum = segment.inertia * v.angular + segment.moment.cross(v.linear);
   const Vector3d linear_momentum = segment.mass * v.linear - segment.moment.cross(v.angular);
   const Vector3d gyroscopic =
-      mechanism_->is_free_body() ? Vector3d(Vector3d::Zero()) : Vector3d(v.angular.cross(angular_momentum));
+      mechanism_->turns_freely() ? Vector3d(Vector3d::Zero()) : Vector3d(v.angular.cross(angular_momentum));
   motion.force.angular =
       segment.inertia * a.angular + segment.moment.cross(a.linear) + gyroscopic + v.linear.cross(linear_momentum);
   motion.force.linear = segment.mass * a.linear - segment.moment.cross(a.angular) + v.angular.cross(linear_momentum);
+}
+
+void BiasForces::add_force_of_fluid(SegmentMotion& motion, const SpatialMatrix& added_mass, const Vector3d& gravity) {
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  const Spatial& v = motion.velocity;
+  const Spatial& a = motion.acceleration;
+  const Vector6 momentum = added_mass * (Vector6() << v.angular, v.linear).finished();
+  const Vector6 force = added_mass * (Vector6() << a.angular, a.linear + gravity).finished();
+  motion.force.angular += force.head<3>() + v.angular.cross(momentum.head<3>()) + v.linear.cross(momentum.tail<3>());
+  motion.force.linear += force.tail<3>() + v.angular.cross(momentum.tail<3>());
 }
 
 }  // namespace cohort::physics

@@ -25,9 +25,12 @@ class BiasForces {
   /// object.
   void set_up(const BodyMotion& body, const std::vector<Spatial>& axes);
   const std::vector<SpatialInertia>& inertias() const { return inertias_; }  ///< by segment
+  /// Returns, by segment, the inertia of the fluid around it, about the reference point; empty if there is none.
+  const std::vector<SpatialMatrix>& added_masses() const { return added_masses_; }
 
   /// Computes the generalised bias force by dof [N] or [N m] for these velocities under `gravity` [m/s^2]. The
-  /// gyroscopic torque of a free rigid body is not included: `integrate` handles its rotation.
+  /// gyroscopic torque of a body that turns freely is not included: `integrate` handles its rotation. Added mass has
+  /// inertia but no weight (Fossen, "Handbook of marine craft hydrodynamics and motion control", 2011, chapter 6).
   void find(const double* velocities, const Eigen::Vector3d& gravity, double* forces);
 
  private:
@@ -38,10 +41,13 @@ class BiasForces {
   };
   void move_outwards(const double* velocities, const Eigen::Vector3d& gravity);
   void take_force(SegmentMotion& motion, const SpatialInertia& segment) const;
+  static void add_force_of_fluid(SegmentMotion& motion, const SpatialMatrix& added_mass,
+                                 const Eigen::Vector3d& gravity);
 
   const Mechanism* mechanism_ = nullptr;
   const std::vector<Spatial>* axes_ = nullptr;  // by dof
   std::vector<SpatialInertia> inertias_;
+  std::vector<SpatialMatrix> added_masses_;
   std::vector<SegmentMotion> motions_;  // by segment
 };
 

@@ -3,10 +3,18 @@
 #include <cmath>
 
 namespace cohort::physics {
+namespace {
+
+// Bullet knows no mass that is another one in each direction.
+bool has_bullet(const Mechanism& mechanism, description::Dynamics dynamics) {
+  return dynamics == description::Dynamics::bullet && mechanism.added_masses().empty();
+}
+
+}  // namespace
 
 BodyMotion::BodyMotion(const Mechanism& mechanism, description::Dynamics dynamics, const Pose& X_WM)
     : mechanism_(&mechanism),
-      bullet_(dynamics == description::Dynamics::bullet ? std::make_unique<BulletBody>(mechanism) : nullptr),
+      bullet_(has_bullet(mechanism, dynamics) ? std::make_unique<BulletBody>(mechanism) : nullptr),
       state_(bullet_ ? BodyState(mechanism, bullet_->memory()) : BodyState(mechanism)),
       X_WS_(mechanism.segments().size()) {
   place(X_WM);

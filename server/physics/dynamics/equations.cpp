@@ -31,7 +31,7 @@ void Equations::set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, d
     if (has_mass) return matrix_;
     has_mass = true;
     bias_.set_up(*body_, axes_);
-    matrix_.set_up(*body_, axes_, bias_.inertias());
+    matrix_.set_up(*body_, axes_, bias_);
     matrix_.factorise();
     return matrix_;
   });
@@ -40,7 +40,7 @@ void Equations::set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, d
   const bool has_springs = std::ranges::any_of(mechanism_->dofs(), [](const Dof& dof) { return dof.has_spring(); });
   const bool has_matrix = has_springs || !(is_recursive_ || (is_bullet && MassMatrix::is_small(size_)));
   if (has_matrix || is_recursive_ || !is_bullet) bias_.set_up(*body_, axes_);
-  if (has_matrix) matrix_.set_up(*body_, axes_, bias_.inertias());
+  if (has_matrix) matrix_.set_up(*body_, axes_, bias_);
   find_efforts(step);
   if (is_recursive_) {
     solve_by_recursion(gravity, step);
@@ -201,7 +201,7 @@ void Equations::respond(const double* jacobian, double* response) {
 void Equations::add_inertia(double* matrix) const {
   if (is_recursive_) {
     MassMatrix inertia;
-    inertia.set_up(*body_, axes_, bias_.inertias());
+    inertia.set_up(*body_, axes_, bias_);
     for (int i = 0; i < size_; ++i) inertia.add_inertia(i, added_inertia_[at(i)]);
     inertia.factorise();
     inertia.add_product(matrix);

@@ -61,6 +61,24 @@ bool has_fast_ball(const BodyMotion& body, double step, bool is_held) {
   return false;
 }
 
+// Returns whether the fluid turns a part too fast. The linear momentum of its added mass is not along its velocity,
+// which turns the part (Munk, "The aerodynamic forces on airship hulls", NACA report 184, 1924).
+bool has_fast_fluid(const BodyMotion& body, double step) {
+  const Mechanism& mechanism = body.mechanism();
+  for (std::size_t s = 0; s < mechanism.added_masses().size(); ++s) {
+    const Pose& X_WS = body.segment_poses()[s];
+    const Twist twist = body.segment_twist(static_cast<int>(s), X_WS.position);
+    const Eigen::Quaterniond to_S = X_WS.orientation.conjugate();
+    const Vector3d linear_S = to_S * twist.linear_W;
+    const SpatialMatrix& added_mass = mechanism.added_masses()[s];
+    const Vector3d momentum_S = added_mass.bottomRightCorner<3, 3>() * linear_S;
+    const double inertia = mechanism.segments()[s].inertia_S.diagonal().minCoeff() +
+                           std::max(0.0, added_mass.diagonal().head<3>().minCoeff());
+    if (is_fast(twist.angular_W.norm() + std::sqrt(linear_S.norm() * momentum_S.norm() / inertia), step)) return true;
+  }
+  return false;
+}
+
 // Returns an upper bound on the angular speed of every segment [rad/s].
 double bound_of_turning(const BodyMotion& body) {
   double turn = 0.0;
@@ -81,7 +99,9 @@ bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_h
   // `integrate` handles the rotation of a free rigid body. A loop joint needs all rows solved at once, and for that
   // symmetric equations.
   const bool has_loops = !body.mechanism().model().loop_joints.empty();
-  if (body.mechanism().is_free_body() || has_loops) return false;
+  if (has_loops) return false;
+  if (has_fast_fluid(body, step)) return true;
+  if (body.mechanism().is_free_body()) return false;
   if (has_fast_ball(body, step, is_held)) return true;
   if (!is_fast(bound_of_turning(body), step)) return false;
   const std::vector<Segment>& segments = body.mechanism().segments();

@@ -57,7 +57,7 @@ void integrate(BodyMotion& body, const double* velocities, double step) {
   move_joints(body, step);
   if (mechanism.has_free_root()) {
     const double* v = state.velocities();
-    if (mechanism.is_free_body()) {
+    if (mechanism.turns_freely()) {
       turn_freely(body, step);
     } else {
       const Eigen::Quaterniond turn = rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2]));

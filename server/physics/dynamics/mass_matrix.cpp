@@ -9,14 +9,14 @@ constexpr int free_dofs = 6;
 
 }  // namespace
 
-void MassMatrix::set_up(const BodyMotion& body, const std::vector<Spatial>& axes,
-                        const std::vector<SpatialInertia>& inertias) {
+void MassMatrix::set_up(const BodyMotion& body, const std::vector<Spatial>& axes, const BiasForces& segments) {
   mechanism_ = &body.mechanism();
   axes_ = &axes;
   size_ = mechanism_->dof_count();
   stride_ = mechanism_->stride();
   matrix_.assign(at(size_ * stride_), 0.0);
-  composite_.assign(inertias.begin(), inertias.end());
+  composite_ = segments.inertias();
+  added_mass_ = segments.added_masses();
   gather_inwards();
 }
 
@@ -25,12 +25,18 @@ void MassMatrix::gather_inwards() {
   for (std::size_t s = composite_.size(); s-- > 0;) {
     const Segment& segment = mechanism_->segments()[s];
     const SpatialInertia& beyond = composite_[s];
+    const SpatialMatrix* const added_mass = added_mass_.empty() ? nullptr : &added_mass_[s];
     if (segment.motion == Motion::free) {
       take_free_root(beyond);
+      if (added_mass != nullptr) {
+        for (int i = 0; i < free_dofs; ++i)
+          for (int j = 0; j <= i; ++j) matrix_[at(i * stride_ + j)] += (*added_mass)(i, j);
+      }
     } else {
-      for (int i = segment.first_dof; i < segment.first_dof + segment.dofs; ++i) take_joint(i, beyond);
+      for (int i = segment.first_dof; i < segment.first_dof + segment.dofs; ++i) take_joint(i, beyond, added_mass);
     }
     if (segment.parent < 0) continue;
+    if (added_mass != nullptr) added_mass_[at(segment.parent)] += *added_mass;
     SpatialInertia& parent = composite_[at(segment.parent)];
     parent.inertia += beyond.inertia;
     parent.moment += beyond.moment;
@@ -53,10 +59,16 @@ void MassMatrix::take_free_root(const SpatialInertia& whole) {
 }
 
 // `beyond`: the composite inertia of the joint's segment and everything it carries.
-void MassMatrix::take_joint(int dof, const SpatialInertia& beyond) {
+void MassMatrix::take_joint(int dof, const SpatialInertia& beyond, const SpatialMatrix* added_mass) {
   const Spatial& axis = (*axes_)[at(dof)];
-  const Spatial momentum{beyond.inertia * axis.angular + beyond.moment.cross(axis.linear),
-                         beyond.mass * axis.linear - beyond.moment.cross(axis.angular)};
+  Spatial momentum{beyond.inertia * axis.angular + beyond.moment.cross(axis.linear),
+                   beyond.mass * axis.linear - beyond.moment.cross(axis.angular)};
+  if (added_mass != nullptr) {
+    momentum.angular +=
+        added_mass->leftCols<3>().topRows<3>() * axis.angular + added_mass->rightCols<3>().topRows<3>() * axis.linear;
+    momentum.linear += added_mass->leftCols<3>().bottomRows<3>() * axis.angular +
+                       added_mass->rightCols<3>().bottomRows<3>() * axis.linear;
+  }
   double* row = matrix_.data() + dof * stride_;
   int j = dof;
   for (; j >= 0 && !(mechanism_->has_free_root() && j < free_dofs); j = mechanism_->parents()[at(j)])

@@ -15,8 +15,8 @@ class MassMatrix {
  public:
   using SpatialInertia = BiasForces::SpatialInertia;
 
-  /// Computes the matrix; `inertias` are those of the segments at their present poses.
-  void set_up(const BodyMotion& body, const std::vector<Spatial>& axes, const std::vector<SpatialInertia>& inertias);
+  /// Computes the matrix; `segments` has the inertias of the segments at their present poses.
+  void set_up(const BodyMotion& body, const std::vector<Spatial>& axes, const BiasForces& segments);
   /// Returns the inertia of one dof while all others are held.
   double inertia(int dof) const { return matrix_[static_cast<std::size_t>(dof * (stride_ + 1))]; }
   /// Adds to the inertia of one dof.
@@ -40,13 +40,14 @@ class MassMatrix {
  private:
   void gather_inwards();
   void take_free_root(const SpatialInertia& whole);
-  void take_joint(int dof, const SpatialInertia& beyond);
+  void take_joint(int dof, const SpatialInertia& beyond, const SpatialMatrix* added_mass);
 
   const Mechanism* mechanism_ = nullptr;
   const std::vector<Spatial>* axes_ = nullptr;  // by dof
   int size_ = 0;
   std::ptrdiff_t stride_ = 0;
   std::vector<SpatialInertia> composite_;  // by segment, with everything it carries
+  std::vector<SpatialMatrix> added_mass_;  // likewise; empty if there is none
   std::vector<double> matrix_;             // size_ x stride_, lower triangle: the mass matrix, then its factors
 };
 

@@ -311,6 +311,7 @@ void Assembly::expect_sound(const Member& member) const {
 bool Assembly::is_in_flight(std::uint32_t index) {
   const Mechanism& mechanism = members[index].multibody->mechanism();
   if (!mechanism.has_free_root() || mechanism.is_free_body() || mechanism.has_kinematic_root()) return false;
+  if (!mechanism.added_masses().empty()) return false;  // the fluid takes momentum
   return !is_held(index);
 }
 

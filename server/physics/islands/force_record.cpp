@@ -65,7 +65,29 @@ void ForceRecord::add_needed(double factor, const std::vector<double>& velocitie
     needed_[link].force_W += factor * force_W;
     needed_[link].torque_W += factor * (inertia_W * motion.angular_acceleration_W + w.cross(inertia_W * w) +
                                         (X_WI.position - reference_W_).cross(force_W));
+    if (inertial.added_mass) add_needed_in_fluid(factor, link, *inertial.added_mass);
   }
+}
+
+// The force is M a + v x M v (Featherstone, "Rigid body dynamics algorithms", 2008, section 2.14) about the link's
+// origin, where a is the spatial acceleration.
+void ForceRecord::add_needed_in_fluid(double factor, std::size_t link, const SpatialMatrix& added_mass) {
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  const auto segment = static_cast<std::size_t>(mechanism_.link(link).segment);
+  const SegmentMotion& motion = segments_[segment];
+  const Pose& X_WL = motion_.pose_before(link);
+  const Vector3d arm_W = X_WL.position - X_WS_[segment].position;
+  const Vector3d& w = motion.angular_velocity_W;
+  const Vector3d& alpha = motion.angular_acceleration_W;
+  const Vector3d v = motion.velocity_W + w.cross(arm_W);
+  const Vector3d a = motion.acceleration_W + alpha.cross(arm_W) + w.cross(w.cross(arm_W)) - w.cross(v);
+  const SpatialMatrix M = moved_inertia(added_mass, X_WL, X_WL.position);
+  const Vector6 momentum = M * (Vector6() << w, v).finished();
+  const Vector6 force = M * (Vector6() << alpha, a).finished();
+  const Vector3d force_W = force.tail<3>() + w.cross(momentum.tail<3>());
+  const Vector3d torque_W = force.head<3>() + w.cross(momentum.head<3>()) + v.cross(momentum.tail<3>());
+  needed_[link].force_W += factor * force_W;
+  needed_[link].torque_W += factor * (torque_W + (X_WL.position - reference_W_).cross(force_W));
 }
 
 // Computes accelerations of the segments' origins from the root to the leaves (Craig, "Introduction to robotics",
@@ -80,12 +102,13 @@ void ForceRecord::find_accelerations(const std::vector<double>& velocities, cons
     const auto velocity = [&](int i) { return Vector3d(v[i], v[i + 1], v[i + 2]); };
     const auto acceleration = [&](int i) { return Vector3d(a[i], a[i + 1], a[i + 2]); };
     SegmentMotion& motion = segments_[s];
-    motion = {zero, zero, zero};
+    motion = {zero, zero, zero, zero};
     if (segment.parent >= 0) {
       const auto parent = static_cast<std::size_t>(segment.parent);
       motion = segments_[parent];
       const Vector3d arm_W = X_WS_[s].position - X_WS_[parent].position;
       const Vector3d& w = motion.angular_velocity_W;
+      motion.velocity_W += w.cross(arm_W);
       motion.acceleration_W += motion.angular_acceleration_W.cross(arm_W) + w.cross(w.cross(arm_W));
     }
     const Vector3d w = motion.angular_velocity_W;  // the parent's
@@ -95,6 +118,7 @@ void ForceRecord::find_accelerations(const std::vector<double>& velocities, cons
         const Vector3d arm_W = X_WS_[s].position - reference_W_;
         motion.angular_velocity_W = velocity(0);
         motion.angular_acceleration_W = acceleration(0);
+        motion.velocity_W = velocity(3) + motion.angular_velocity_W.cross(arm_W);
         motion.acceleration_W = acceleration(3) + motion.angular_acceleration_W.cross(arm_W) +
                                 motion.angular_velocity_W.cross(motion.angular_velocity_W.cross(arm_W));
         break;
@@ -107,6 +131,7 @@ void ForceRecord::find_accelerations(const std::vector<double>& velocities, cons
       }
       case Motion::prismatic: {
         const Vector3d axis_W = X_WS_[s].orientation * segment.axis_S;
+        motion.velocity_W += v[0] * axis_W;
         motion.acceleration_W += a[0] * axis_W + 2.0 * w.cross(v[0] * axis_W);
         break;
       }

@@ -45,10 +45,12 @@ class ForceRecord {
   struct SegmentMotion {
     Eigen::Vector3d angular_velocity_W;
     Eigen::Vector3d angular_acceleration_W;
-    Eigen::Vector3d acceleration_W;  // at the segment's origin
+    Eigen::Vector3d velocity_W;      // at the segment's origin
+    Eigen::Vector3d acceleration_W;  // likewise
   };
   void add_needed(double factor, const std::vector<double>& velocities, const std::vector<double>& accelerations,
                   const Eigen::Vector3d& gravity);
+  void add_needed_in_fluid(double factor, std::size_t link, const SpatialMatrix& added_mass);
   Wrench wrench_before(const description::Joint& joint) const;
   void find_accelerations(const std::vector<double>& velocities, const std::vector<double>& accelerations);
 

@@ -83,6 +83,7 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
   }
   turn_to_principal_axes();
   sum_masses();
+  sum_added_masses();
   if (has_kinematic_root()) make_root_immovable();
   find_outputs();
 }
@@ -156,6 +157,16 @@ void Mechanism::sum_masses() {
     std::fill_n(mass_beyond_.begin() + segments_[s].first_dof, segments_[s].dofs, masses[s]);
   for (const Segment& segment : segments_)
     if (segment.last_dof >= 0 && !(&segment == segments_.data() && has_kinematic_root())) moving_mass_ += segment.mass;
+}
+
+void Mechanism::sum_added_masses() {
+  for (std::size_t link = 0; link < links_.size(); ++link) {
+    const SpatialMatrix* const added = model_->links[link].inertial.added_mass.get();
+    if (added == nullptr) continue;
+    if (added_masses_.empty()) added_masses_.assign(segments_.size(), SpatialMatrix::Zero());
+    added_masses_[static_cast<std::size_t>(links_[link].segment)] +=
+        moved_inertia(*added, links_[link].X_SL, Eigen::Vector3d::Zero());
+  }
 }
 
 void Mechanism::add_link(std::size_t link, const std::vector<char>& welded) {

@@ -7,6 +7,7 @@
 #include "server/description/world.hpp"
 #include "server/physics/mechanism/device_outputs.hpp"
 #include "server/physics/mechanism/lanes.hpp"
+#include "server/physics/mechanism/spatial_inertia.hpp"
 
 namespace cohort::physics {
 
@@ -81,12 +82,17 @@ class Mechanism {
 
   const std::vector<Segment>& segments() const { return segments_; }
   const std::vector<Dof>& dofs() const { return dofs_; }
+  /// Returns, by segment, the inertia of the fluid around it, about the origin of S in its axes; empty if no link has
+  /// added mass.
+  const std::vector<SpatialMatrix>& added_masses() const { return added_masses_; }
   const LinkPlace& link(std::size_t index) const { return links_[index]; }
   const JointPlace& joint(std::size_t index) const { return joints_[index]; }
   /// Returns all coordinates with every joint at zero.
   const std::vector<double>& zero_coordinates() const { return zero_coordinates_; }
   /// Returns whether it is a single rigid body that is free to move.
   bool is_free_body() const { return segments_.size() == 1 && segments_[0].motion == Motion::free; }
+  /// Returns whether it is a free body that keeps its angular momentum: the fluid around it takes none.
+  bool turns_freely() const { return is_free_body() && added_masses_.empty(); }
   bool has_free_root() const { return segments_[0].motion == Motion::free; }
   /// Returns whether the root is free and keeps its velocity under any force: the solver gives it a mass of 1e15 kg.
   bool has_kinematic_root() const { return has_free_root() && model_->links[0].is_kinematic; }
@@ -116,10 +122,12 @@ class Mechanism {
   void sum_masses();
   void make_root_immovable();
   void add_mass(int index, const description::Inertial& inertial, const Pose& X_SL);
+  void sum_added_masses();
 
   const description::Model* model_;
   std::vector<Segment> segments_;
   std::vector<Dof> dofs_;
+  std::vector<SpatialMatrix> added_masses_;
   std::vector<LinkPlace> links_;
   std::vector<JointPlace> joints_;
   std::vector<Follower> followers_;

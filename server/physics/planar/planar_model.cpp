@@ -17,6 +17,8 @@ PlanarModel::PlanarModel(const description::Model& model)
     throw std::invalid_argument("planar physics does not support fin '" + model.fins[0].name + "'");
   if (!model.drags.empty())
     throw std::invalid_argument("planar physics does not support drag '" + model.drags[0].name + "'");
+  if (!mechanism_.added_masses().empty())
+    throw std::invalid_argument("planar physics does not support <fluid_added_mass>");
   if (!model.loop_joints.empty())
     throw std::invalid_argument("planar physics does not support joints that close loops");
   if (!mechanism_.followers().empty())

@@ -73,6 +73,42 @@ TEST_F(Fluids, ReadFinsAndDragWhichMakeNoRobot) {
   EXPECT_EQ(model.drags[0].damping, Eigen::Vector3d::Zero());
 }
 
+std::string hull_with(const std::string& added_mass) {
+  return "<model name=\"m\"><link name=\"a\"><inertial><mass>2</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz>"
+         "</inertia><fluid_added_mass>" +
+         added_mass + "</fluid_added_mass></inertial></link></model>";
+}
+
+TEST_F(Fluids, ReadAddedMassInTheOrderOfSdf) {
+  const World world =
+      read(hull_with("<xx>5</xx><yy>6</yy><zz>7</zz><pp>8</pp><qq>9</qq><rr>10</rr><xy>0.1</xy>"
+                     "<yr>0.2</yr><zq>-0.3</zq><pr>0.4</pr>"));
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  ASSERT_TRUE(world.models[0].links[0].inertial.added_mass);
+  SpatialMatrix expected = SpatialMatrix::Zero();  // p, q, r, x, y, z
+  expected.diagonal() << 8, 9, 10, 5, 6, 7;
+  expected(3, 4) = expected(4, 3) = 0.1;
+  expected(4, 2) = expected(2, 4) = 0.2;
+  expected(5, 1) = expected(1, 5) = -0.3;
+  expected(0, 2) = expected(2, 0) = 0.4;
+  EXPECT_EQ(*world.models[0].links[0].inertial.added_mass, expected);
+  EXPECT_FALSE(read(hull_with("<xx>0</xx>")).models[0].links[0].inertial.added_mass);
+}
+
+TEST_F(Fluids, RefuseAddedMassThatMakesInertiaNegative) {
+  const std::string reason = "expected a matrix that makes the inertia of the link positive definite";
+  const auto problems = [&](const std::string& added_mass) {
+    return problems_of([&] { read(hull_with(added_mass)); });
+  };
+  for (const std::string bad : {"<xx>-2.1</xx>", "<xq>3</xq>"}) {
+    ASSERT_EQ(problems(bad).size(), 1u) << bad;
+    EXPECT_EQ(problems(bad)[0].message, reason);
+  }
+  EXPECT_EQ(problems("<yy>inf</yy>").size(), 1u);
+  EXPECT_EQ(problems("<yy>x</yy>").size(), 1u);
+  EXPECT_TRUE(problems("<xx>-1.9</xx>").empty());
+}
+
 TEST_F(Fluids, ReadAirWindAndWater) {
   const World dry = read(vessel(""));
   EXPECT_FALSE(dry.water);

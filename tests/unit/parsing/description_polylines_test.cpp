@@ -48,19 +48,32 @@ TEST_F(Polylines, AreShownByVisuals) {
   EXPECT_FALSE(std::get<Mesh>(world.models[0].links[0].visuals[0].shape).convex);
 }
 
-TEST_F(Polylines, OfOneGeometryAreOneMeshWithoutHoles) {
+TEST_F(Polylines, OfOneGeometryAreOneMeshWithHoles) {
+  const auto volume_of = [&](const std::string& content) {
+    const World world = read(static_model_sdf(collision(content)));
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+    const Mesh& mesh = read_mesh_of(world);
+    double sixfold = 0.0;
+    for (const auto& [a, b, c] : mesh.triangles->triangles)
+      sixfold += mesh.triangles->vertices[a].dot(mesh.triangles->vertices[b].cross(mesh.triangles->vertices[c]));
+    return sixfold / 6.0;
+  };
   const std::string square = polyline({"5 0", "6 0", "6 1", "5 1"});
-  const World two = read(static_model_sdf(collision(corner + square)));
-  EXPECT_TRUE(two.warnings.empty()) << texts_of(two.warnings);
-  EXPECT_EQ(read_mesh_of(two).triangles->vertices.size(), 20u);
-  const std::string hole = polyline({"5.2 0.2", "5.8 0.2", "5.5 0.8"});
-  for (const std::string& content : {square + hole, hole + square}) {
-    const World filled = read(static_model_sdf(collision(content)));
-    EXPECT_EQ(read_mesh_of(filled).triangles->vertices.size(), 8u);
-    ASSERT_EQ(filled.warnings.size(), 1u) << texts_of(filled.warnings);
-    EXPECT_EQ(filled.warnings[0].line, content.starts_with(square) ? 4 : 3);
-    EXPECT_NE(filled.warnings[0].message.find("holes are not supported"), std::string::npos);
-  }
+  EXPECT_NEAR(volume_of(corner + square), 0.5 * (3.0 + 1.0), 1e-12);
+  const std::string hole = polyline({"5.2 0.2", "5.8 0.2", "5.8 0.8", "5.2 0.8"});
+  const std::string island = polyline({"5.4 0.4", "5.6 0.4", "5.6 0.6", "5.4 0.6"});
+  for (const std::string& content : {square + hole, hole + square})
+    EXPECT_NEAR(volume_of(content), 0.5 * (1.0 - 0.36), 1e-12);
+  for (const std::string& content : {square + hole + island, island + square + hole})
+    EXPECT_NEAR(volume_of(content), 0.5 * (1.0 - 0.36 + 0.04), 1e-12);
+}
+
+TEST_F(Polylines, GiveTheirHolesTheirOwnHeight) {
+  const World world = read(static_model_sdf(
+      collision(polyline({"5 0", "6 0", "6 1", "5 1"}) + polyline({"5.2 0.2", "5.8 0.2", "5.5 0.8"}, "0.1"))));
+  ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
+  EXPECT_EQ(world.warnings[0].line, 4);
+  EXPECT_NE(world.warnings[0].message.find("it has the height of that one"), std::string::npos);
 }
 
 class FlawOfAPolyline : public Polylines, public testing::WithParamInterface<Flaw> {};

@@ -96,6 +96,8 @@ TEST_F(ExportedWorlds, GiveTheSameHashWithFluids) {
   const std::string model =
       "<pose>0 0 0.1 0.01 0.02 0.7</pose><enable_wind>true</enable_wind>"
       "<link name=\"a\"><inertial><mass>3.1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia>"
+      "<fluid_added_mass><xx>0.31</xx><yy>2.17</yy><zz>2.93</zz><qq>0.11</qq><rr>0.13</rr><yr>0.07</yr></"
+      "fluid_added_mass>"
       "</inertial><collision "
       "name=\"c\"><geometry><capsule><radius>0.1</radius><length>0.3</length></capsule></geometry>"
       "</collision><cohort:fin name=\"keel\"><cohort:pose>0.01 0 -0.1 1.57 0 0</cohort:pose><cohort:area>0.02"

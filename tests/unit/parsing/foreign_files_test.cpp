@@ -218,6 +218,28 @@ TEST_F(ForeignFiles, IgnoreErrorsInVisualsOfAUrdf) {
                          "<material name=\"nowhere\"/></visual>")));
 }
 
+TEST_F(ForeignFiles, MayHaveCollisionsWithoutAShape) {
+  const auto with = [](const std::string& collisions) {
+    std::string link = links("l");
+    return "<model name=\"m\">" + link.insert(link.find("</link>"), collisions) + "</model>";
+  };
+  const std::string ball = "<collision name=\"b\"><geometry><sphere><radius>1</radius></sphere></geometry></collision>";
+  const World empty = read_foreign(with(ball + "<collision name=\"c\"><geometry><empty/></geometry></collision>"));
+  EXPECT_TRUE(empty.warnings.empty()) << texts_of(empty.warnings);
+  EXPECT_EQ(empty.models[0].links[0].collisions.size(), 1u);
+  const World without = read_foreign(with(ball + "<collision name=\"c\"/>"));
+  EXPECT_EQ(without.models[0].links[0].collisions.size(), 1u);
+  expect_warning(without, "world/model[m]/link[l]/collision[c]: missing: <geometry>; the collision is left out");
+}
+
+TEST_F(ForeignFiles, MayHaveLightsWithoutADirection) {
+  const World world = read_foreign(
+      "<model name=\"m\"><static>1</static><link name=\"l\"><light type=\"spot\" name=\"s\"><direction>0 0 0"
+      "</direction></light></link></model>");
+  expect_warning(world, "expected a direction that is not zero; the default direction is used");
+  EXPECT_EQ(std::get<Light>(world.models[0].emitters.at(0).what).direction_E, -Eigen::Vector3d::UnitZ());
+}
+
 TEST_F(ForeignFiles, FindPackagesByPackageXml) {
   write("arms/my_arm/package.xml", "<package><name>arm_description</name></package>");
   write("arms/my_arm/meshes/tip.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");

@@ -61,7 +61,18 @@ TEST_F(LostCollisions, UseTheFirstFolderThatHasTheFile) {
 TEST_F(LostCollisions, SuggestARemedyForMissingMeshes) {
   expect_error(write_urdf("package://pkg/meshes/tip.stl"), 4,
                {"there is no 'pkg/meshes/tip.stl'", (folder_ / "urdf").string(), "--allow-files DIR"});
-  expect_error(write_urdf("meshes/tip.stl"), 4, {"there is no such file", (folder_ / "urdf/meshes/tip.stl").string()});
+  expect_error(write_urdf("meshes/tip.stl"), 4,
+               {"there is no such file", (folder_ / "urdf/meshes/tip.stl").string(), "--missing-meshes box or skip"});
+}
+
+// The working directory is another one.
+TEST_F(LostCollisions, FindFilesOfRelativeAddressesBesideTheFileAndInItsPackage) {
+  write_tip("urdf/meshes/tip.obj");
+  write_tip("parts/models/hand/tip.obj");
+  for (const char* const uri : {"meshes/tip.obj", "file://meshes/tip.obj"}) expect_one_collision(write_urdf(uri));
+  for (const char* const uri : {"hand/tip.obj", "file://hand/tip.obj"})
+    expect_one_collision(write_urdf(uri, "parts/urdf/r.urdf"));
+  expect_one_collision(write_urdf("file://" + (folder_ / "urdf/meshes/tip.obj").string()));
 }
 
 TEST_F(LostCollisions, AreReplacedOrLeftOutOnRequestAlsoWhenReadAgain) {

@@ -168,12 +168,13 @@ TEST_F(MeshImport, EqualsAnImportInThisProcess) {
   write("a.glb", test::glb_of(R"({"bufferView":3,"mimeType":"image/png"})", test::png_of(2, 2)));
   const std::filesystem::path files = source / "tests/data/files";
   const Eigen::Vector3d scale(0.1, -0.3, 7.0);
+  parsing::MeshReader reader;
   for (const auto& file : {folder_ / "a.dae", folder_ / "a.obj", folder_ / "a.glb", files / "tetrahedron.obj",
                            files / "tetrahedron.stl", files / "triangle.dae"}) {
     parsing::InputFiles input;
     input.trust(file);
     SourcesOnDisk sources;
-    const parsing::ImportedMesh there = parsing::read_mesh(input, file, scale);
+    const parsing::ImportedMesh there = reader.read(input, file, scale);
     const parsing::ImportedMesh here = parsing::import_mesh(sources, file, scale);
     EXPECT_TRUE(has_same_bits(there.vertices, here.vertices)) << file;
     EXPECT_TRUE(has_same_bits(there.triangles, here.triangles)) << file;
@@ -201,7 +202,7 @@ TEST_F(MeshImport, IsNotDisturbedByThreadsThatAllocate) {
   for (int i = 0; i < 30; ++i) {
     parsing::InputFiles input;
     input.trust(folder_ / "world.sdf");
-    EXPECT_EQ(parsing::read_mesh(input, folder_ / "one.dae", Eigen::Vector3d::Ones()).triangles.size(), 1u);
+    EXPECT_EQ(parsing::MeshReader().read(input, folder_ / "one.dae", Eigen::Vector3d::Ones()).triangles.size(), 1u);
   }
   over = true;
   for (std::thread& thread : threads) thread.join();
@@ -218,6 +219,7 @@ TEST_F(MeshImport, SurvivesAnyFile) {
       {"/a.glb", test::glb_of(R"({"bufferView":3,"mimeType":"image/png"})", test::png_of(2, 2))},
       {"/a.stl", std::string(80, ' ') + std::string("\1\0\0\0", 4) + std::string(50, '\0')}};
   std::mt19937_64 random(1);
+  parsing::MeshReader reader;
   std::size_t refused = 0;
   constexpr std::size_t count = 480;
   for (std::size_t i = 0; i < count; ++i) {
@@ -231,7 +233,7 @@ TEST_F(MeshImport, SurvivesAnyFile) {
     input.add(name, text);
     input.add("/a.mtl", "newmtl m\nKd 1 0 0\n");
     try {
-      parsing::read_mesh(input, name, Eigen::Vector3d::Ones());
+      reader.read(input, name, Eigen::Vector3d::Ones());
     } catch (const std::runtime_error&) {
       ++refused;
     }
@@ -269,6 +271,37 @@ TEST(LimitedProcess, EndsAtTheLimitOfWallTime) {
 TEST(LimitedProcess, SaysHowItCrashed) {
   EXPECT_EQ(end_of({}, [](ChildStream&) { std::raise(SIGSEGV); }), "crashed (signal 11)");
   EXPECT_EQ(end_of({}, [](ChildStream&) { throw 1; }), "crashed (exit code 72)");
+}
+
+TEST(LimitedProcess, WorksManyTimesEachWithTheMemoryOfTheFirst) {
+  int calls = 0;
+  LimitedChild child(
+      {}, [&](ChildStream& stream) { stream.send(++calls + stream.receive<int>()); }, LimitedChild::Times::many);
+  for (int i = 0; i < 5; ++i) {
+    child.begin();
+    child.stream().send(10 * i);
+    EXPECT_EQ(child.stream().receive<int>(), 10 * i + 1);
+  }
+  EXPECT_EQ(calls, 0);
+}
+
+TEST(LimitedProcess, EndsAsOneOfItsTimesHasEnded) {
+  const auto end_after = [](const parsing::ChildLimits& limits, const LimitedChild::Work& work) {
+    LimitedChild child(
+        limits, [&](ChildStream& stream) { stream.receive<bool>() ? work(stream) : stream.send('x'); },
+        LimitedChild::Times::many);
+    child.begin();
+    child.stream().send(false);
+    EXPECT_EQ(child.stream().receive<char>(), 'x');
+    child.begin();
+    child.stream().send(true);
+    EXPECT_THROW(child.stream().receive<char>(), ChildStream::Lost);
+    return child.end();
+  };
+  EXPECT_EQ(end_after({}, [](ChildStream&) { std::raise(SIGSEGV); }), "crashed (signal 11)");
+  EXPECT_EQ(end_after({}, [](ChildStream&) { throw 1; }), "crashed (exit code 72)");
+  EXPECT_EQ(end_after({.wall_time = std::chrono::seconds(1)}, [](ChildStream& stream) { stream.receive<char>(); }),
+            "took longer than 1 s");
 }
 
 TEST(LimitedProcess, HasNoOpenFilesOfThisProcess) {

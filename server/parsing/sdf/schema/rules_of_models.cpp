@@ -49,7 +49,7 @@ inertial ? @auto flag "false"
     iyy 1 real "1.0"
     iyz 1 real "0.0"
     izz 1 real "1.0"
-  fluid_added_mass ? x
+  fluid_added_mass ?
     xx ? real "0.0"
     xy ? real "0.0"
     xz ? real "0.0"

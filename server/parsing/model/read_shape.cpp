@@ -210,7 +210,7 @@ std::optional<Shape> read_shape(const Element& geometry, const ModelReading& rea
     return std::nullopt;
   }
   const Element* const kind = !geometry.children().empty() ? geometry.children().front() : nullptr;
-  if (kind != nullptr && kind->rule() != nullptr) return std::nullopt;  // <empty>
+  if (kind != nullptr && kind->name() == "empty") return std::nullopt;
   report_lost(
       &geometry,
       (kind != nullptr ? "<" + kind->name() + "> is not supported; expected " : "expected ") + std::string(geometries),

@@ -16,7 +16,7 @@ inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 /// dynamics algorithms", 2008, table 2.8). X_AB: the pose of B; `point` is in A [m].
 inline SpatialMatrix moved_inertia(const SpatialMatrix& inertia_B, const Pose& X_AB, const Eigen::Vector3d& point) {
   const Eigen::Matrix3d R_BA = X_AB.orientation.toRotationMatrix().transpose();
-  SpatialMatrix to_B = SpatialMatrix::Zero();  // of motions
+  SpatialMatrix to_B = SpatialMatrix::Zero();  // for velocities
   to_B.topLeftCorner<3, 3>() = R_BA;
   to_B.bottomRightCorner<3, 3>() = R_BA;
   to_B.bottomLeftCorner<3, 3>() = -R_BA * cross_matrix(X_AB.position - point);

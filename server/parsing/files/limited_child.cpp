@@ -60,6 +60,7 @@ bool set_limits(const ChildLimits& limits) {
 // Resets signals: handlers of the parent must not run for a crash of the child, and only the parent handles signals
 // from the terminal.
 void leave_signals_of_parent() {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): the child has one thread
   for (int number = 1; number < NSIG; ++number) std::signal(number, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
@@ -161,6 +162,7 @@ std::string why_ended(int status, const ChildLimits& limits) {
 
 ChildStream::~ChildStream() { close(socket_); }
 
+// NOLINTNEXTLINE(readability-make-member-function-const): it changes what the other end receives
 void ChildStream::send(const void* bytes, std::size_t size) {
   const char* at = static_cast<const char*>(bytes);
   while (size > 0) {
@@ -172,6 +174,7 @@ void ChildStream::send(const void* bytes, std::size_t size) {
   }
 }
 
+// NOLINTNEXTLINE(readability-make-member-function-const): it takes what the other end has sent
 void ChildStream::receive(void* bytes, std::size_t size) {
   char* at = static_cast<char*>(bytes);
   while (size > 0) {

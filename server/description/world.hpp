@@ -99,8 +99,11 @@ struct BreakableJoint {
   std::optional<Pose> X_LP{};  ///< pose in the first link; at the origin of the second link if absent
   double breaking_force = std::numeric_limits<double>::infinity();   ///< [N]
   double breaking_torque = std::numeric_limits<double>::infinity();  ///< [N m]
-  Problem first_place{};   ///< position of the first object in the file, without a message
-  Problem second_place{};  ///< position of the second object
+  Problem first_place{};                              ///< position of the first object in the file, without a message
+  Problem second_place{};                             ///< position of the second object
+  JointType type = JointType::fixed;                  ///< or revolute, about `axis_P`; or ball
+  Eigen::Vector3d axis_P = Eigen::Vector3d::UnitZ();  ///< unit; P: the frame of the joint
+  double damping = 0.0;                               ///< about the axis, or every axis of a ball joint [N m s/rad]
 };
 
 /// A model from which events of an experiment create new objects.

@@ -681,7 +681,7 @@ struct Kirchhoff {
   SpatialMatrix inertia;
 
   double energy() const { return 0.5 * velocity.dot(inertia * velocity); }
-  Vector3d momentum_W() const { return rotation * Vector3d((inertia * velocity).tail<3>()); }
+  Vector3d linear_momentum() const { return rotation * Vector3d((inertia * velocity).tail<3>()); }
   Eigen::Matrix<double, 6, 1> acceleration(const Eigen::Matrix<double, 6, 1>& at) const {
     const Eigen::Matrix<double, 6, 1> momentum = inertia * at;
     const Vector3d w = at.head<3>(), v = at.tail<3>(), h = momentum.head<3>(), p = momentum.tail<3>();
@@ -714,10 +714,10 @@ TEST_P(Fluids, AddedMassTurnsALongBodyAcrossItsWay) {
   expected.inertia.topLeftCorner<3, 3>() += model.links[0].inertial.inertia;
   expected.inertia.bottomRightCorner<3, 3>() += 20.0 * Eigen::Matrix3d::Identity();
   const double energy = expected.energy();
-  const Vector3d momentum_W = expected.momentum_W();
+  const Vector3d momentum = expected.linear_momentum();
   expected.advance(3.0);
   ASSERT_NEAR(expected.energy(), energy, 1e-6 * energy);
-  ASSERT_LT((expected.momentum_W() - momentum_W).norm(), 1e-4 * momentum_W.norm());
+  ASSERT_LT((expected.linear_momentum() - momentum).norm(), 1e-4 * momentum.norm());
   ASSERT_GT(expected.rotation.angularDistance(Eigen::Quaterniond::Identity()), 0.8) << "the fluid has turned it";
 
   std::vector<double> errors;
@@ -752,7 +752,7 @@ TEST_P(Fluids, JointsFeelAddedMass) {
   small.world().record(body);
   const std::vector<double> angle{0.7}, speed{1.5};
   small.world().set_joint_state(body, JointId{1}, angle, speed);
-  const auto momentum_W = [&] {
+  const auto momentum = [&] {
     const physics::Twist twist = small.world().link_twist(body, LinkId{1});
     const Pose X_WL = small.world().link_pose(body, LinkId{1});
     const Vector3d linear_L = X_WL.orientation.conjugate() * twist.linear_W;
@@ -760,9 +760,9 @@ TEST_P(Fluids, JointsFeelAddedMass) {
                     X_WL.orientation * Vector3d(masses.cwiseProduct(linear_L)));
   };
   small.run(0.2);
-  const Vector3d before = momentum_W();
+  const Vector3d before = momentum();
   small.world().step();
-  const Vector3d change = (momentum_W() - before) / 0.01;
+  const Vector3d change = (momentum() - before) / 0.01;
   const physics::Wrench wrench = small.world().joint_wrench(body, JointId{1});
   EXPECT_GT(change.norm(), 10.0);
   EXPECT_LT((wrench.force_W - (change + Vector3d(0, 0, 2.0 * g))).norm(), 0.02 * change.norm());

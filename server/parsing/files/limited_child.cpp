@@ -60,11 +60,10 @@ bool set_limits(const ChildLimits& limits) {
 // Resets signals: handlers of the parent must not run for a crash of the child, and only the parent handles signals
 // from the terminal.
 void leave_signals_of_parent() {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): the child has one thread
   for (int number = 1; number < NSIG; ++number) std::signal(number, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
-  sigprocmask(SIG_SETMASK, &none, nullptr);
+  pthread_sigmask(SIG_SETMASK, &none, nullptr);
   setpgid(0, 0);
 }
 

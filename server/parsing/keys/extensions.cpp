@@ -129,6 +129,8 @@ constexpr ExtensionKey mimic[] = {
     {"offset", real, "rad", "0", "position of this joint when the followed joint is at 0; in m for a prismatic joint"},
 };
 
+constexpr std::string_view kinds_of_breakable_joints[] = {"fixed", "revolute", "ball"};
+
 constexpr ExtensionKey breakable_joint[] = {
     {"first", name, "", "", "scoped name of an object"},
     {"first_link", name, "", no_value, "link of the first object; its root link if absent"},
@@ -136,6 +138,10 @@ constexpr ExtensionKey breakable_joint[] = {
     {"second_link", name, "", no_value, "link of the second object; its root link if absent"},
     {"pose", pose, "m, rad", no_value,
      "pose of the joint in the frame of the first link; at the origin of the second link if absent"},
+    {"type", choice, "", "fixed", "`fixed`, `revolute` (turns about `axis`) or `ball` (turns about any axis)", false,
+     kinds_of_breakable_joints},
+    {"axis", vector, "1", "0 0 1", "axis of a `revolute` joint, in the frame of the joint"},
+    {"damping", non_negative, "N m s/rad", "0", "damping of a joint that turns"},
     {"breaking_force", positive, "N", no_value, "force above which the joint breaks; never if absent"},
     {"breaking_torque", positive, "N m", no_value, "torque above which the joint breaks; never if absent"},
 };
@@ -174,7 +180,7 @@ constexpr Extension of_worlds[] = {
     {"material_pair", "world", false, "Contact parameters for two materials.", material_pair, "physics"},
     {"mimic", "joint", false, "A coupling that makes the joint follow another joint; its force acts on both joints.",
      mimic, "physics"},
-    {"breakable_joint", "world", true, "A joint that rigidly connects links of two objects until it is overloaded.",
+    {"breakable_joint", "world", true, "A joint that connects links of two objects until it is overloaded.",
      breakable_joint, "physics"},
     {"physics", "world", false, "Settings of the physics simulation.", physics, "physics"},
     {"population", "world", true, "Instances of one model, placed in the world by a layout and the seed of the run.",

@@ -80,7 +80,8 @@ The coupling acts like a gear, a belt or a linkage between the two joints. The U
 SDF joint type `gearbox` have the same effect.
 )md"},
       {"breakable_joint", "world", R"md(
-The two links are rigidly connected in their initial relative pose. The joint breaks after the first step in
+The two links are connected in their initial relative pose, by default rigidly. A joint that turns has no limits
+and no motor; use a joint of a model for these. The joint breaks after the first step in
 which its force, or its torque about the joint's origin, was above the limit. The run's list of events then
 contains the cause: `joint 'shelf' broke at 12.1 N`.
 

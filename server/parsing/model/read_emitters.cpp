@@ -25,8 +25,9 @@ Light read_light_values(const Element* element, const SdfReport& report) {
   if (const Element* const color = element->child("diffuse")) light.color = color->color().head<3>();
   light.intensity = number(find(element, {"intensity"}), 1.0, report);
   const Element* const attenuation = find(element, {"attenuation"});
-  if (attenuation && (is_written(find(attenuation, {"range"})) || is_written(find(attenuation, {"constant"})) ||
-                      is_written(find(attenuation, {"linear"})) || is_written(find(attenuation, {"quadratic"})))) {
+  if (attenuation != nullptr &&
+      (is_written(find(attenuation, {"range"})) || is_written(find(attenuation, {"constant"})) ||
+       is_written(find(attenuation, {"linear"})) || is_written(find(attenuation, {"quadratic"})))) {
     light.range = number(find(attenuation, {"range"}), 10.0, report);
     light.constant = number(find(attenuation, {"constant"}), 1.0, report);
     light.linear = number(find(attenuation, {"linear"}), 1.0, report);
@@ -45,7 +46,7 @@ Light read_light_values(const Element* element, const SdfReport& report) {
     light.direction_E = *unit;
   else if (written.norm() > 0.0 && written.allFinite())
     light.direction_E = written.normalized();
-  else if (direction)
+  else if (direction != nullptr)
     report.flaw(direction, "expected a direction that is not zero", "the default direction is used");
   if (light.kind == Light::Kind::spot) {
     // SDF gives full cone angles.
@@ -53,7 +54,7 @@ Light read_light_values(const Element* element, const SdfReport& report) {
     light.outer_angle = 0.5 * number(find(element, {"spot", "outer_angle"}), 0.0, report);
     light.falloff = number(find(element, {"spot", "falloff"}), 0.0, report);
     const bool is_cone = light.inner_angle >= 0.0 && light.outer_angle >= light.inner_angle && light.falloff >= 0.0;
-    if (!is_cone && report.flaw(find(element, {"spot"}) ? find(element, {"spot"}) : element,
+    if (!is_cone && report.flaw(find(element, {"spot"}) != nullptr ? find(element, {"spot"}) : element,
                                 "expected 0 <= inner_angle <= outer_angle, and a falloff >= 0",
                                 "the intensity is uniform within the cone"))
       light.inner_angle = light.outer_angle = std::max(0.0, light.outer_angle), light.falloff = 0.0;

@@ -13,11 +13,12 @@ namespace cohort::parsing {
 /// The name of a joint that an <include> adds to its model: one that no file can contain.
 inline constexpr std::string_view added_joint = ":joint";
 
-/// Joints that fix models of a world to the world, by the name of the model. They are <joint>s for that model.
+/// Joints between the world and a model of it, by the name of the model. They are <joint>s for that model.
 using HoldingJoints = std::multimap<std::string, XmlNode>;
 
-/// Removes the joints of a world. Fixed joints between two models become <cohort:breakable_joint>s that do not break,
-/// and those to the world are returned; all others are ignored with a warning. `path`: that of the world.
+/// Removes the joints of a world. Those between two models become <cohort:breakable_joint>s that do not break, and
+/// those to the world are returned; joints of types that are not supported are ignored with a warning. `path`: that of
+/// the world.
 HoldingJoints take_world_joints(XmlNode& world, const std::string& path, std::vector<Problem>& warnings);
 
 }  // namespace cohort::parsing

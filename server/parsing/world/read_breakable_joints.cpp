@@ -58,6 +58,12 @@ std::optional<BreakableJoint> read_breakable_joint(const ExtensionValues& values
   joint.first_place = report.place_of(values.where("first"));
   joint.second_place = report.place_of(values.where("second"));
   if (values.has("pose")) joint.X_LP = values.pose("pose");
+  if (values.text("type") == "revolute") joint.type = JointType::revolute;
+  if (values.text("type") == "ball") joint.type = JointType::ball;
+  joint.damping = values.real("damping");
+  const Eigen::Vector3d axis = values.vector("axis");
+  if (joint.type == JointType::revolute && axis.norm() > 0.0) joint.axis_P = axis.normalized();
+  if (!(axis.norm() > 0.0)) report.problem(values.where("axis"), "expected a direction that is not zero");
   if (values.has("breaking_force")) joint.breaking_force = values.real("breaking_force");
   if (values.has("breaking_torque")) joint.breaking_torque = values.real("breaking_torque");
   return joint;

@@ -113,6 +113,10 @@ class WorldWriter {
     add_end("first", joint.first, joint.first_link);
     add_end("second", joint.second, joint.second_link);
     if (joint.X_LP) add_key(element, "pose", *joint.X_LP);
+    if (joint.type != JointType::fixed)
+      add_key(element, "type", std::string(joint.type == JointType::ball ? "ball" : "revolute"));
+    if (joint.type == JointType::revolute) add_key(element, "axis", joint.axis_P);
+    if (joint.damping > 0.0) add_key(element, "damping", joint.damping);
     if (std::isfinite(joint.breaking_force)) add_key(element, "breaking_force", joint.breaking_force);
     if (std::isfinite(joint.breaking_torque)) add_key(element, "breaking_torque", joint.breaking_torque);
   }

@@ -89,10 +89,10 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody, const M
     const description::Inertial& inertial = links[link].inertial;
     if (!links[link].feels_gravity)
       member.weightless.push_back({link, place.segment, inertial.mass, place.X_SL * inertial.X_LI.position});
-    for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
+    for (const description::Collision& described : links[link].collisions) {
       const std::size_t collision_of_model = next++;
       if (!place.collides) continue;
-      const Pose X_SC = place.X_SL * links[link].collisions[part].X_LC;
+      const Pose X_SC = place.X_SL * described.X_LC;
       const auto solid = static_cast<std::uint32_t>(scene.size());
       member.parts.push_back({solid, place.segment, X_SC});
       add_solid(body.body(), parts, collision_of_model, body.motion().segment_pose(place.segment) * X_SC,

@@ -157,7 +157,7 @@ void ForceRecord::add_outside(std::size_t link, const Vector3d& point_W, const V
 // not turn with the wheel: at 100 rad/s, that would be a radian in a step of 10 ms.
 Wrench ForceRecord::joint_wrench(std::size_t index) const {
   const description::Joint& joint = mechanism_.model().joints[index];
-  const Wrench on_child = wrench_before(joint);
+  Wrench on_child = wrench_before(joint);
   if (!motion_.is_whole()) return on_child;
   const Eigen::Quaterniond turn = motion_.turn(joint.child);
   return {turn * on_child.force_W, turn * on_child.torque_W};

@@ -131,7 +131,7 @@ void Connection::settle(const Pose& X_WSa, const Pose& X_WSb, double step) {
   for (int axis = 0; axis < 6; ++axis) {
     const auto [stiffness, damping, limit] = spring(axis);
     const double force = row_impulses_[static_cast<std::size_t>(axis)] / step;
-    const bool slips = limit == 0.0 || (stiffness == 0.0 && damping == 0.0) || std::abs(force) >= limit * (1.0 - 1e-9);
+    const bool slips = limit == 0.0 || stiffness == 0.0 || std::abs(force) >= limit * (1.0 - 1e-9);
     if (!slips) continue;
     has_slipped = true;
     double& off = axis < 3 ? gap_P[axis] : twist_P[axis - 3];

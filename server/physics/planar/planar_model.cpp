@@ -29,7 +29,7 @@ PlanarModel::PlanarModel(const description::Model& model)
     if (const std::string reason = description::reason_against_planar(device); !reason.empty())
       throw std::invalid_argument(reason);
     if (const description::TrackPair* const drive = description::tracks_of(device)) {
-      if (drive_) throw std::invalid_argument("planar physics supports only one treel drive per robot");
+      if (drive_ != nullptr) throw std::invalid_argument("planar physics supports only one treel drive per robot");
       drive_ = drive;
     }
   }

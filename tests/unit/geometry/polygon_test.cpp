@@ -40,9 +40,10 @@ bool is_closed(const TriangleMesh& mesh) {
   std::map<std::array<std::uint32_t, 2>, int> edges;
   for (const auto& [a, b, c] : mesh.triangles)
     for (const auto& edge : {std::array{a, b}, std::array{b, c}, std::array{c, a}}) ++edges[edge];
-  for (const auto& [edge, count] : edges)
-    if (count != 1 || !edges.contains({edge[1], edge[0]})) return false;
-  return true;
+  return std::ranges::all_of(edges, [&](const auto& each) {
+    const auto& [edge, count] = each;
+    return count == 1 && edges.contains({edge[1], edge[0]});
+  });
 }
 
 std::string flaw_of(const Points& polygon, const std::vector<Points>& holes = {}) {
@@ -100,7 +101,8 @@ TEST(ExtrudedPolygons, AreRightForStarsWithHoles) {
     std::vector<Points> holes;
     double area = area_of(outline);
     for (std::uint32_t hole = 0; hole <= star % 9; ++hole) {
-      holes.push_back(star_of(300 + 10 * star + hole, {hole % 3 * 0.8 - 0.8, hole / 3 * 0.8 - 0.8}, 0.01, 0.39));
+      const std::uint32_t row = hole / 3, column = hole % 3;
+      holes.push_back(star_of(300 + 10 * star + hole, {column * 0.8 - 0.8, row * 0.8 - 0.8}, 0.01, 0.39));
       if (star % 2 == 0) std::ranges::reverse(holes.back());
       area -= area_of(holes.back());
     }

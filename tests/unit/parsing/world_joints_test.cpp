@@ -64,7 +64,50 @@ TEST_F(WorldJoints, FollowFramesOfTheWorld) {
   EXPECT_EQ(held_links(world, 0), "a");
   const World tied = read(model("m") + model("n") + "<frame name=\"hook\" attached_to=\"m::a\"/>" + fixed("hook", "n"));
   ASSERT_EQ(tied.breakable_joints.size(), 1u);
-  EXPECT_EQ(tied.instances[tied.breakable_joints[0].first].name, "m");
+  EXPECT_EQ(tied.instances[tied.breakable_joints[0].second].name, "m");
+}
+
+std::string hinge(const std::string& parent, const std::string& child, const std::string& content) {
+  std::string joint = fixed(parent, child, "revolute");
+  return joint.insert(joint.rfind("</joint>"), content);
+}
+
+TEST_F(WorldJoints, ToTheWorldAreJointsOfTheModel) {
+  const World world = read(model("m", "1 2 3 0 0 0") + model("n") +
+                           hinge("world", "m::a",
+                                 "<pose>0 0 0.5 0 0 0</pose><axis><xyz>0 1 0</xyz><limit><lower>-1</lower><upper>2"
+                                 "</upper></limit></axis>"));
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  const Model& model = world.models[world.instances[0].model];
+  ASSERT_EQ(model.joints.size(), 1u);
+  EXPECT_EQ(model.joints[0].parent, Joint::world);
+  EXPECT_EQ(model.joints[0].type, JointType::revolute);
+  EXPECT_EQ(model.joints[0].X_LJ.position.z(), 0.5);
+  EXPECT_EQ(model.joints[0].axis.direction, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(model.joints[0].axis.upper, 2.0);
+}
+
+TEST_F(WorldJoints, BetweenTwoModelsMayTurn) {
+  const World world = read(model("m") + model("n") +
+                           hinge("m::a", "n",
+                                 "<pose>0 0 0.5 0 0 0</pose><axis><xyz>0 2 0</xyz><dynamics><damping>0.3</damping>"
+                                 "</dynamics></axis>"));
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  ASSERT_EQ(world.breakable_joints.size(), 1u);
+  const BreakableJoint& joint = world.breakable_joints[0];
+  EXPECT_EQ(world.instances[joint.first].name, "n");
+  EXPECT_EQ(world.instances[joint.second].name, "m");
+  EXPECT_EQ(joint.type, JointType::revolute);
+  EXPECT_EQ(joint.axis_P, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(joint.damping, 0.3);
+  ASSERT_TRUE(joint.X_LP);
+  EXPECT_EQ(joint.X_LP->position.z(), 0.5);
+  const World ball = read(model("m") + model("n") + fixed("m", "n", "ball"));
+  EXPECT_EQ(ball.breakable_joints.at(0).type, JointType::ball);
+  const World limited =
+      read(model("m") + model("n") + hinge("m", "n", "<axis><limit><lower>-1</lower></limit></axis>"));
+  ASSERT_EQ(limited.warnings.size(), 1u) << texts_of(limited.warnings);
+  EXPECT_EQ(limited.warnings[0].message, "a joint between two models has no limits, and turns freely");
 }
 
 TEST_F(WorldJoints, OfOtherKindsAreIgnoredWithAWarning) {
@@ -76,8 +119,11 @@ TEST_F(WorldJoints, OfOtherKindsAreIgnoredWithAWarning) {
     EXPECT_NE(world.warnings[0].message.find(message), std::string::npos) << world.warnings[0].message;
     EXPECT_EQ(held_links(world, 0), "");
   };
-  expect_warning(fixed("world", "m", "revolute"), "only if they are fixed, not of the type 'revolute'");
-  expect_warning(fixed("m", "n", "ball"), "only if they are fixed, not of the type 'ball'");
+  expect_warning(fixed("m", "n", "universal"), "only if they are fixed, revolute, continuous or ball");
+  expect_warning(fixed("m", "world", "revolute"), "expected the world as its parent");
+  expect_warning(hinge("m", "n", "<pose relative_to=\"m\"/>"),
+                 "relative_to=\"m\" is supported only in joints of a model");
+  expect_warning(hinge("m", "n", "<axis><xyz expressed_in=\"m\">0 1 0</xyz></axis>"), "expressed_in=\"m\"");
   expect_warning("<frame name=\"f\"/>" + fixed("world", "f"), "connects the world to itself; expected a model");
 }
 
@@ -102,7 +148,7 @@ TEST_F(WorldJoints, ComeWithAModelThatIsMergedIntoTheWorld) {
   EXPECT_EQ(world.instances[2].X_WM.position, Eigen::Vector3d(10, 5, 0));
   EXPECT_EQ(held_links(world, 3), "a");
   ASSERT_EQ(world.breakable_joints.size(), 1u);
-  EXPECT_EQ(world.breakable_joints[0].second, 2u);
+  EXPECT_EQ(world.breakable_joints[0].first, 2u);
 }
 
 TEST_F(WorldJoints, CannotMergeAModelWithLinks) {

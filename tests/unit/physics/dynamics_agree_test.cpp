@@ -149,7 +149,7 @@ VectorXd segment_velocities(const BodyMotion& body) {
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const auto index = static_cast<int>(s);
     const physics::Twist twist = body.segment_twist(index, body.segment_pose(index) * segments[s].centre_S);
-    velocities.segment<6>(6 * index) << twist.angular_W, twist.linear_W;
+    velocities.segment<6>(6 * static_cast<Eigen::Index>(s)) << twist.angular_W, twist.linear_W;
   }
   return velocities;
 }
@@ -160,9 +160,10 @@ VectorXd momenta_of_fluid(const BodyMotion& body, const VectorXd& velocities) {
   const std::vector<description::Link>& links = body.mechanism().model().links;
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (!links[i].inertial.added_mass) continue;
-    const int s = body.mechanism().link(i).segment;
+    const Eigen::Index s = body.mechanism().link(i).segment;
     const Pose X_WL = body.link_pose(i);
-    const Vector3d centre = body.segment_pose(s) * body.mechanism().segments()[static_cast<std::size_t>(s)].centre_S;
+    const Vector3d centre = body.segment_poses()[static_cast<std::size_t>(s)] *
+                            body.mechanism().segments()[static_cast<std::size_t>(s)].centre_S;
     const Eigen::Matrix3d R = X_WL.orientation.toRotationMatrix();
     const Vector3d w = velocities.segment<3>(6 * s);
     const Vector3d v = velocities.segment<3>(6 * s + 3) + w.cross(X_WL.position - centre);

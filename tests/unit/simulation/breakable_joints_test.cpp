@@ -127,6 +127,42 @@ TEST_F(BreakableJoints, AreAtTheSecondLinkByDefault) {
   EXPECT_NEAR(simulation.breakable_joints().wrench_on_first(0).torque_W.y(), 0.3 * 3.0, 0.01);
 }
 
+// A physical pendulum about an edge, from horizontal: the speed at any angle is that of its energy.
+TEST_F(BreakableJoints, OfTypeRevoluteAreHingesAtAnyAngle) {
+  for (const bool is_static_first : {false, true}) {
+    experiment_.world.breakable_joints.clear();
+    description::BreakableJoint& hinge =
+        is_static_first ? join(beam_, box_, {0.3, 0, -0.3}) : join(box_, beam_, {0.3, 0, 0});
+    hinge.type = description::JointType::revolute;
+    hinge.axis_P = Vector3d::UnitY();
+    Simulation simulation(experiment_, 1);
+    const double about_hinge = mass * 0.2 * 0.2 / 6.0 + mass * 0.09;
+    double lowest = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      simulation.step();
+      const Vector3d arm = simulation.object_pose(box_).position - Vector3d(0.3, 0, 0.7);
+      const double height = arm.z();
+      EXPECT_NEAR(arm.norm(), 0.3, 5e-3) << "steps of 10 ms";
+      EXPECT_NEAR(arm.y(), 0.0, 1e-6);
+      const double speed = simulation.world().link_twist(BodyId{box_}, LinkId{0}).angular_W.norm();
+      EXPECT_NEAR(0.5 * about_hinge * speed * speed, -mass * gravity * height, 0.1 * mass * gravity * 0.3);
+      lowest = std::min(lowest, height);
+    }
+    EXPECT_LT(lowest, -0.295) << "it has swung through";
+  }
+}
+
+TEST_F(BreakableJoints, OfTypeBallSwingBothWaysAndAreDamped) {
+  description::BreakableJoint& ball = join(box_, beam_, {0.2, 0.2, 0});
+  ball.type = description::JointType::ball;
+  ball.damping = 0.5;
+  Simulation simulation(experiment_, 1);
+  for (int i = 0; i < 1000; ++i) simulation.step();
+  const Vector3d arm = simulation.object_pose(box_).position - Vector3d(0.2, 0.2, 0.7);
+  EXPECT_LT((arm - Vector3d(0, 0, -std::sqrt(0.08))).norm(), 0.01);
+  EXPECT_LT(simulation.world().link_twist(BodyId{box_}, LinkId{0}).angular_W.norm(), 0.01);
+}
+
 TEST_F(BreakableJoints, HoldTwoMovingObjectsTogether) {
   const std::uint32_t other = place(experiment_.world, box("other"), "other", at(0.5, 0, 0.7));
   experiment_.world.gravity.setZero();

@@ -15,6 +15,7 @@ template <class Things>
 std::optional<std::size_t> find_named(const ExtensionValues& values, const char* key, const Things& things,
                                       const std::string& otherwise, const SdfReport& report) {
   std::vector<std::string> names;
+  names.reserve(things.size());
   for (const auto& thing : things) names.push_back(thing.name);
   const std::string& name = values.text(key);
   const auto found = std::find(names.begin(), names.end(), name);
@@ -61,7 +62,7 @@ std::optional<BreakableJoint> read_breakable_joint(const ExtensionValues& values
   if (values.text("type") == "revolute") joint.type = JointType::revolute;
   if (values.text("type") == "ball") joint.type = JointType::ball;
   joint.damping = values.real("damping");
-  const Eigen::Vector3d axis = values.vector("axis");
+  const Eigen::Vector3d& axis = values.vector("axis");
   if (joint.type == JointType::revolute && axis.norm() > 0.0) joint.axis_P = axis.normalized();
   if (!(axis.norm() > 0.0)) report.problem(values.where("axis"), "expected a direction that is not zero");
   if (values.has("breaking_force")) joint.breaking_force = values.real("breaking_force");

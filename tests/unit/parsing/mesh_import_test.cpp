@@ -192,6 +192,7 @@ TEST_F(MeshImport, IsNotDisturbedByThreadsThatAllocate) {
   write("one.dae", Collada{}.text());
   std::atomic<bool> over = false;
   std::vector<std::thread> threads;
+  threads.reserve(3);
   for (int i = 0; i < 3; ++i)
     threads.emplace_back([&] {
       while (!over) {

@@ -181,8 +181,8 @@ VectorXd momenta_at(const BodyMotion& body, VectorXd velocities) {
   const VectorXd present = velocities;
   const std::vector<physics::Segment>& segments = body.mechanism().segments();
   for (std::size_t s = 0; s < segments.size(); ++s) {
-    const auto index = static_cast<int>(s);
-    const Eigen::Matrix3d R = body.segment_pose(index).orientation.toRotationMatrix();
+    const auto index = static_cast<Eigen::Index>(s);
+    const Eigen::Matrix3d R = body.segment_poses()[s].orientation.toRotationMatrix();
     const Vector3d spin = R * segments[s].inertia_S * R.transpose() * velocities.segment<3>(6 * index);
     velocities.segment<3>(6 * index) = spin;
     velocities.segment<3>(6 * index + 3) *= segments[s].mass;

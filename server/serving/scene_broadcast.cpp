@@ -11,6 +11,8 @@ using namespace std::chrono_literals;
 
 constexpr auto interval = 33ms;
 constexpr auto watcher_count_interval = 200ms;
+// A newcomer may miss what is sent before it knows the server, which can take seconds on a busy machine.
+constexpr auto still_interval = 1s;
 constexpr int share_of_time = 20;
 // Larger messages omit data that is only useful in small worlds.
 constexpr std::size_t largest_extra = 128 << 10;
@@ -59,7 +61,7 @@ void SceneBroadcast::publish(const Shown& shown, When when) {
   const Clock::time_point begin = Clock::now();
   if (!is_watched(begin)) return;
   if (when == When::due && begin < next_) return;
-  if (when == When::for_newcomers && !has_newcomers_) return;
+  if (when == When::for_newcomers && !has_newcomers_ && begin < next_ + still_interval) return;
   has_newcomers_ = false;
   if (!maker_ || run_ != shown.run || maker_->is_outdated()) describe(shown);
   update(shown);

@@ -28,7 +28,7 @@ class MeshReader {
                     const MeshPart& which = {});
 
  private:
-  std::unique_ptr<LimitedChild> importer_;  // for all files, until it ends; null before the first
+  std::unique_ptr<LimitedChild> importer_;  // null before the first file, and after one that could not be read
 };
 
 }  // namespace cohort::parsing

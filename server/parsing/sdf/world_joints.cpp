@@ -91,7 +91,7 @@ std::string frame_named_in(const XmlNode& node) {
 // Returns what a hinge between two models would need, but does not have.
 std::string missing_in_hinge(const XmlNode& joint) {
   const XmlNode* const axis = joint.child("axis");
-  if (axis == nullptr) return "";
+  if (axis == nullptr || value_of(joint, "type") == "fixed") return "";
   const auto number = [&](const XmlNode* node, const char* name) {
     const XmlNode* const value = node != nullptr ? node->child(name) : nullptr;
     return value != nullptr ? parse_real(value->text).value_or(0.0) : 0.0;
@@ -112,6 +112,7 @@ std::optional<std::string> flaw_of(const XmlNode& joint, const std::string& pare
   const std::string type = value_of(joint, "type");
   if (type == "fixed") return std::nullopt;
   if (child == the_world) return "expected the world as its parent, unless the joint is fixed";
+  if (child != joint.child("child")->text) return "expected a model or a link as its child, unless the joint is fixed";
   if (parent != the_world && breakable_type_of(joint).empty())
     return "joints between two models are supported only if they are fixed, revolute, continuous or ball, not of the "
            "type '" +

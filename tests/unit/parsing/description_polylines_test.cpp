@@ -68,7 +68,7 @@ TEST_F(Polylines, OfOneGeometryAreOneMeshWithHoles) {
     EXPECT_NEAR(volume_of(content), 0.5 * (1.0 - 0.36 + 0.04), 1e-12);
 }
 
-TEST_F(Polylines, GiveTheirHolesTheirOwnHeight) {
+TEST_F(Polylines, GiveHolesTheHeightOfTheOuterOne) {
   const World world = read(static_model_sdf(
       collision(polyline({"5 0", "6 0", "6 1", "5 1"}) + polyline({"5.2 0.2", "5.8 0.2", "5.5 0.8"}, "0.1"))));
   ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);

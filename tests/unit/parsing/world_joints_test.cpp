@@ -110,6 +110,14 @@ TEST_F(WorldJoints, BetweenTwoModelsMayTurn) {
   EXPECT_EQ(limited.warnings[0].message, "a joint between two models has no limits, and turns freely");
 }
 
+TEST_F(WorldJoints, ThatAreFixedNeedNoLimits) {
+  std::string bolt = fixed("m", "n");
+  bolt.insert(bolt.rfind("</joint>"), "<axis><xyz>0 1 0</xyz><limit><lower>0</lower><upper>0</upper></limit></axis>");
+  const World world = read(model("m") + model("n") + bolt);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  EXPECT_EQ(world.breakable_joints.at(0).type, JointType::fixed);
+}
+
 TEST_F(WorldJoints, OfOtherKindsAreIgnoredWithAWarning) {
   const auto expect_warning = [&](const std::string& joint, const std::string& message) {
     const World world = read(model("m") + model("n") + joint);
@@ -121,6 +129,8 @@ TEST_F(WorldJoints, OfOtherKindsAreIgnoredWithAWarning) {
   };
   expect_warning(fixed("m", "n", "universal"), "only if they are fixed, revolute, continuous or ball");
   expect_warning(fixed("m", "world", "revolute"), "expected the world as its parent");
+  expect_warning(hinge("m", "f", "") + "<frame name=\"f\" attached_to=\"n\"/>",
+                 "expected a model or a link as its child");
   expect_warning(hinge("m", "n", "<pose relative_to=\"m\"/>"),
                  "relative_to=\"m\" is supported only in joints of a model");
   expect_warning(hinge("m", "n", "<axis><xyz expressed_in=\"m\">0 1 0</xyz></axis>"), "expressed_in=\"m\"");

@@ -12,13 +12,16 @@
 namespace cohort::parsing {
 namespace {
 
-// Returns the joint with parent and child exchanged, which has the same position about the opposite axis.
+// Returns the joint with parent and child exchanged, which has the same position about the opposite axis. The axes of a
+// universal joint change places, since the first is fixed in the parent.
 Joint turned_round(const Joint& joint, const Model& model) {
   Joint turned = joint;
   turned.parent = joint.child;
   turned.child = joint.parent;
   turned.X_LJ = model.links[joint.parent].X_ML.inverse() * model.links[joint.child].X_ML * joint.X_LJ;
-  turned.axis.direction = -joint.axis.direction;
+  if (joint.type == JointType::universal) std::swap(turned.axis, turned.second_axis);
+  turned.axis.direction *= -1.0;
+  turned.second_axis.direction *= -1.0;
   return turned;
 }
 
@@ -136,12 +139,19 @@ bool feels_wind(const Element* element, bool outer) {
 // Collects the parts of a model and of its nested models, with scoped names.
 class ModelFlattener {
  public:
-  ModelFlattener(Model& model, const ModelReading& reading) : model_(model), reading_(reading) {}
+  ModelFlattener(Model& model, const ModelReading& reading)
+      : model_(model), reading_(reading), static_reading_(reading) {
+    static_reading_.is_static = true;
+  }
 
   /// Links are added first, since joints of an outer model may name links of a nested one.
   void add_links(const Frames& frames, const std::string& scope, const Pose& X_MN, bool outer_feels_wind);
   void add_joints(const Frames& frames, const std::string& scope);
-  void hold_links(const std::string& scope);
+
+  /// Returns whether a part is in a static model that is nested in a moving one.
+  bool is_static(std::string_view scoped_name) const {
+    return std::ranges::any_of(static_scopes_, [&](const std::string& each) { return scoped_name.starts_with(each); });
+  }
 
   const std::vector<DeviceScope>& scopes() const { return scopes_; }
   const std::vector<SensorPlace>& sensors() const { return sensors_; }
@@ -149,8 +159,9 @@ class ModelFlattener {
   std::size_t joint_count() const { return joint_count_; }
 
  private:
-  Model& model_;
-  const ModelReading& reading_;
+  const ModelReading& reading_of(const std::string& scope) const {
+    return is_static(scope) ? static_reading_ : reading_;
+  }
   void note_sensors(const Element& owner, const Frames& frames, const std::string& scope) {
     for (const Element* const sensor : children_of(owner, "sensor"))
       if (is_sensor(sensor))
@@ -159,13 +170,17 @@ class ModelFlattener {
 
   template <class Part>
   void add_parts(const Element& element, const std::string& scope, std::vector<Part>& parts) {
-    for (Part& part : read_link_parts<Part>(element, reading_)) {
+    for (Part& part : read_link_parts<Part>(element, reading_of(scope))) {
       part.name = scope + part.name;
       part.link = model_.links.size();
       parts.push_back(std::move(part));
     }
   }
 
+  Model& model_;
+  const ModelReading& reading_;
+  ModelReading static_reading_;
+  std::vector<std::string> static_scopes_;
   std::vector<DeviceScope> scopes_;
   std::vector<SensorPlace> sensors_;
   std::size_t joint_count_ = 0;
@@ -177,7 +192,7 @@ void ModelFlattener::add_links(const Frames& frames, const std::string& scope, c
   scopes_.push_back({&element, scope});
   const bool model_feels_wind = feels_wind(&element, outer_feels_wind);
   for (const Element* const written : children_of(element, "link")) {
-    Link link = read_link(*written, frames, reading_);
+    Link link = read_link(*written, frames, reading_of(scope));
     link.name = scope + link.name;
     link.X_ML = X_MN * link.X_ML;
     link.feels_wind = feels_wind(written, model_feels_wind);
@@ -195,8 +210,9 @@ void ModelFlattener::add_links(const Frames& frames, const std::string& scope, c
   for (const Element* const joint : children_of(element, "joint")) note_sensors(*joint, frames, scope);
   for (const Element* const inner : children_of(element, "model")) {
     warn_of_unsupported(inner, reading_.report);
-    add_links(*frames.of(*inner), scope + name_of(*inner) + "::", X_MN * resolved_pose(*inner, frames, reading_),
-              model_feels_wind);
+    const std::string inner_scope = scope + name_of(*inner) + "::";
+    if (inner->flag("static")) static_scopes_.push_back(inner_scope);
+    add_links(*frames.of(*inner), inner_scope, X_MN * resolved_pose(*inner, frames, reading_), model_feels_wind);
   }
 }
 
@@ -205,31 +221,27 @@ void ModelFlattener::add_joints(const Frames& frames, const std::string& scope) 
     joint_count_ += joint->attribute("type") == "gearbox" ? 0 : 1;
   for (Joint& joint : read_joints(frames, model_.links, scope, reading_)) model_.joints.push_back(std::move(joint));
   for (const Element* const inner : children_of(frames.owner(), "model")) {
-    const std::string inner_scope = scope + name_of(*inner) + "::";
-    add_joints(*frames.of(*inner), inner_scope);
-    if (inner->flag("static")) hold_links(inner_scope);
+    add_joints(*frames.of(*inner), scope + name_of(*inner) + "::");
   }
 }
 
-// Fixes each link of a static model to the world, for a static model nested in a moving one.
-void ModelFlattener::hold_links(const std::string& scope) {
-  for (std::size_t link = 0; link < model_.links.size(); ++link) {
-    const std::string& name = model_.links[link].name;
-    const bool is_held = std::ranges::any_of(model_.joints, [&](const Joint& joint) { return joint.child == link; });
-    if (!name.starts_with(scope) || is_held) continue;
-    Joint held;
-    held.name = name + "_to_world";
-    held.parent = Joint::world;
-    held.child = link;
-    model_.joints.push_back(held);
-    ++joint_count_;
+// Attaches to the world what joints attach to links of static models, and removes joints between such links.
+void join_to_world(Model& model, const ModelFlattener& parts) {
+  const auto is_fixed = [&](std::size_t link) {
+    return link == Joint::world || parts.is_static(model.links[link].name);
+  };
+  std::erase_if(model.joints, [&](const Joint& joint) { return is_fixed(joint.parent) && is_fixed(joint.child); });
+  for (Joint& joint : model.joints) {
+    if (is_fixed(joint.child)) joint = turned_round(joint, model);
+    if (is_fixed(joint.parent)) joint.parent = Joint::world;
   }
 }
 
-void warn_of_what_static_has(const ModelFlattener& parts, const SdfReport& report) {
-  for (const DeviceScope& scope : parts.scopes()) {
+void warn_of_what_static_has(const std::vector<DeviceScope>& scopes, const std::vector<SensorPlace>& sensors,
+                             const SdfReport& report) {
+  for (const DeviceScope& scope : scopes) {
     const bool has_sensor =
-        std::ranges::any_of(parts.sensors(), [&](const SensorPlace& sensor) { return sensor.prefix == scope.prefix; });
+        std::ranges::any_of(sensors, [&](const SensorPlace& sensor) { return sensor.prefix == scope.prefix; });
     if (!extensions_in(scope.model_element, report).empty() || has_sensor)
       report.warning(scope.model_element, "is static: its devices are ignored, and it is not a robot");
     warn_of_static_belts(scope.model_element, report);
@@ -274,13 +286,14 @@ std::vector<Model> read_model(const Frames& frames, const ModelReading& reading)
     model.links.push_back({"link", {}, {}, {}});
   }
   if (model.is_static) {
-    warn_of_what_static_has(parts, reading.report);
+    warn_of_what_static_has(parts.scopes(), parts.sensors(), reading.report);
     set_friction_frames(frames, reading, model);
     return {std::move(model)};
   }
   parts.add_joints(frames, "");
   // Devices name links and joints. If some of those are missing, every device would be reported.
   if (!reading.frames_resolve || model.joints.size() != parts.joint_count()) return {std::move(model)};
+  join_to_world(model, parts);
   set_loops_apart(model);
   model.couplings = read_couplings(frames, model, "", reading);
   const FreeBodies bodies(model);
@@ -288,9 +301,14 @@ std::vector<Model> read_model(const Frames& frames, const ModelReading& reading)
   std::vector<Model> read;
   for (std::size_t number = 0; number < std::max<std::size_t>(bodies.count(), 1); ++number) {
     Model& body = read.emplace_back(bodies.body(number, model));
-    if (!order_links(*element, body, reading.report)) continue;
+    body.is_static = !body.links.empty() && parts.is_static(body.links.front().name);
+    if (!body.is_static && !order_links(*element, body, reading.report)) continue;
     set_friction_frames(frames, reading, body);
     if (number > 0) body.name += "/" + without_colons(body.links.front().name);
+    if (body.is_static) {
+      warn_of_what_static_has(scopes[number], bodies.sensors_of(number, model, parts.sensors()), reading.report);
+      continue;
+    }
     warn_of_loops(*element, body, reading.report);
     take_kinematic_links(body, reading.report, element);
     add_devices(scopes[number], bodies.sensors_of(number, model, parts.sensors()), reading, body);

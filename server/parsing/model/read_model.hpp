@@ -71,14 +71,6 @@ std::vector<Coupling> read_couplings(const Frames& frames, const Model& model, c
 /// not exist.
 std::optional<Eigen::Vector3d> direction_of(const Element& axis, const Frames& frames);
 
-/// Returns the element with the friction of a collision that applies: <ode>, or else <bullet>; nullptr if it has none.
-const Element* friction_of(const Element& collision);
-
-/// Sets the directions of friction that `gz:expressed_in` of <fdir1> defines in another frame, for a body whose links
-/// are complete and in their final order. A frame of another link that may move is kept; directions in all other frames
-/// are converted to the frame of their collision. `frames`: those of the whole model.
-void set_friction_frames(const Frames& frames, const ModelReading& reading, Model& body);
-
 /// Reads the devices of a model whose links and joints have been read: those of `cohort:` elements, then those of
 /// plugins.
 std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const std::vector<Counterpart>& of_plugins,

@@ -69,6 +69,41 @@ TEST_F(Formats, FlattenNestedModelsWithScopedNames) {
   EXPECT_EQ(motor.joint, 2u);
 }
 
+TEST_F(Formats, SeparateStaticModelsThatAreNestedInMovingOnes) {
+  const std::string wall =
+      "<model name=\"wall\"><pose>0 0 2 0 0 0</pose><static>true</static><link name=\"w\"><collision "
+      "name=\"c\"><geometry>"
+      "<plane><normal>0 0 1</normal></plane></geometry></collision></link><link name=\"v\"/>" +
+      joint("bolt", "w", "v") + "</model>";
+  const World apart =
+      read("<model name=\"room\">" + wall + "</model><model name=\"m\">" + links("a") + wall + "</model>");
+  EXPECT_TRUE(apart.warnings.empty()) << texts_of(apart.warnings);
+  ASSERT_EQ(apart.models.size(), 5u);
+  EXPECT_FALSE(apart.models[2].is_static);
+  for (const std::size_t fixed : {0, 1, 3, 4}) {
+    EXPECT_TRUE(apart.models[fixed].is_static);
+    EXPECT_TRUE(apart.models[fixed].joints.empty());
+    ASSERT_EQ(apart.models[fixed].links.size(), 1u);
+    EXPECT_EQ(apart.models[fixed].links[0].X_ML.position, Eigen::Vector3d(0, 0, 2));
+  }
+  EXPECT_TRUE(std::holds_alternative<Plane>(apart.models[0].links[0].collisions.at(0).shape));
+
+  for (const bool is_parent : {true, false}) {
+    const std::string axis = "<xyz>0 1 0</xyz><limit><lower>-1</lower><upper>2</upper></limit>";
+    const std::string hinge = is_parent ? joint("j", "wall::w", "a", axis) : joint("j", "a", "wall::w", axis);
+    const World world = read("<model name=\"m\">" + links("a") + wall + hinge + "</model>");
+    EXPECT_FALSE(world.models[0].is_static);
+    ASSERT_EQ(world.models[0].joints.size(), 1u);
+    const Joint& read_joint = world.models[0].joints[0];
+    EXPECT_EQ(read_joint.parent, Joint::world);
+    EXPECT_EQ(world.models[0].links[read_joint.child].name, "a");
+    EXPECT_EQ(read_joint.X_LJ.position, Eigen::Vector3d(0, 0, is_parent ? 0 : 2));
+    EXPECT_EQ(read_joint.axis.direction, Eigen::Vector3d(0, is_parent ? 1 : -1, 0));
+    EXPECT_EQ(read_joint.axis.lower, -1.0);
+    EXPECT_TRUE(world.models[1].is_static);
+  }
+}
+
 TEST_F(Formats, KeepTheFrameOfAMergedModel) {
   write_arm();
   const World world =

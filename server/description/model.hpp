@@ -139,12 +139,14 @@ struct Joint {
 };
 
 /// A coupling that makes one joint follow another: its position is `multiplier` times that of the leader, plus
-/// `offset`. For joints with several axes, it applies to the first.
+/// `offset`.
 struct Coupling {
-  std::size_t follower = 0;  ///< index into Model::joints
-  std::size_t leader = 0;    ///< likewise
-  double multiplier = 1.0;   ///< [1], [m/rad] or [rad/m]
-  double offset = 0.0;       ///< [rad] or [m]
+  std::size_t follower = 0;          ///< index into Model::joints
+  std::size_t leader = 0;            ///< likewise
+  double multiplier = 1.0;           ///< [1], [m/rad] or [rad/m]
+  double offset = 0.0;               ///< [rad] or [m]
+  bool moves_second_axis = false;    ///< the follower is a universal joint, and its second axis follows
+  bool follows_second_axis = false;  ///< likewise, of the leader
 };
 
 /// A model of links, joints and devices. Every parent link comes before its children. Link 0 is the root, which is free

@@ -76,6 +76,32 @@ TEST_P(Mechanisms, AFourBarLinkageMovesAsAParallelogram) {
   EXPECT_NEAR(small.position(body, 1).y(), 0.0, 1e-6) << "it stays in its plane";
 }
 
+// The second axis of a universal joint leads or follows a hinge; a torque about y turns both bars.
+TEST_P(Mechanisms, TheSecondAxisOfAUniversalJointIsCoupledToo) {
+  for (const bool follows : {true, false}) {
+    description::Model model = pair(JointType::universal, follows ? -2.0 : -0.5, 0.1);
+    model.joints[0].axis.direction = Vector3d::UnitY();
+    model.joints[1].axis.direction = Vector3d::UnitX();
+    model.joints[1].second_axis.direction = Vector3d::UnitY();
+    model.couplings[0].moves_second_axis = follows;
+    model.couplings[0].follows_second_axis = !follows;
+    if (!follows) std::swap(model.couplings[0].follower, model.couplings[0].leader);
+    SmallWorld small(space(0.0));
+    const auto body = small.add(model, at(0, 0, 1));
+    const auto angle = [&](std::size_t link) {
+      const Vector3d along = small.world().link_pose(body, LinkId{link}).orientation * Vector3d::UnitX();
+      EXPECT_NEAR(along.y(), 0.0, 1e-6) << "it stays in its plane";
+      return std::atan2(-along.z(), along.x());
+    };
+    for (int tick = 0; tick < 100; ++tick) {
+      small.world().push_body(body, LinkId{0}, {Vector3d(0, 0.05, 0), Vector3d::Zero()});
+      small.world().step();
+    }
+    EXPECT_GT(std::abs(angle(0)), 0.1);
+    EXPECT_NEAR(angle(follows ? 1 : 0), follows ? 0.1 - 2.0 * angle(0) : 0.1 - 0.5 * angle(1), 1e-4);
+  }
+}
+
 // A bar on a ball joint at one end; the loop joint at its other end leaves it no freedom, or that of a hinge.
 TEST_P(Mechanisms, EveryKindOfLoopHolds) {
   for (const JointType type : {JointType::fixed, JointType::ball, JointType::revolute, JointType::universal}) {

@@ -123,10 +123,15 @@ constexpr ExtensionKey material_pair[] = {
      "rolling resistance: ratio of the resisting torque to the normal force"},
 };
 
+constexpr std::string_view axes_of_joints[] = {"axis", "axis2"};
+
 constexpr ExtensionKey mimic[] = {
     {"joint", name, "", "", "joint of the same model that this joint follows"},
     {"multiplier", real, "1", "1", "change of this joint's position per unit of the followed joint's position"},
     {"offset", real, "rad", "0", "position of this joint when the followed joint is at 0; in m for a prismatic joint"},
+    {"axis", choice, "", "axis", "`axis2` if the second axis of this universal joint follows", false, axes_of_joints},
+    {"followed_axis", choice, "", "axis", "`axis2` if it follows the second axis of a universal joint", false,
+     axes_of_joints},
 };
 
 constexpr std::string_view kinds_of_breakable_joints[] = {"fixed", "revolute", "ball"};

@@ -7,16 +7,21 @@
 namespace cohort::parsing {
 namespace {
 
-// Returns the joint; nothing, with a report, if no joint of this name has an axis.
-std::optional<std::size_t> find_joint(const Model& model, const std::string& name, const Element* where,
-                                      const SdfReport& report) {
+constexpr const char* second_axis_name = "axis2";
+
+// Returns the joint; nothing, with a report, if no joint of this name has such an axis.
+std::optional<std::size_t> find_joint(const Model& model, const std::string& name, bool second_axis,
+                                      const Element* where, const SdfReport& report) {
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
     if (joint.name != name) continue;
-    if (joint.type != JointType::fixed && joint.type != JointType::ball) return i;
-    report.problem(where,
-                   "the joint '" + name + "' " +
-                       (joint.type == JointType::fixed ? "is fixed" : "is a ball joint, which has no single axis"));
+    const bool is_universal = joint.type == JointType::universal;
+    const bool has_axis = second_axis ? is_universal : joint.type != JointType::fixed && joint.type != JointType::ball;
+    if (has_axis) return i;
+    report.problem(where, "the joint '" + name + "' " +
+                              (joint.type == JointType::fixed  ? "is fixed"
+                               : joint.type == JointType::ball ? "is a ball joint, which has no single axis"
+                                                               : "has one axis, and no 'axis2'"));
     return std::nullopt;
   }
   report.problem(where, why_no_joint(model, name));
@@ -27,10 +32,14 @@ std::optional<Coupling> read_mimic(const Element* element, const std::string& fo
                                    const std::string& scope, const SdfReport& report) {
   const auto values = ExtensionValues::read(element, *find_extension("mimic", "joint"), report);
   if (!values) return std::nullopt;
-  const auto of_follower = find_joint(model, follower, element, report);
-  const auto of_leader = find_joint(model, scope + values->text("joint"), values->where("joint"), report);
+  const bool moves_second_axis = values->text("axis") == second_axis_name;
+  const bool follows_second_axis = values->text("followed_axis") == second_axis_name;
+  const auto of_follower = find_joint(model, follower, moves_second_axis, element, report);
+  const auto of_leader =
+      find_joint(model, scope + values->text("joint"), follows_second_axis, values->where("joint"), report);
   if (!of_follower || !of_leader) return std::nullopt;
-  return Coupling{*of_follower, *of_leader, values->real("multiplier"), values->real("offset")};
+  return Coupling{*of_follower,           *of_leader,        values->real("multiplier"),
+                  values->real("offset"), moves_second_axis, follows_second_axis};
 }
 
 // The joint between a link and the reference body. The sign is 1 if a positive rotation of the joint turns the link

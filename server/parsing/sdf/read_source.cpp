@@ -122,7 +122,7 @@ std::optional<XmlNode> SourceReader::read_xml(const std::string& text, SdfFile& 
     return fail(root.line, "SDF version '" + *version + "' is not supported; expected a version up to 1.12");
   if (version_of(*version) < version_of(first_with_elements) && make_attributes_elements(outline.root))
     set_attribute(outline.root, "version", std::string(first_with_elements));
-  take_newer(outline.root, file.shown, warnings_);
+  take_newer(outline.root, file.shown, problems_, warnings_);
   if (version_of(*version) > version_of(converted_version))
     set_attribute(outline.root, "version", std::string(converted_version));
   if (file.is_foreign) mend_sdf(outline.root, file.shown, warnings_);
@@ -136,7 +136,7 @@ std::optional<XmlNode> SourceReader::read_yaml(const std::string& text, const Sd
     return std::nullopt;
   }
   XmlNode sdf = sdf_of_yaml(*document.root, file.shown, problems_);
-  take_newer(sdf, file.shown, warnings_);
+  take_newer(sdf, file.shown, problems_, warnings_);
   return sdf;
 }
 

@@ -278,6 +278,9 @@ class WorldWriter {
       add_key(mimic, "joint", without_scope_marks(model.joints[coupling.leader].name));
       add_key(mimic, "multiplier", coupling.multiplier);
       add_key(mimic, "offset", coupling.offset);
+      const std::string second = "axis2";
+      if (coupling.moves_second_axis) add_key(mimic, "axis", second);
+      if (coupling.follows_second_axis) add_key(mimic, "followed_axis", second);
     }
   }
 

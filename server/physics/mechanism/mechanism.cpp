@@ -79,7 +79,9 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
     const JointPlace& follower = joints_[coupling.follower];
     const JointPlace& leader = joints_[coupling.leader];
     if (follower.dofs > 0 && leader.dofs > 0)
-      followers_.push_back({follower.first_dof, leader.first_dof, coupling.multiplier, coupling.offset});
+      followers_.push_back({follower.first_dof + (coupling.moves_second_axis ? 1 : 0),
+                            leader.first_dof + (coupling.follows_second_axis ? 1 : 0), coupling.multiplier,
+                            coupling.offset});
   }
   turn_to_principal_axes();
   sum_masses();

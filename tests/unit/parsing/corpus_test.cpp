@@ -5,16 +5,20 @@
 #include <fstream>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "server/core/text.hpp"
 #include "server/description/experiment.hpp"
 #include "server/description/world.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/world/read_world.hpp"
+#include "server/parsing/writing/write_world.hpp"
 
 /// Unusual files in SDF, URDF, YAML and experiments: those in tests/data/corpus/valid are accepted, and each in broken/
-/// is rejected with the message in FILE.expected.
+/// is rejected with the message in FILE.expected. For some in valid/, FILE.expected says what they mean: parts of the
+/// exported world, and of each warning.
 namespace cohort::description {
 
 namespace {
@@ -28,6 +32,12 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().extension() != ".expected") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<fs::path> files_with_meaning() {
+  std::vector<fs::path> files = files_in(corpus / "valid");
+  std::erase_if(files, [](const fs::path& file) { return !fs::exists(file.string() + ".expected"); });
   return files;
 }
 
@@ -50,6 +60,38 @@ class ValidFile : public ::testing::TestWithParam<fs::path> {};
 TEST_P(ValidFile, IsRead) { EXPECT_NO_THROW(read(GetParam())); }
 
 INSTANTIATE_TEST_SUITE_P(Corpus, ValidFile, ::testing::ValuesIn(files_in(corpus / "valid")), name_of_test);
+
+std::string with_single_spaces(const std::string& text) {
+  std::string single;
+  for (const std::string_view word : words(text)) single += (single.empty() ? "" : " ") + std::string(word);
+  return single;
+}
+
+class FileWithMeaning : public ::testing::TestWithParam<fs::path> {};
+
+// Each line of the file is a part of the exported world, without line breaks, or `warning: ` and a part of a warning.
+TEST_P(FileWithMeaning, IsWhatIsExpected) {
+  const World world = parsing::read_world_or_model(GetParam(), 1);
+  const std::string exported = with_single_spaces(parsing::xml_text(parsing::sdf_of(world, GetParam().parent_path())));
+  std::vector<std::string> warnings;
+  for (const Problem& warning : world.warnings) warnings.push_back(warning.text());
+  std::ifstream stream(GetParam().string() + ".expected");
+  for (std::string line; std::getline(stream, line);) {
+    constexpr std::string_view mark = "warning: ";
+    if (!line.starts_with(mark)) {
+      EXPECT_NE(exported.find(line), std::string::npos) << line << "\nis not in\n" << exported;
+      continue;
+    }
+    const auto found = std::ranges::find_if(warnings, [&](const std::string& warning) {
+      return warning.find(line.substr(mark.size())) != std::string::npos;
+    });
+    if (found == warnings.end()) ADD_FAILURE() << "no " << line;
+    if (found != warnings.end()) warnings.erase(found);
+  }
+  for (const std::string& warning : warnings) ADD_FAILURE() << "not expected: " << warning;
+}
+
+INSTANTIATE_TEST_SUITE_P(Corpus, FileWithMeaning, ::testing::ValuesIn(files_with_meaning()), name_of_test);
 
 class BrokenFile : public ::testing::TestWithParam<fs::path> {};
 

@@ -196,24 +196,38 @@ TEST_F(Joints, FollowOtherJointsByMimicAndGearbox) {
   }
 }
 
-TEST_F(Joints, WarnOfMimicsOfSecondAxes) {
+TEST_F(Joints, FollowByEitherAxisAndWithOneOfThem) {
   const auto coupled = [](const std::string& on_first, const std::string& on_second) {
     return model(links("abc") + joint("i", "a", "b") +
                  "<joint name=\"j\" type=\"universal\"><parent>a</parent><child>c</child><axis><xyz>1 0 0</xyz>" +
                  on_first + "</axis><axis2><xyz>0 1 0</xyz>" + on_second + "</axis2></joint>");
   };
-  const auto expect_warning = [&](const std::string& content, const std::string& element, const std::string& message) {
+  const auto expect_axes = [&](const std::string& content, bool moves_second, bool follows_second) {
     const World world = read(content);
-    EXPECT_TRUE(world.models[0].couplings.empty());
-    ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
-    EXPECT_EQ(world.warnings[0].element, "world/model[m]/joint[j]/" + element);
-    EXPECT_NE(world.warnings[0].message.find(message), std::string::npos) << world.warnings[0].message;
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+    ASSERT_EQ(world.models[0].couplings.size(), 1u);
+    EXPECT_EQ(world.models[0].couplings[0].moves_second_axis, moves_second);
+    EXPECT_EQ(world.models[0].couplings[0].follows_second_axis, follows_second);
   };
-  expect_warning(coupled("", "<mimic joint=\"i\"/>"), "axis2/mimic",
-                 "a <mimic> of an <axis2> is not supported and is ignored");
-  expect_warning(coupled("<mimic joint=\"i\" axis=\"axis2\"/>", ""), "axis/mimic",
-                 "a <mimic> that follows an <axis2> is not supported and is ignored");
-  EXPECT_EQ(read(coupled("<mimic joint=\"i\" axis=\"axis\"/>", "")).models[0].couplings.size(), 1u);
+  expect_axes(coupled("<mimic joint=\"i\"/>", ""), false, false);
+  expect_axes(coupled("<mimic joint=\"i\" axis=\"axis\"/>", ""), false, false);
+  expect_axes(coupled("", "<mimic joint=\"i\"/>"), true, false);
+  expect_axes(model(links("abc") + joint("i", "a", "b", "<xyz>0 0 1</xyz><mimic joint=\"j\" axis=\"axis2\"/>") +
+                    "<joint name=\"j\" type=\"universal\"><parent>a</parent><child>c</child><axis><xyz>1 0 0</xyz>"
+                    "</axis><axis2><xyz>0 1 0</xyz></axis2></joint>"),
+              false, true);
+
+  const World both = read(coupled("<mimic joint=\"i\"/>", "<mimic joint=\"i\"/>"));
+  ASSERT_EQ(both.models[0].couplings.size(), 1u);
+  EXPECT_FALSE(both.models[0].couplings[0].moves_second_axis);
+  ASSERT_EQ(both.warnings.size(), 1u) << texts_of(both.warnings);
+  EXPECT_EQ(both.warnings[0].element, "world/model[m]/joint[j]/axis2/mimic");
+  EXPECT_NE(both.warnings[0].message.find("only one of its axes can follow"), std::string::npos);
+
+  const std::vector<Problem> problems = problems_of([&] { read(coupled("<mimic joint=\"i\" axis=\"axis2\"/>", "")); });
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].message.find("the joint 'i' has one axis, and no 'axis2'"), std::string::npos)
+      << problems[0].message;
 }
 
 std::string device(const std::string& kind, const std::string& keys) {

@@ -118,9 +118,12 @@ Json facts_of(const Seen& seen, const std::string& name) {
   Json loops = Json::array();
   for (const Joint& joint : seen.model.loop_joints) loops.push_back(facts_of(seen, joint));
   Json followers = Json::array();
+  const auto name_of_axis = [](bool is_second) { return is_second ? "axis2" : "axis"; };
   for (const description::Coupling& coupling : seen.model.couplings)
     followers.push_back({{"joint", seen.model.joints[coupling.follower].name},
+                         {"axis", name_of_axis(coupling.moves_second_axis)},
                          {"follows", seen.model.joints[coupling.leader].name},
+                         {"followed_axis", name_of_axis(coupling.follows_second_axis)},
                          {"multiplier", coupling.multiplier},
                          {"offset", coupling.offset}});
   facts["links"] = std::move(links);

@@ -108,6 +108,7 @@ std::string size_of(const description::Model& model) {
     }
   if (!bounds) return "has no collisions";
   const Eigen::Vector3d size = bounds->upper - bounds->lower;
+  if (!size.allFinite()) return "unbounded";
   return fmt::format("{:.3g} x {:.3g} x {:.3g} m (bounding box of its collisions)", size.x(), size.y(), size.z());
 }
 

@@ -16,7 +16,8 @@ constexpr const char* density_of_water = "1000";  // SDF's default [kg/m^3]
 
 class NewerSdf {
  public:
-  NewerSdf(const std::filesystem::path& file, std::vector<Problem>& warnings) : file_(file), warnings_(warnings) {}
+  NewerSdf(const std::filesystem::path& file, std::vector<Problem>& problems, std::vector<Problem>& warnings)
+      : file_(file), problems_(problems), warnings_(warnings) {}
 
   void change(XmlNode& node, const std::string& path);
 
@@ -24,28 +25,34 @@ class NewerSdf {
   void warn(const XmlNode& node, const std::string& path, const std::string& message) {
     warnings_.push_back({file_, node.line, path, message});
   }
-  static void change_link(XmlNode& link);
+  void change_link(XmlNode& link, const std::string& path);
+  XmlNode checked_density(const XmlNode& density, const std::string& path);
   void change_joint(XmlNode& joint, const std::string& path);
   void change_geometry(XmlNode& geometry, const std::string& path);
 
   const std::filesystem::path& file_;
+  std::vector<Problem>& problems_;
   std::vector<Problem>& warnings_;
 };
 
 void NewerSdf::change(XmlNode& node, const std::string& path) {
-  if (node.name == "link") change_link(node);
+  if (node.name == "link") change_link(node, path);
   if (node.name == "joint") change_joint(node, path);
   if (node.name == "geometry") change_geometry(node, path);
   if (node.name == "plugin") return;
   for (XmlNode& child : node.children) change(child, (path.empty() ? "" : path + "/") + step_of(child));
 }
 
-XmlNode density_from(const XmlNode& where, const std::string& text) {
-  return element_at(where, prefixed("density"), text);
+XmlNode NewerSdf::checked_density(const XmlNode& density, const std::string& path) {
+  const bool is_right = parse_real(density.text).value_or(0.0) > 0.0;
+  if (!is_right)
+    problems_.push_back(
+        {file_, density.line, path + "/density", "expected a density > 0 kg/m^3, not '" + density.text + "'"});
+  return element_at(density, prefixed("density"), is_right ? density.text : density_of_water);
 }
 
 // `auto`: inertia from the shapes and their densities, as <cohort:density>. A mass beside it scales the inertia.
-void NewerSdf::change_link(XmlNode& link) {
+void NewerSdf::change_link(XmlNode& link, const std::string& path) {
   const XmlNode* const inertial = link.child("inertial");
   const bool is_auto =
       inertial != nullptr && (value_of(*inertial, "auto") == "true" || value_of(*inertial, "auto") == "1");
@@ -56,13 +63,15 @@ void NewerSdf::change_link(XmlNode& link) {
   for (XmlNode& collision : link.children) {
     if (collision.name != "collision") continue;
     const XmlNode* const density = collision.child("density");
-    const std::optional<std::string> text = density != nullptr ? std::optional(density->text) : std::nullopt;
+    std::optional<XmlNode> ours;
+    if (is_auto && density != nullptr) ours = checked_density(*density, path + "/" + step_of(collision));
     std::erase_if(collision.children, [](const XmlNode& child) { return child.name == "density"; });
-    if (is_auto && text) collision.children.push_back(density_from(collision, *text));
+    if (ours) collision.children.push_back(*std::move(ours));
   }
   if (!is_auto) return;
   const XmlNode* const density = inertial->child("density");
-  XmlNode ours = density_from(*inertial, density != nullptr ? density->text : density_of_water);
+  XmlNode ours = density != nullptr ? checked_density(*density, path + "/inertial")
+                                    : element_at(*inertial, prefixed("density"), density_of_water);
   XmlNode& rest = *child_of(link, "inertial");
   rest.attributes.clear();
   std::erase_if(rest.children, [](const XmlNode& child) {
@@ -83,18 +92,16 @@ void set_thread_pitch(XmlNode& joint) {
   child_of(joint, "screw_thread_pitch")->name = "thread_pitch";
 }
 
-// The position in SDF is multiplier * (leader - reference) + offset. Only first axes can be coupled.
+// The position in SDF is multiplier * (leader - reference) + offset. Only one axis of a joint can follow another.
 void NewerSdf::change_joint(XmlNode& joint, const std::string& path) {
   set_thread_pitch(joint);
   std::optional<XmlNode> follows;
   for (XmlNode& axis : joint.children) {
     const XmlNode* const mimic = axis.name == "axis" || axis.name == "axis2" ? axis.child("mimic") : nullptr;
     if (mimic == nullptr) continue;
-    const bool is_led_by_second = value_of(*mimic, "axis") == "axis2";
-    if (axis.name == "axis2" || is_led_by_second) {
+    if (follows) {
       warn(*mimic, path + "/" + axis.name + "/mimic",
-           std::string("a <mimic> ") + (is_led_by_second ? "that follows an <axis2>" : "of an <axis2>") +
-               " is not supported and is ignored; expected <axis>");
+           "the joint already has a <mimic>, and only one of its axes can follow; this <mimic> is ignored");
       std::erase_if(axis.children, [](const XmlNode& child) { return child.name == "mimic"; });
       continue;
     }
@@ -104,7 +111,10 @@ void NewerSdf::change_joint(XmlNode& joint, const std::string& path) {
     };
     const double multiplier = number("multiplier", 1.0);
     follows = element_at(*mimic, prefixed("mimic"));
+    const std::string followed = value_of(*mimic, "axis");
     follows->children = {element_at(*mimic, prefixed("joint"), value_of(*mimic, "joint")),
+                         element_at(*mimic, prefixed("axis"), axis.name),
+                         element_at(*mimic, prefixed("followed_axis"), followed.empty() ? "axis" : followed),
                          element_at(*mimic, prefixed("multiplier"), shortest_text(multiplier)),
                          element_at(*mimic, prefixed("offset"),
                                     shortest_text(number("offset", 0.0) - multiplier * number("reference", 0.0)))};
@@ -124,8 +134,9 @@ void NewerSdf::change_geometry(XmlNode& geometry, const std::string& path) {
 
 }  // namespace
 
-void take_newer(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings) {
-  NewerSdf(file, warnings).change(sdf, "");
+void take_newer(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& problems,
+                std::vector<Problem>& warnings) {
+  NewerSdf(file, problems, warnings).change(sdf, "");
 }
 
 }  // namespace cohort::parsing

@@ -107,7 +107,7 @@ joint * @name! text @type! text
       velocity ? real "inf"
       stiffness ? real "1e8"
       dissipation ? real "1.0"
-    [mimic] ? !"a warning; only <axis> can have a <mimic>"
+    [mimic] ? !"only one axis of a joint can follow: a warning if <axis> also has a <mimic>"
   physics ? x
     simbody ?
       must_be_loop_joint ? flag "false"
@@ -129,7 +129,7 @@ joint * @name! text @type! text
     provide_feedback ? flag "false"
   [pose] ?
   [sensor] *
-mimic ? @joint! text @axis text "axis" !"`axis2` causes a warning, and the <mimic> is ignored"
+mimic ? @joint! text @axis text "axis"
   multiplier 1 real "1.0"
   offset 1 real "0"
   reference 1 real "0"

@@ -175,6 +175,24 @@ TEST_F(Shapes, ReadTheColoursOfMaterials) {
   EXPECT_EQ(colors("painted.obj"), (Colors{{153, 0, 0}, {0, 255, 51}}));
 }
 
+TEST_F(Shapes, ReadAColladaMeshWhoseTextureHasNoImageWithoutItsColours) {
+  std::string textured = dae_materials;
+  textured.replace(textured.find("<technique "), 0,
+                   "<newparam sid=\"u\"><surface type=\"2D\"><init_from>i</init_from></surface></newparam><newparam "
+                   "sid=\"w\"><sampler2D><source>u</source></sampler2D></newparam>");
+  const std::string color = "<color>1 0.2 0 1</color>";
+  textured.replace(textured.find(color), color.size(), "<texture texture=\"w\" texcoord=\"c\"/>");
+  const std::string plain_instance = "<instance_geometry url=\"#g\"/>";
+  std::string file = dae;
+  file.replace(file.find("<library_geometries>"), 0, "<library_images><image id=\"i\"/></library_images>" + textured);
+  file.replace(file.find("<triangles count"), std::string("<triangles").size(), "<triangles material=\"m\"");
+  file.replace(file.find(plain_instance), plain_instance.size(), dae_instance);
+  write("without_image.dae", file);
+  const World world = read(static_model_sdf(collision(mesh("without_image.dae"))));
+  EXPECT_EQ(mesh_of(world).triangles.size(), 1u);
+  EXPECT_TRUE(mesh_of(world).colors.empty());
+}
+
 TEST_F(Shapes, ShareMeshesOfTheSameFileAndScale) {
   const World world =
       read(static_model_sdf(collision(mesh("box.obj")), "a") + static_model_sdf(collision(mesh("box.obj")), "b") +

@@ -175,7 +175,10 @@ void RosBridge::start_program(const Client& client, const Frame& frame) {
     }
     look_at_graph();
     const bool has_all = program_->nodes() > 0 && graph_.node_count() >= others + program_->nodes();
-    if (has_all && graph_.is_complete() && participant_.is_announced_to(graph_.participants())) return;
+    if (has_all && graph_.is_complete() && participant_.is_announced_to(graph_.participants())) {
+      program_->settle();  // a node may acknowledge what is announced to it before it has made use of it
+      return;
+    }
     inbox_.wait(announced_within);
   }
   if (program_->runs())

@@ -279,8 +279,8 @@ const aiScene* read_scene(Assimp::Importer& importer, MeshSources& sources, cons
   return scene != nullptr && scene->mRootNode != nullptr ? scene : nullptr;
 }
 
-// Returns the text of a COLLADA file without its effects, so that it has neither colours nor textures; empty if it has
-// none, or is another file. assimp reads no mesh of a file in which a texture has no image.
+// Returns the text of a COLLADA file without its effects, that is, without colours and textures. It is empty for other
+// files, and for files without effects. assimp reads no mesh of a file in which a texture has no image.
 std::string without_effects(MeshSources& sources, const std::filesystem::path& file) {
   constexpr std::string_view begin_tag = "<library_effects";
   constexpr std::string_view end_tag = "</library_effects>";
@@ -310,8 +310,7 @@ ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file
   const std::string problem = importer.GetErrorString();
   const std::string plain = scene == nullptr ? without_effects(sources, file) : "";
   if (!plain.empty()) scene = read_scene(importer, sources, file, &plain);
-  if (scene == nullptr)
-    throw std::runtime_error("'" + file.string() + "' cannot be read: " + problem);
+  if (scene == nullptr) throw std::runtime_error("'" + file.string() + "' cannot be read: " + problem);
 
   const bool is_gltf = is_gltf_file(file);
   MeshBuilder builder;

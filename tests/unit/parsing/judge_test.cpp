@@ -206,7 +206,8 @@ INSTANTIATE_TEST_SUITE_P(
         "</joint></model></sdf>"));
 
 // Returns the texts that libsdformat can read alone: valid XML in UTF-8, of a known version, without includes and
-// scoped names. Cameras are left out, since their field of view has other bounds in newer versions.
+// scoped names. Cameras are left out, since their field of view has other bounds in newer versions. Also left out are
+// elements that this version of the library does not know, and a time of one number, which it refuses.
 std::vector<std::string> texts_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -221,7 +222,8 @@ std::vector<std::string> texts_in(const fs::path& folder) {
     if (outline.error || outline.root.name != "sdf" || version == nullptr || version->starts_with("1.1") ||
         text.find("<!--") < text.find("<sdf"))
       continue;
-    constexpr std::string_view others[] = {"<include", "::", "ISO-8859", "<camera>"};
+    constexpr std::string_view others[] = {
+        "<include", "::", "ISO-8859", "<camera>", "auto=\"true\"", "<sim_time>0</sim_time>"};
     if (std::ranges::none_of(others, [&](auto other) { return text.find(other) != std::string::npos; }))
       texts.push_back(std::move(text));
   }

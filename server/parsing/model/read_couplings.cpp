@@ -71,7 +71,7 @@ std::optional<Coupling> read_gearbox(const Element* element, const Frames& frame
     return std::nullopt;
   };
   const Element* const body = element->child("gearbox_reference_body");
-  if (!body) {
+  if (body == nullptr) {
     reading.report.flaw(element, "missing: <gearbox_reference_body>", "the gearbox is ignored");
     return std::nullopt;
   }
@@ -120,7 +120,7 @@ std::vector<Coupling> read_couplings(const Frames& frames, const Model& model, c
   for (const Element* const joint : children_of(frames.owner(), "joint")) {
     if (joint->attribute("type") == "gearbox") add(read_gearbox(joint, frames, model, scope, reading), joint);
     const Element* const mimic = joint->child("cohort:mimic");
-    if (mimic) add(read_mimic(mimic, scope + name_of(*joint), model, scope, reading.report), mimic);
+    if (mimic != nullptr) add(read_mimic(mimic, scope + name_of(*joint), model, scope, reading.report), mimic);
   }
   for (const Element* const inner : children_of(frames.owner(), "model"))
     for (const Coupling& coupling : read_couplings(*frames.of(*inner), model, scope + name_of(*inner) + "::", reading))

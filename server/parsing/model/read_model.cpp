@@ -68,6 +68,23 @@ void warn_of_loops(const Element& element, const Model& model, const SdfReport& 
   }
 }
 
+// Puts the links into this order, which has their old indices; `place` has the new index of each.
+void move_links(Model& model, const std::vector<std::size_t>& order, const std::vector<std::size_t>& place) {
+  std::vector<Link> links;
+  links.reserve(order.size());
+  for (const std::size_t link : order) links.push_back(std::move(model.links[link]));
+  model.links = std::move(links);
+  for (std::vector<Joint>* joints : {&model.joints, &model.loop_joints})
+    for (Joint& joint : *joints) {
+      if (joint.parent != Joint::world) joint.parent = place[joint.parent];
+      joint.child = place[joint.child];
+    }
+  for (Emitter& emitter : model.emitters) emitter.link = place[emitter.link];
+  for (GripRing& ring : model.grip_rings) ring.link = place[ring.link];
+  for (Fin& fin : model.fins) fin.link = place[fin.link];
+  for (Drag& drag : model.drags) drag.link = place[drag.link];
+}
+
 // Puts parents before children, and otherwise keeps the document order. Returns false if the links are not one tree.
 bool order_links(const Element& element, Model& model, const SdfReport& report) {
   const std::size_t count = model.links.size();
@@ -100,19 +117,7 @@ bool order_links(const Element& element, Model& model, const SdfReport& report) 
         break;
       }
   }
-  std::vector<Link> links;
-  links.reserve(order.size());
-  for (const std::size_t link : order) links.push_back(std::move(model.links[link]));
-  model.links = std::move(links);
-  for (std::vector<Joint>* joints : {&model.joints, &model.loop_joints})
-    for (Joint& joint : *joints) {
-      if (joint.parent != Joint::world) joint.parent = place[joint.parent];
-      joint.child = place[joint.child];
-    }
-  for (Emitter& emitter : model.emitters) emitter.link = place[emitter.link];
-  for (GripRing& ring : model.grip_rings) ring.link = place[ring.link];
-  for (Fin& fin : model.fins) fin.link = place[fin.link];
-  for (Drag& drag : model.drags) drag.link = place[drag.link];
+  move_links(model, order, place);
   return true;
 }
 

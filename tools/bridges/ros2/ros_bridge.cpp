@@ -267,7 +267,10 @@ void RosBridge::wait_for_commands(const Client& client, const Frame& frame) {
   const auto waited = [&] { return WallClock::now() - since; };
   auto next_told = since + told_first;
   auto next_again = since + told_again_after;
-  for (take_messages(); RosRobot* robot = awaited(waited()); take_messages()) {
+  for (;;) {
+    take_messages();
+    RosRobot* const robot = awaited(waited());
+    if (robot == nullptr) break;
     if (is_over(client)) throw bridges::GaveUp{};
     inbox_.wait(asked_every);
     look_at_graph();

@@ -110,6 +110,9 @@ inline const Texts& bases() {
                                    "<mimic joint=\"j\"><multiplier>2</multiplier><offset>1</offset>"
                                    "<reference>1</reference></mimic>")) +
                       revolute + turning("k", "revolute", "a", "c", axis("axis", "0 0 1")))},
+      {"mimic/@axis",
+       model(three + turning("j", "universal", "a", "b", axis("axis", "1 0 0") + axis("axis2", "0 1 0")) +
+             turning("f", "revolute", "a", "c", axis("axis", "0 0 1", "<mimic joint=\"j\"/>")))},
       {"collision", box},
       {"collision/density", model(named("link", "a", "<inertial auto=\"true\"/>" + shape("<box/>")))},
       {"visual", visual},

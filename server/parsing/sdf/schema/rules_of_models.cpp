@@ -107,7 +107,7 @@ joint * @name! text @type! text
       velocity ? real "inf"
       stiffness ? real "1e8"
       dissipation ? real "1.0"
-    [mimic] ? !"only one axis of a joint can follow: a warning if <axis> also has a <mimic>"
+    [mimic] ?
   physics ? x
     simbody ?
       must_be_loop_joint ? flag "false"

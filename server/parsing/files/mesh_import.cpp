@@ -65,24 +65,19 @@ class AssimpStream : public Assimp::IOStream {
 
 class AssimpFiles : public Assimp::IOSystem {
  public:
-  /// `replaced` has the content of the mesh file, if it is not that of the sources.
-  AssimpFiles(MeshSources& sources, std::string mesh_file, const std::string* replaced)
-      : sources_(sources), mesh_file_(std::move(mesh_file)), replaced_(replaced) {}
+  explicit AssimpFiles(MeshSources& sources) : sources_(sources) {}
 
   bool Exists(const char* file) const override { return sources_.is_file(file); }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
-    const bool is_replaced = replaced_ != nullptr && mesh_file_ == file;
-    const std::string* const bytes = is_replaced ? replaced_ : sources_.read(file);
+    const std::string* const bytes = sources_.read(file);
     return bytes == nullptr ? nullptr : new AssimpStream(*bytes);
   }
   void Close(Assimp::IOStream* stream) override { delete stream; }
 
  private:
   MeshSources& sources_;
-  std::string mesh_file_;
-  const std::string* replaced_;
 };
 
 using Color = std::array<std::uint8_t, 3>;
@@ -271,14 +266,6 @@ class Selection {
   std::set<std::string> names_;
 };
 
-// Returns nullptr if the file cannot be read.
-const aiScene* read_scene(Assimp::Importer& importer, MeshSources& sources, const std::filesystem::path& file,
-                          const std::string* replaced) {
-  importer.SetIOHandler(new AssimpFiles(sources, file.string(), replaced));  // which it owns
-  const aiScene* const scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
-  return scene != nullptr && scene->mRootNode != nullptr ? scene : nullptr;
-}
-
 // Returns the text of a COLLADA file without its effects, that is, without colours and textures. It is empty for other
 // files, and for files without effects. assimp reads no mesh of a file in which a texture has no image.
 std::string without_effects(MeshSources& sources, const std::filesystem::path& file) {
@@ -304,13 +291,15 @@ void centre(std::vector<Eigen::Vector3d>& vertices) {
 ImportedMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale,
                          const MeshPart& which) {
   Assimp::Importer importer;
+  importer.SetIOHandler(new AssimpFiles(sources));  // which it owns
   // Otherwise assimp would rotate a file whose z axis points upwards.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = read_scene(importer, sources, file, nullptr);
+  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
   const std::string problem = importer.GetErrorString();
   const std::string plain = scene == nullptr ? without_effects(sources, file) : "";
-  if (!plain.empty()) scene = read_scene(importer, sources, file, &plain);
-  if (scene == nullptr) throw std::runtime_error("'" + file.string() + "' cannot be read: " + problem);
+  if (!plain.empty()) scene = importer.ReadFileFromMemory(plain.data(), plain.size(), aiProcess_Triangulate, "dae");
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    throw std::runtime_error("'" + file.string() + "' cannot be read: " + problem);
 
   const bool is_gltf = is_gltf_file(file);
   MeshBuilder builder;

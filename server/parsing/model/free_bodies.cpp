@@ -23,18 +23,20 @@ bool any_word_below(const Element* element, const Visit& visit) {
 
 }  // namespace
 
-// Links that joints connect get the number of the first of them; then the numbers in use are counted.
+// Links that joints or couplings connect get the number of the first of them; then the numbers in use are counted.
 FreeBodies::FreeBodies(const Model& model) : body_of_link_(model.links.size()) {
   for (std::size_t link = 0; link < model.links.size(); ++link) body_of_link_[link] = link;
-  const auto join = [&](const Joint& joint) {
-    if (joint.parent == Joint::world) return;
-    const std::size_t one = body_of_link_[joint.parent];
-    const std::size_t two = body_of_link_[joint.child];
+  const auto join = [&](std::size_t parent, std::size_t child) {
+    if (parent == Joint::world) return;
+    const std::size_t one = body_of_link_[parent];
+    const std::size_t two = body_of_link_[child];
     for (std::size_t& body : body_of_link_)
       if (body == one || body == two) body = std::min(one, two);
   };
-  for (const Joint& joint : model.joints) join(joint);
-  for (const Joint& joint : model.loop_joints) join(joint);
+  for (const Joint& joint : model.joints) join(joint.parent, joint.child);
+  for (const Joint& joint : model.loop_joints) join(joint.parent, joint.child);
+  for (const Coupling& coupling : model.couplings)
+    join(model.joints[coupling.leader].child, model.joints[coupling.follower].child);
   for (std::size_t link = 0; link < body_of_link_.size(); ++link)
     body_of_link_[link] = body_of_link_[link] == link ? count_++ : body_of_link_[body_of_link_[link]];
 }

@@ -10,8 +10,8 @@
 
 namespace cohort::parsing {
 
-/// The bodies of a model whose links and joints have been read; a body is a set of links that joints connect. Most
-/// models have one.
+/// The bodies of a model whose links, joints and couplings have been read; a body is a set of links that these connect.
+/// Most models have one.
 class FreeBodies {
  public:
   explicit FreeBodies(const Model& model);

@@ -101,11 +101,16 @@ bool order_links(const Element& element, Model& model, const SdfReport& report) 
   std::vector<std::size_t> roots;
   for (std::size_t link = 0; link < count; ++link)
     if (parent[link] == count) roots.push_back(link);
-  if (roots.size() > 1) {
+  const bool are_on_world = std::ranges::all_of(roots, [&](std::size_t root) {
+    return std::ranges::find(model.joints, root, &Joint::child) != model.joints.end();
+  });
+  if (roots.size() > 1 && !are_on_world) {
     std::string names;
     for (const std::size_t root : roots) names += (names.empty() ? "'" : ", '") + model.links[root].name + "'";
     report.problem(&element,
-                   "the links " + names + " are all root links, but loop joints connect them; expected one root link");
+                   "the links " + names +
+                       " are all root links, but loop joints or couplings connect them; expected one root link, or "
+                       "joints between each of them and the world");
     return false;
   }
   for (const std::size_t root : roots) put(root);
@@ -225,9 +230,8 @@ void ModelFlattener::add_joints(const Frames& frames, const std::string& scope) 
   for (const Element* const joint : children_of(frames.owner(), "joint"))
     joint_count_ += joint->attribute("type") == "gearbox" ? 0 : 1;
   for (Joint& joint : read_joints(frames, model_.links, scope, reading_)) model_.joints.push_back(std::move(joint));
-  for (const Element* const inner : children_of(frames.owner(), "model")) {
+  for (const Element* const inner : children_of(frames.owner(), "model"))
     add_joints(*frames.of(*inner), scope + name_of(*inner) + "::");
-  }
 }
 
 // Attaches to the world what joints attach to links of static models, and removes joints between such links.

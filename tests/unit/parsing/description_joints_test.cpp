@@ -196,6 +196,21 @@ TEST_F(Joints, FollowOtherJointsByMimicAndGearbox) {
   }
 }
 
+TEST_F(Joints, ThatFollowEachOtherBelongToOneBodyAlsoOnTheWorld) {
+  const std::string followed = joint("j", "world", "b");
+  const std::string follower =
+      "<joint name=\"k\" type=\"revolute\"><parent>world</parent><child>c</child><axis><xyz>0 0 "
+      "1</xyz><mimic joint=\"j\"/></axis></joint>";
+  for (const std::string& joints : {followed + follower, follower + followed}) {
+    const World world = read(model(links("abc") + joints));
+    ASSERT_EQ(world.models.size(), 2u) << "the link 'a' is free";
+    const Model& fingers = world.models[1];
+    ASSERT_EQ(fingers.couplings.size(), 1u);
+    EXPECT_EQ(fingers.joints.at(fingers.couplings[0].leader).name, "j");
+    EXPECT_EQ(fingers.joints.at(fingers.couplings[0].follower).name, "k");
+  }
+}
+
 TEST_F(Joints, FollowByEitherAxisAndWithOneOfThem) {
   const auto coupled = [](const std::string& on_first, const std::string& on_second) {
     return model(links("abc") + joint("i", "a", "b") +

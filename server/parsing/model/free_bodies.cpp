@@ -16,9 +16,7 @@ bool any_word_below(const Element* element, const Visit& visit) {
   const std::string text = text_of_parameter(element);
   for (const std::string_view word : words(text))
     if (visit(std::string(word))) return true;
-  for (const Element* const child : element->children())
-    if (any_word_below(child, visit)) return true;
-  return false;
+  return std::ranges::any_of(element->children(), [&](const Element* child) { return any_word_below(child, visit); });
 }
 
 }  // namespace

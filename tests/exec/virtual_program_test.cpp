@@ -225,5 +225,16 @@ TEST(VirtualProgram, NamesAThreadThatSleepsWithoutTheCLibraryButNoneOfDds) {
   EXPECT_EQ(dds.told, std::vector<std::string>{});
 }
 
+// Others may wait for what it holds.
+TEST(VirtualProgram, IsNotAtRestWhileAThreadOfDdsSleepsInRealTimeButWhileOneDoesSoAgainAndAgain) {
+  const std::string program = COHORT_BUILD_DIR "/bin/sleep_in_real_time";
+  const Ran once = run({program, "dds"}, 1h);
+  EXPECT_EQ(once.exit_code, 0);
+  EXPECT_LE(once.time, 50ms);
+  const Ran often = run({program, "often in dds"}, 1h);
+  EXPECT_EQ(often.exit_code, 0);
+  EXPECT_GE(often.time, 1s);
+}
+
 }  // namespace
 }  // namespace cohort::test

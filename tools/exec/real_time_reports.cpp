@@ -1,7 +1,5 @@
 #include "tools/exec/real_time_reports.hpp"
 
-#include <sys/syscall.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -83,8 +81,7 @@ bool RealTimeReports::sleeps_by_library(pid_t thread) const {
 std::vector<std::string> RealTimeReports::new_sleepers(const ThreadWatch& watch) {
   std::vector<std::string> texts;
   for (const ThreadWatch::SystemCall& call : watch.system_calls()) {
-    const bool sleeps = call.number == SYS_nanosleep || call.number == SYS_clock_nanosleep;
-    if (!sleeps || known_[call.process].is_real || sleeps_by_library(call.thread)) continue;
+    if (!is_sleep(call.number) || known_[call.process].is_real || sleeps_by_library(call.thread)) continue;
     if (!sleepers_.insert(call.thread).second) continue;
     texts.push_back("thread " + std::to_string(call.thread) + " of '" + name_ +
                     "' sleeps in real time: it makes system calls without the C library");

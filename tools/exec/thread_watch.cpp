@@ -12,6 +12,9 @@
 #include <string_view>
 
 namespace cohort::exec {
+
+bool is_sleep(long number) { return number == SYS_nanosleep || number == SYS_clock_nanosleep; }
+
 namespace {
 
 std::string task_folder(pid_t process) { return "/proc/" + std::to_string(process) + "/task/"; }
@@ -144,6 +147,7 @@ bool ThreadWatch::note_run(Thread& thread) {
   if (ran == thread.ran) return false;
   thread.ran = ran;
   thread.rests = false;
+  thread.sleeps = false;
   return true;
 }
 
@@ -163,6 +167,7 @@ bool ThreadWatch::rests(Thread& thread) const {
   if (!text.empty()) {
     const SystemCall call = system_call_in(text);
     if (!waits_for_others(call.number)) return false;
+    thread.sleeps = is_sleep(call.number);
     if (call.number == SYS_read || call.number == SYS_readv) {
       std::error_code error;
       const std::filesystem::path file =
@@ -226,6 +231,11 @@ std::string ThreadWatch::busy_threads() {
             ")";
   }
   return text;
+}
+
+bool ThreadWatch::sleeps(pid_t thread) const {
+  const auto found = threads_.find(thread);
+  return found != threads_.end() && found->second.sleeps;
 }
 
 std::vector<ThreadWatch::SystemCall> ThreadWatch::system_calls() const {

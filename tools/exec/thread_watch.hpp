@@ -10,6 +10,9 @@
 
 namespace cohort::exec {
 
+/// Returns whether a system call's number is that of a sleep by the machine's clock.
+bool is_sleep(long number);
+
 /// The threads of processes, as the kernel tells of them in /proc: whether all of them wait. One thread.
 class ThreadWatch {
  public:
@@ -42,6 +45,8 @@ class ThreadWatch {
     long number = -1;
     std::uint64_t arguments[6]{};
   };
+  /// Returns whether all_wait has seen a thread sleep by the machine's clock, as far as the kernel tells.
+  bool sleeps(pid_t thread) const;
   /// Returns what the threads that wait are waiting in, as far as the kernel tells.
   std::vector<SystemCall> system_calls() const;
 
@@ -54,6 +59,7 @@ class ThreadWatch {
     int system_call = -1;  // likewise
     std::string ran{};     // contents of schedstat
     bool rests = false;    // since it ran last, it was seen to wait for something else than a file
+    bool sleeps = false;   // then, by the machine's clock
   };
   static void close_all(Thread& thread);
   bool note_run(Thread& thread);

@@ -33,6 +33,7 @@ constexpr auto given_up_is_asked_every = 100ms;
 constexpr auto busy_is_told_after = 5s;
 constexpr auto check_interval = 1s;
 constexpr auto to_come_to_rest = 200ms;
+constexpr auto longest_real_sleep = 2s;  // twice the longest that threads of Fast DDS sleep by default
 constexpr int looks_between_lists = 256;
 
 void wait_on(std::atomic<std::uint32_t>& word, std::uint32_t seen, std::chrono::nanoseconds at_most) {
@@ -123,6 +124,22 @@ struct VirtualProgram::State {
     return page.threads == listed_threads && has_started();
   }
 
+  // A thread of DDS that sleeps by the machine's clock may hold what others need to receive messages. Fast DDS does so
+  // while it looks whether a peer's shared memory is in order. But a thread that sleeps again and again is at rest.
+  // `since`: when such sleeps began to be all that happens; set here.
+  bool library_sleeps(std::optional<Clock::time_point>& since) {
+    bool any = false;
+    for (const std::atomic<std::int32_t>& each : page.real_sleepers) {
+      const std::int32_t thread = each;
+      if (thread == 0) break;
+      if (habitual_sleepers.contains(thread) || !watch.sleeps(thread)) continue;
+      if (!since) since = Clock::now();
+      if (Clock::now() - *since > longest_real_sleep) habitual_sleepers.insert(thread);
+      any = true;
+    }
+    return any;
+  }
+
   // The library announces itself before the program's own code runs.
   bool has_started() {
     return std::ranges::any_of(page.processes,
@@ -145,10 +162,11 @@ struct VirtualProgram::State {
   bool find_rest() {
     Clock::time_point begin = Clock::now();
     Clock::time_point ask_at = begin + given_up_is_asked_every;
+    std::optional<Clock::time_point> only_sleeps_since;
     std::chrono::nanoseconds ran = watch.processor_time();
     for (;;) {
       const std::uint32_t seen = page.changes;
-      const bool rests = is_at_rest();
+      const bool rests = is_at_rest() && !library_sleeps(only_sleeps_since);
       if (rests) page.no_turns = 0;
       if (rests && !give_turn()) {
         has_settled = true;
@@ -159,6 +177,7 @@ struct VirtualProgram::State {
       const Clock::time_point now = Clock::now();
       if (rests) {
         begin = now;
+        only_sleeps_since.reset();
         ran = watch.processor_time();
       }
       nap(seen, now - begin);
@@ -325,7 +344,8 @@ struct VirtualProgram::State {
   bool has_told_busy = false;
   bool has_told_turns = false;
   std::set<const Wait*> had_turns{};  // since the last one had its turn
-  bool has_settled = false;           // once
+  std::set<pid_t> habitual_sleepers{};
+  bool has_settled = false;  // once
   Clock::time_point check_at = Clock::now() + check_interval;
   bool may_have_new_images = false;
   std::mutex mutex;        // but for the page
@@ -405,8 +425,9 @@ int VirtualProgram::end(std::chrono::milliseconds at_most) {
 
 std::string text_of_end(int exit_code) {
   constexpr int signals = 128;
-  return exit_code > signals ? "was terminated by the signal " + std::string(::strsignal(exit_code - signals))
-                             : "has ended with the exit code " + std::to_string(exit_code);
+  if (exit_code <= signals) return "has ended with the exit code " + std::to_string(exit_code);
+  const char* const name = ::sigdescr_np(exit_code - signals);
+  return "was terminated by the signal " + (name != nullptr ? name : std::to_string(exit_code - signals));
 }
 
 }  // namespace cohort::exec

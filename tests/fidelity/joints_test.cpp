@@ -201,37 +201,86 @@ TEST(Bodies, ATumblingBoxKeepsItsAngularMomentumAndItsEnergy) {
 }
 
 // Two links on two hinges, released sideways: without damping, the energy stays constant.
-TEST(Joints, ADoublePendulumKeepsItsEnergy) {
-  SmallWorld small(empty_world(std::chrono::milliseconds(1)));
-  description::Model model = pendulum(JointType::revolute, 1.0);
-  description::Inertial bob = solid_sphere(1.0, 1e-3);
-  bob.X_LI.position = {0, 0, -0.5};
-  model.links.push_back({"second", {{0, 0, -1.0}}, bob, {}});
-  Joint elbow;
-  elbow.name = "elbow";
-  elbow.type = JointType::revolute;
-  elbow.parent = 0;
-  elbow.child = 1;
-  elbow.axis.direction = Vector3d::UnitY();
-  model.joints.push_back(elbow);
-  const auto body = small.add(model, turned(0, 0, 0, Vector3d::UnitY(), 1.5));
-  const auto energy = [&] {
-    double sum = 0.0;
-    const double arms[] = {1.0, 0.5};
-    for (std::size_t link = 0; link < 2; ++link) {
-      const Pose X_WL = small.world().link_pose(body, LinkId{link});
-      const physics::Twist twist = small.world().link_twist(body, LinkId{link});
-      const Vector3d arm = X_WL.orientation * Vector3d(0, 0, -arms[link]);
-      sum += 0.5 * (twist.linear_W + twist.angular_W.cross(arm)).squaredNorm() + g * (X_WL.position + arm).z();
-    }
-    return sum;
-  };
-  const double before = energy();
-  for (int i = 0; i < 5000; ++i) {
-    small.world().step();
-    ASSERT_NEAR(energy(), before, 0.3) << "at step " << i << ", of 24 J that go back and forth";
+// Thin rods of 1 kg that hang from each other by hinges without friction.
+description::Model chain_of_rods(std::size_t count, double length) {
+  description::Model model;
+  model.name = "chain";
+  description::Inertial rod;
+  rod.mass = 1.0;
+  rod.X_LI.position = {0, 0, -0.5 * length};
+  const double across = length * length / 12.0;
+  rod.inertia = Vector3d(across, across, 1e-3 * across).asDiagonal();
+  for (std::size_t i = 0; i < count; ++i) {
+    model.links.push_back({"rod" + std::to_string(i), {{0, 0, -length * static_cast<double>(i)}}, rod, {}});
+    Joint hinge;
+    hinge.name = "hinge" + std::to_string(i);
+    hinge.type = JointType::revolute;
+    hinge.parent = i == 0 ? Joint::world : i - 1;
+    hinge.child = i;
+    hinge.axis.direction = Vector3d::UnitY();
+    model.joints.push_back(hinge);
   }
+  return model;
 }
+
+struct SwingingChain {
+  std::size_t rods;
+  double length;
+  std::chrono::milliseconds step;
+  double tolerance;
+};
+class SwingingChains : public ::testing::TestWithParam<std::tuple<SwingingChain, description::Dynamics>> {};
+
+// Velocities belong to the middle of steps: in a pose, they are the means of those before and after it.
+TEST_P(SwingingChains, KeepTheirEnergyForAMinute) {
+  const SwingingChain& chain = std::get<0>(GetParam());
+  description::World world = empty_world(chain.step);
+  world.physics.dynamics = std::get<1>(GetParam());
+  SmallWorld small(world);
+  const description::Model model = chain_of_rods(chain.rods, chain.length);
+  const auto body = small.add(model, turned(0, 0, 0, Vector3d::UnitY(), 1.5));
+  const description::Inertial& rod = model.links[0].inertial;
+  const auto turns = [&] {
+    std::vector<Vector3d> angular;
+    for (std::size_t link = 0; link < chain.rods; ++link)
+      angular.push_back(small.world().link_twist(body, LinkId{link}).angular_W);
+    return angular;
+  };
+  double first = 0.0;
+  double worst = 0.0;
+  const auto steps = std::chrono::minutes(1) / chain.step;
+  for (int i = 0; i <= steps; ++i) {
+    const std::vector<Vector3d> before = turns();
+    std::vector<Pose> X_WL;
+    for (std::size_t link = 0; link < chain.rods; ++link) X_WL.push_back(small.world().link_pose(body, LinkId{link}));
+    small.world().step();
+    const std::vector<Vector3d> after = turns();
+    double energy = 0.0;
+    Vector3d linear = Vector3d::Zero();  // the velocity of the hinge
+    for (std::size_t link = 0; link < chain.rods; ++link) {
+      const Vector3d angular = 0.5 * (before[link] + after[link]);
+      const Vector3d arm = X_WL[link].orientation * rod.X_LI.position;
+      energy += 0.5 * rod.mass * (linear + angular.cross(arm)).squaredNorm() +
+                0.5 * rod.inertia(0, 0) * angular.squaredNorm() + rod.mass * g * (X_WL[link].position + arm).z();
+      linear += angular.cross(2.0 * arm);
+    }
+    if (i == 0) first = energy;
+    worst = std::max(worst, std::abs(energy - first));
+  }
+  const auto count = static_cast<double>(chain.rods);
+  EXPECT_LT(worst, chain.tolerance * g * rod.mass * chain.length * count * count) << "of what they gain and lose";
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, SwingingChains,
+                         testing::Combine(testing::Values(SwingingChain{2, 1.0, std::chrono::milliseconds(10), 0.01},
+                                                          SwingingChain{3, 0.3, std::chrono::milliseconds(2), 0.01},
+                                                          SwingingChain{7, 0.3, std::chrono::milliseconds(1), 0.02}),
+                                          testing::Values(description::Dynamics::bullet,
+                                                          description::Dynamics::cohort)),
+                         [](const auto& its) {
+                           return std::to_string(std::get<0>(its.param).rods) + "_rods_" +
+                                  (std::get<1>(its.param) == description::Dynamics::bullet ? "bullet" : "cohort");
+                         });
 
 // 2 kg on a rail.
 description::Model load_on_a_rail(const Vector3d& axis) {

@@ -20,6 +20,7 @@
 #include "server/parsing/world/physics_settings.hpp"
 #include "server/parsing/world/read_breakable_joints.hpp"
 #include "server/parsing/world/stand_on_plane.hpp"
+#include "server/parsing/world/swinging_chains.hpp"
 #include "server/placement/place.hpp"
 
 namespace cohort::parsing {
@@ -73,6 +74,7 @@ World WorldReader::finished() {
   placement::set_robots(world_);
   warn_of_mass_ratio(world_);
   warn_of_sizes(world_);
+  warn_of_swinging_chains(world_);
   return std::move(world_);
 }
 

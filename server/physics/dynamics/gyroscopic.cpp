@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 // Torques that precess a part at `rate` [rad/s], evaluated at the beginning of each step, change its energy by the
 // factor rate^2 * step per second. A factor below this counts as slow [1/s].
 constexpr double slow = 0.2;
-// The same limit for a ball joint of a body that nothing else touches or holds: no friction hides the error there.
-constexpr double slow_ball = 0.002;
+// The same limit for a body that nothing else touches or holds: no friction hides the error there.
+constexpr double slow_if_free = 0.002;
 
 bool is_fast(double rate, double step, double limit = slow) { return step * rate * rate > limit; }
 
@@ -47,7 +47,7 @@ Vector3d angular_velocity_at_joint(const BodyMotion& body, std::size_t s, const 
 // for a round segment only the rotation of its parent counts.
 bool has_fast_ball(const BodyMotion& body, double step, bool is_held) {
   const std::vector<Segment>& segments = body.mechanism().segments();
-  const double limit = is_held ? slow : slow_ball;
+  const double limit = is_held ? slow : slow_if_free;
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const Segment& segment = segments[s];
     if (segment.motion != Motion::ball) continue;
@@ -59,6 +59,14 @@ bool has_fast_ball(const BodyMotion& body, double step, bool is_held) {
     if (is_fast(body.segment_twist(segment.parent, position_W).angular_W.norm(), step, limit)) return true;
   }
   return false;
+}
+
+// Returns whether a hinge turns too fast in a mechanism that swings freely. Its centrifugal forces turn other joints.
+bool has_fast_hinge(const BodyMotion& body, double step, bool is_held) {
+  if (is_held || !body.mechanism().swings_freely()) return false;
+  return std::ranges::any_of(body.mechanism().segments(), [&](const Segment& segment) {
+    return segment.motion == Motion::revolute && is_fast(body.velocities()[segment.first_dof], step, slow_if_free);
+  });
 }
 
 // Returns whether the fluid turns a part too fast. The linear momentum of its added mass is not along its velocity,
@@ -102,7 +110,7 @@ bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_h
   if (has_loops) return false;
   if (has_fast_fluid(body, step)) return true;
   if (body.mechanism().is_free_body()) return false;
-  if (has_fast_ball(body, step, is_held)) return true;
+  if (has_fast_ball(body, step, is_held) || has_fast_hinge(body, step, is_held)) return true;
   if (!is_fast(bound_of_turning(body), step)) return false;
   const std::vector<Segment>& segments = body.mechanism().segments();
   struct Turning {

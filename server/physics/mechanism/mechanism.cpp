@@ -75,7 +75,24 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
     for (const description::MotorLimits& motor : description::motor_limits(device))
       if (joints_[motor.joint].dofs > 0)
         dofs_[static_cast<std::size_t>(joints_[motor.joint].first_dof)].rotor_inertia = motor.rotor_inertia;
-  for (const description::Coupling& coupling : model.couplings) {
+  find_followers();
+  turn_to_principal_axes();
+  sum_masses();
+  sum_added_masses();
+  if (has_kinematic_root()) make_root_immovable();
+  find_outputs();
+  swings_freely_ = dof_count() > 1 && !is_held_by_rows();
+}
+
+bool Mechanism::is_held_by_rows() const {
+  const auto has_motors = [](const description::Device& device) { return !description::motor_limits(device).empty(); };
+  const auto has_friction = [](const Dof& dof) { return dof.axis.friction > 0.0; };
+  return has_wheels_ || !followers_.empty() || !model_->loop_joints.empty() ||
+         std::ranges::any_of(model_->devices, has_motors) || std::ranges::any_of(dofs_, has_friction);
+}
+
+void Mechanism::find_followers() {
+  for (const description::Coupling& coupling : model_->couplings) {
     const JointPlace& follower = joints_[coupling.follower];
     const JointPlace& leader = joints_[coupling.leader];
     if (follower.dofs > 0 && leader.dofs > 0)
@@ -83,11 +100,6 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
                             leader.first_dof + (coupling.follows_second_axis ? 1 : 0), coupling.multiplier,
                             coupling.offset});
   }
-  turn_to_principal_axes();
-  sum_masses();
-  sum_added_masses();
-  if (has_kinematic_root()) make_root_immovable();
-  find_outputs();
 }
 
 void Mechanism::find_outputs() {

@@ -96,6 +96,8 @@ class Mechanism {
   bool has_free_root() const { return segments_[0].motion == Motion::free; }
   /// Returns whether the root is free and keeps its velocity under any force: the solver gives it a mass of 1e15 kg.
   bool has_kinematic_root() const { return has_free_root() && model_->links[0].is_kinematic; }
+  /// Returns whether it has several degrees of freedom, of which no motor, friction, coupling or loop holds any.
+  bool swings_freely() const { return swings_freely_; }
   /// Returns whether wheels are simulated; the motors of their joints then drive the robot.
   bool has_wheels() const { return has_wheels_; }
 
@@ -118,7 +120,9 @@ class Mechanism {
   int add_segment(int parent, Motion motion, const Pose& X_PS, const Eigen::Vector3d& axis_S,
                   const description::JointAxis* axis);
   void turn_to_principal_axes();
+  void find_followers();
   void find_outputs();
+  bool is_held_by_rows() const;
   void sum_masses();
   void make_root_immovable();
   void add_mass(int index, const description::Inertial& inertial, const Pose& X_SL);
@@ -138,6 +142,7 @@ class Mechanism {
   double moving_mass_ = 0.0;
   bool is_chain_ = true;
   bool has_wheels_ = false;
+  bool swings_freely_ = false;
 };
 
 }  // namespace cohort::physics

@@ -338,6 +338,40 @@ TEST_F(Accuracy, AMassRatioThatIsTooGreatIsWarnedOf) {
   EXPECT_TRUE(warnings[0].message.starts_with("has 1e+06 times the mass of 'bead'")) << warnings[0].message;
 }
 
+TEST_F(Accuracy, AChainThatSwingsTooFastForTheStepIsWarnedOf) {
+  const auto chain = [](int count, const std::string& dynamics) {
+    std::string model =
+        "<model name=\"chain\"><joint name=\"j0\" type=\"revolute\"><parent>world</parent>"
+        "<child>l0</child><axis><xyz>0 1 0</xyz>" +
+        dynamics + "</axis></joint>";
+    for (int i = 0; i < count; ++i) {
+      const std::string link = "l" + std::to_string(i);
+      model += "<link name=\"" + link + "\"><pose>0 0 " + std::to_string(-0.1 * i) +
+               " 0 0 0</pose><inertial><pose>0 0 -0.05 0 0 0</pose><mass>1</mass>"
+               "<inertia><ixx>8.3333e-4</ixx><iyy>8.3333e-4</iyy><izz>1e-6</izz></inertia></inertial></link>";
+      if (i > 0)
+        model += "<joint name=\"j" + std::to_string(i) + "\" type=\"revolute\"><parent>l" + std::to_string(i - 1) +
+                 "</parent><child>" + link + "</child><axis><xyz>0 1 0</xyz>" + dynamics + "</axis></joint>";
+    }
+    return model + "</model>";
+  };
+  const auto warnings = [&](const std::string& content) {
+    std::vector<std::string> texts;
+    for (const Problem& warning : read(content).warnings)
+      if (warning.message.starts_with("swings")) texts.push_back(warning.message);
+    return texts;
+  };
+  const std::string of_two_milliseconds = "<physics type=\"ignored\"><max_step_size>0.002</max_step_size></physics>";
+  EXPECT_EQ(warnings(chain(7, "")),
+            std::vector<std::string>{
+                "swings on 7 joints in a row that nothing brakes: steps of 0.01 s are too long to keep its energy; "
+                "use at most 0.00072 s, or give the joints damping"});
+  EXPECT_EQ(warnings(of_two_milliseconds + chain(7, "")), std::vector<std::string>{});
+  EXPECT_EQ(warnings(chain(2, "")), std::vector<std::string>{});
+  EXPECT_EQ(warnings(chain(7, "<dynamics><damping>0.1</damping></dynamics>")), std::vector<std::string>{});
+  EXPECT_EQ(warnings("<gravity>0 0 0</gravity>" + chain(7, "")), std::vector<std::string>{});
+}
+
 class FlawOfPhysicsInAnExperiment : public PhysicsOfAnExperiment, public testing::WithParamInterface<Flaw> {};
 
 TEST_P(FlawOfPhysicsInAnExperiment, IsReportedAloneWithFileLineAndKey) {

@@ -24,14 +24,14 @@ bool is_braked(const JointAxis& axis) {
 }
 
 // Returns which joints turn with nothing that holds or brakes them.
-std::vector<char> free_joints(const Model& model) {
-  std::vector<char> is_free;
+std::vector<bool> free_joints(const Model& model) {
+  std::vector<bool> is_free;
   for (const Joint& joint : model.joints)
     is_free.push_back(is_turning(joint.type) && !is_braked(joint.axis) && !is_braked(joint.second_axis));
   for (const Device& device : model.devices)
-    for (const description::MotorLimits& motor : description::motor_limits(device)) is_free[motor.joint] = 0;
+    for (const description::MotorLimits& motor : description::motor_limits(device)) is_free[motor.joint] = false;
   for (const description::Coupling& coupling : model.couplings)
-    is_free[coupling.follower] = is_free[coupling.leader] = 0;
+    is_free[coupling.follower] = is_free[coupling.leader] = false;
   return is_free;
 }
 
@@ -58,7 +58,7 @@ double length_as_rod(const Link& link, const Eigen::Vector3d& pivot_L) {
 
 // Returns the chain of a model that swings fastest.
 Chain fastest_chain(const Model& model, double gravity) {
-  const std::vector<char> is_free = free_joints(model);
+  const std::vector<bool> is_free = free_joints(model);
   std::vector<std::size_t> joint_of(model.links.size(), Joint::world);
   for (std::size_t i = 0; i < model.joints.size(); ++i) joint_of[model.joints[i].child] = i;
   std::vector<Chain> above(model.links.size());
@@ -68,7 +68,7 @@ Chain fastest_chain(const Model& model, double gravity) {
     const Joint& joint = model.joints[joint_of[link]];
     Chain& chain = above[link];
     if (joint.parent != Joint::world) chain = above[joint.parent];
-    if (is_free[joint_of[link]] == 0) continue;
+    if (!is_free[joint_of[link]]) continue;
     const Eigen::Vector3d pivot_M = (model.links[link].X_ML * joint.X_LJ).position;
     if (chain.joints > 0) chain.add_link((pivot_M - chain.last_M).norm(), gravity);
     chain.last_M = pivot_M;

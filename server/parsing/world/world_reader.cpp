@@ -218,20 +218,8 @@ void WorldReader::read_extensions(const Element& world) {
       report_.problem(element, "<" + prefixed(extension->name) + "> is given twice");
     if (extension->name == "population") {
       if (auto population = read_population(element, *extension, report_)) add_population(*std::move(population));
-    } else if (extension->name == "physics") {
-      if (const auto values = ExtensionValues::read(element, *extension, report_))
-        world_.physics = with_values(world_.physics, *values);
-    } else if (extension->name == "climate") {
-      if (const auto values = ExtensionValues::read(element, *extension, report_))
-        world_.climate = {values->real("temperature"), values->real("humidity")};
-    } else if (extension->name == "air") {
-      if (const auto values = ExtensionValues::read(element, *extension, report_)) {
-        world_.air.density = values->real("density");
-        world_.air.wind_force = values->real("force_approximation_scaling_factor");
-      }
-    } else if (extension->name == "water") {
-      if (const auto values = ExtensionValues::read(element, *extension, report_))
-        world_.water = Water{values->real("level"), values->real("density"), values->vector("current")};
+    } else {
+      read_setting(element, *extension);
     }
   }
   placement::add_populations(world_, seed_, names_, problems_);
@@ -239,6 +227,24 @@ void WorldReader::read_extensions(const Element& world) {
   // be more of them.
   const bool all_is_read = problems_.empty();
   for (const auto& [element, extension] : extensions) read_reference(element, *extension, all_is_read);
+}
+
+// Does nothing for an element that is no setting of the world.
+void WorldReader::read_setting(const Element* element, const Extension& extension) {
+  const std::string_view name = extension.name;
+  if (name != "physics" && name != "climate" && name != "air" && name != "water") return;
+  const auto values = ExtensionValues::read(element, extension, report_);
+  if (!values) return;
+  if (name == "physics") {
+    world_.physics = with_values(world_.physics, *values);
+  } else if (name == "climate") {
+    world_.climate = {values->real("temperature"), values->real("humidity")};
+  } else if (name == "air") {
+    world_.air.density = values->real("density");
+    world_.air.wind_force = values->real("force_approximation_scaling_factor");
+  } else {
+    world_.water = Water{values->real("level"), values->real("density"), values->vector("current")};
+  }
 }
 
 // Reads an element that names a material or an object; always checks its keys.

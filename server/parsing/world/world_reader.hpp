@@ -49,6 +49,7 @@ class WorldReader {
   void add_included_model(const Include& include, const Pose& X_WM);
   void add_part(const SdfFile& unread, const std::string& name, const Pose& X_WM);
   void read_extensions(const Element& world);
+  void read_setting(const Element* element, const Extension& extension);
   void read_reference(const Element* element, const Extension& extension, bool all_is_read);
   void add_material_pair(const ExtensionValues& values);
   void add_breakable_joint(const ExtensionValues& values);

@@ -9,9 +9,9 @@
 namespace cohort::parsing {
 namespace {
 
-// Limits for the step times the sum of sqrt(g / length). Up to the first, chains of 2 to 12 equal rods that are let go
-// when level keep their energy within 1 % for half a minute. At the second, they lose or gain a tenth or more, and
-// beyond it they may fly apart.
+// Limits for the step times the sum of sqrt(g / length), measured for equal rods that are let go when level
+// (docs/fidelity.md). Up to the first, 2 to 12 rods keep their energy within about 1 % for 10 to 30 s. At the second, 5
+// and more are off by over a tenth.
 constexpr double accurate = 0.05;
 constexpr double wrong = 0.25;
 

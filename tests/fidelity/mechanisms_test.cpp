@@ -76,6 +76,51 @@ TEST_P(Mechanisms, AFourBarLinkageMovesAsAParallelogram) {
   EXPECT_NEAR(small.position(body, 1).y(), 0.0, 1e-6) << "it stays in its plane";
 }
 
+// Two cranks and two couplers of 0.3 m swing for 20 s. Their ends move on arcs, where they would part by h v^2 / 2r
+// in each step. What is left falls with the third power of the step.
+TEST_P(Mechanisms, AFiveBarLinkageThatSwingsStaysClosed) {
+  constexpr double length = 0.3;
+  const Vector3d y = Vector3d::UnitY();
+  const auto rod = [&](const std::string& name, const Vector3d& from, const Vector3d& to) {
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitX(), to - from);
+    description::Link link{name, {from, turn}, solid_box(0.2, {length, 0.02, 0.02}), {}};
+    link.inertial.X_LI.position = {0.5 * length, 0, 0};
+    return link;
+  };
+  const auto linkage_that_leans = [&](double angle) {  // of both cranks
+    const Vector3d left{-0.15, 0, 0}, right{0.15, 0, 0};
+    const Vector3d along = length * Vector3d(std::sin(angle), 0, -std::cos(angle));
+    const Vector3d apex = along + Vector3d(0, 0, -std::sqrt(length * length - 0.15 * 0.15));
+    description::Model linkage;
+    linkage.name = "five_bar";
+    linkage.links = {rod("left_crank", left, left + along), rod("left_coupler", left + along, apex),
+                     rod("right_crank", right, right + along), rod("right_coupler", right + along, apex)};
+    linkage.joints = {
+        joint_of("a", JointType::revolute, Joint::world, 0, y), joint_of("b", JointType::revolute, 0, 1, y),
+        joint_of("c", JointType::revolute, Joint::world, 2, y), joint_of("d", JointType::revolute, 2, 3, y)};
+    linkage.loop_joints = {joint_of("e", JointType::revolute, 1, 3, y, {length, 0, 0})};
+    return linkage;
+  };
+  for (const double angle : {0.4, -0.4, 1.0}) {
+    for (const int milliseconds : {10, 5, 2, 1}) {
+      description::World world = space(9.81);
+      world.step = std::chrono::milliseconds(milliseconds);
+      SmallWorld small(world);
+      const auto body = small.add(linkage_that_leans(angle), at(0, 0, 1));
+      const auto end_of = [&](std::size_t link) {
+        return small.world().link_pose(body, LinkId{link}) * Vector3d(length, 0, 0);
+      };
+      double widest = 0.0;
+      for (int tick = 0; tick < 20000 / milliseconds; ++tick) {
+        small.world().step();
+        widest = std::max(widest, (end_of(1) - end_of(3)).norm());
+      }
+      EXPECT_LT(widest, (angle == 1.0 ? 0.8e-3 : 0.15e-3) * std::pow(0.1 * milliseconds, 3))
+          << angle << " rad, " << milliseconds << " ms";
+    }
+  }
+}
+
 // The second axis of a universal joint leads or follows a hinge; a torque about y turns both bars.
 TEST_P(Mechanisms, TheSecondAxisOfAUniversalJointIsCoupledToo) {
   for (const bool follows : {true, false}) {

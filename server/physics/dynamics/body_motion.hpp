@@ -28,6 +28,7 @@ class BodyMotion {
   // Returns the state, which determines the further motion of the body. Call `update_poses` after changes of the root
   // or of coordinates.
   BodyState& state() { return state_; }
+  const BodyState& state() const { return state_; }
   const double* velocities() const { return state_.velocities(); }
   double coordinate(const Dof& dof) const { return *state_.coordinates(dof.coordinate); }
   /// Returns the reference point of this body's spatial velocities [m]: the centre of mass of the root segment, or the

@@ -1,6 +1,7 @@
 #include "server/physics/dynamics/integration.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "server/physics/dynamics/whole_body.hpp"
 #include "server/physics/mechanism/rotation.hpp"
@@ -8,14 +9,18 @@
 namespace cohort::physics {
 namespace {
 
+struct Turn {
+  Eigen::Quaterniond rotation;  // after the step
+  Eigen::Vector3d angular_W;
+};
+
 // Rotates a free body; conserves its angular momentum exactly and its energy nearly. Half a step with the initial
 // angular velocity gives the velocity in the middle, which turns the body over the whole step.
-void turn_freely(BodyMotion& body, double step) {
-  BodyState& state = body.state();
+Turn turned_freely(const BodyMotion& body, double step) {
   const Eigen::Matrix3d& inertia_S = body.mechanism().segments()[0].inertia_S;
   const Eigen::Matrix3d inverse_S = inertia_S.inverse();
-  const Eigen::Map<const Eigen::Vector3d> angular_W(state.velocities());
-  const Eigen::Quaterniond before = state.root_rotation();
+  const Eigen::Map<const Eigen::Vector3d> angular_W(body.velocities());
+  const Eigen::Quaterniond before = body.state().root_rotation();
   const Eigen::Vector3d momentum_W = before * (inertia_S * (before.conjugate() * angular_W));
   const auto turned_by = [&](const Eigen::Vector3d& turn) { return (rotation_by(turn) * before).normalized(); };
   const auto velocity_at = [&](const Eigen::Quaterniond& rotation) -> Eigen::Vector3d {
@@ -23,28 +28,38 @@ void turn_freely(BodyMotion& body, double step) {
   };
   const Eigen::Vector3d middle_W = velocity_at(turned_by(0.5 * step * angular_W));
   const Eigen::Quaterniond after = turned_by(step * middle_W);
-  const Eigen::Vector3d new_angular_W = velocity_at(after);
-  state.set_root_rotation(after);
-  std::copy_n(new_angular_W.data(), 3, state.velocities());
+  return {after, velocity_at(after)};
+}
+
+Eigen::Quaterniond turned(const BodyMotion& body, double step) {
+  const double* v = body.velocities();
+  return (rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2])) * body.state().root_rotation()).normalized();
+}
+
+Eigen::Vector3d moved(const BodyMotion& body, double step) {
+  const double* v = body.velocities() + 3;
+  return body.reference() + step * Eigen::Vector3d(v[0], v[1], v[2]);
+}
+
+void move_joint(const Segment& segment, const double* v, double step, double* coordinates) {
+  switch (segment.motion) {
+    case Motion::anchored:
+    case Motion::free: break;
+    case Motion::revolute:
+    case Motion::prismatic: coordinates[0] += step * v[0]; break;
+    case Motion::ball: {
+      const Eigen::Quaterniond before(coordinates);
+      const Eigen::Quaterniond turned = (before * rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2]))).normalized();
+      for (int i = 0; i < 4; ++i) coordinates[i] = turned.coeffs()[i];  // x y z w
+      break;
+    }
+  }
 }
 
 void move_joints(BodyMotion& body, double step) {
-  for (const Segment& segment : body.mechanism().segments()) {
-    const double* v = body.state().velocities() + segment.first_dof;
-    double* coordinates = body.state().coordinates(segment.first_coordinate);
-    switch (segment.motion) {
-      case Motion::anchored:
-      case Motion::free: break;
-      case Motion::revolute:
-      case Motion::prismatic: coordinates[0] += step * v[0]; break;
-      case Motion::ball: {
-        const Eigen::Quaterniond before(coordinates);
-        const Eigen::Quaterniond turned = (before * rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2]))).normalized();
-        for (int i = 0; i < 4; ++i) coordinates[i] = turned.coeffs()[i];  // x y z w
-        break;
-      }
-    }
-  }
+  BodyState& state = body.state();
+  for (const Segment& segment : body.mechanism().segments())
+    move_joint(segment, state.velocities() + segment.first_dof, step, state.coordinates(segment.first_coordinate));
 }
 
 }  // namespace
@@ -56,16 +71,32 @@ void integrate(BodyMotion& body, const double* velocities, double step) {
   std::copy_n(velocities + kept, mechanism.dof_count() - kept, state.velocities() + kept);
   move_joints(body, step);
   if (mechanism.has_free_root()) {
-    const double* v = state.velocities();
     if (mechanism.turns_freely()) {
-      turn_freely(body, step);
+      const Turn turn = turned_freely(body, step);
+      state.set_root_rotation(turn.rotation);
+      std::copy_n(turn.angular_W.data(), 3, state.velocities());
     } else {
-      const Eigen::Quaterniond turn = rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2]));
-      state.set_root_rotation((turn * state.root_rotation()).normalized());
+      state.set_root_rotation(turned(body, step));
     }
-    state.set_reference(state.reference() + step * Eigen::Vector3d(v[3], v[4], v[5]));
+    state.set_reference(moved(body, step));
   }
   body.update_poses();
+}
+
+Pose pose_ahead(const BodyMotion& body, int segment, double step) {
+  const Mechanism& mechanism = body.mechanism();
+  const Segment& its = mechanism.segments()[static_cast<std::size_t>(segment)];
+  if (its.motion == Motion::free) {
+    const Eigen::Quaterniond rotation =
+        mechanism.turns_freely() ? turned_freely(body, step).rotation : turned(body, step);
+    return {moved(body, step) - rotation * its.centre_S, rotation};
+  }
+  const Pose X_WP = its.parent < 0 ? body.model_pose() : pose_ahead(body, its.parent, step);
+  std::array<double, 4> coordinates{};
+  const int count = its.motion == Motion::anchored ? 0 : its.motion == Motion::ball ? 4 : 1;
+  std::copy_n(body.state().coordinates(its.first_coordinate), count, coordinates.begin());
+  move_joint(its, body.velocities() + its.first_dof, step, coordinates.data());
+  return moved_by_joint(its, X_WP * its.X_PS, coordinates.data());
 }
 
 // Conserves the momentum of the whole body except for external impulses: the motion of the root follows from that of

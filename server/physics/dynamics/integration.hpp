@@ -10,5 +10,7 @@ void integrate(BodyMotion& body, const double* velocities, double step);
 /// moment about the reference point [N m s], change its total momentum.
 void fly(BodyMotion& body, const double* velocities, const Eigen::Vector3d& impulse_W,
          const Eigen::Vector3d& angular_impulse_W, const Eigen::Vector3d& gravity, double step);
+/// Returns X_WS of a segment as `integrate` would move it over `step` [s] with the present velocities.
+Pose pose_ahead(const BodyMotion& body, int segment, double step);
 
 }  // namespace cohort::physics

@@ -256,7 +256,9 @@ void Assembly::add_own_rows(std::uint32_t member, Problem& problem) {
 
 void Assembly::add_connection_rows(Connection& connection, Problem& problem) {
   if (connection.b().member != Anchors::nobody && anchors.index_of_member[connection.b().member] < 0) return;
-  connection.add_rows(problem, anchors, pose_of(connection.a()), pose_of(connection.b()), step);
+  const Connection::Ends X_WS{pose_of(connection.a()), pose_of(connection.b())};
+  const Connection::Ends ahead{pose_ahead_of(connection.a()), pose_ahead_of(connection.b())};
+  connection.add_rows(problem, anchors, X_WS, ahead, step);
 }
 
 void Assembly::add_contact_rows(SolidPair& pair, Problem& problem, FrictionStart start) const {

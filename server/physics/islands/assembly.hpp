@@ -114,6 +114,11 @@ struct Assembly {
   Pose pose_of(const Connection::End& end) const {
     return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->motion().segment_pose(end.segment);
   }
+  /// Returns the same after a step with the present velocities.
+  Pose pose_ahead_of(const Connection::End& end) const {
+    return end.member == Anchors::nobody ? Pose{}
+                                         : pose_ahead(members[end.member].multibody->motion(), end.segment, step);
+  }
 
   /// Determines which parts of the member are fast. Returns the greatest displacement of these parts in the step [m],
   /// or 0 if there are none.

@@ -64,57 +64,53 @@ Connection::Spring Connection::spring(int axis) const {
   return {give_.angular_stiffness[axis - 3], give_.angular_damping[axis - 3], give_.holding_torque[axis - 3]};
 }
 
-void Connection::add_rows(Problem& problem, const Anchors& anchors, const Pose& X_WSa, const Pose& X_WSb, double step) {
-  const Pose X_WPa = X_WSa * a_.X_SP;
-  const Pose X_WPb = X_WSb * b_.X_SP;
-  const Anchor a{anchors.index_of_member[a_.member], a_.segment};
-  const Anchor b = b_.member == Anchors::nobody ? Anchor{} : Anchor{anchors.index_of_member[b_.member], b_.segment};
-  point_W_ = 0.5 * (X_WPa.position + X_WPb.position);
-  if (yields_) return add_yielding_rows(problem, a, b, X_WPa, X_WPb, step);
-  const Vector3d gap_W = gap(X_WPa, X_WPb);
-  const Vector3d twist_W = twist(X_WPa, X_WPb);
-  for (int axis = 0; axis < 3; ++axis) {
-    double* kept = &impulses_[static_cast<std::size_t>(axis)];
-    problem.add_force_row(a, b, point_W_, Vector3d::Unit(axis), kept).target =
-        correction(gap_W[axis], most_linear_correction, step);
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    double* kept = &impulses_[3 + static_cast<std::size_t>(axis)];
-    problem.add_torque_row(a, b, Vector3d::Unit(axis), kept).target =
-        correction(twist_W[axis], most_angular_correction, step);
-  }
+Connection::Errors Connection::errors_at(const Ends& X_WS) const {
+  const Pose X_WPa = X_WS.a * a_.X_SP;
+  const Pose X_WPb = X_WS.b * b_.X_SP;
+  // A compliant one turns with a, and has its errors in the axes of P.
+  const Eigen::Quaterniond to_axes = yields_ ? X_WPa.orientation.conjugate() : Eigen::Quaterniond::Identity();
+  // `twist` is twice the sine of half the angle. The angle itself, by a series, grows evenly with time.
+  const Vector3d sine_W = twist(X_WPa, X_WPb);
+  return {to_axes * gap(X_WPa, X_WPb), to_axes * (sine_W * (1.0 + sine_W.squaredNorm() / 24.0))};
 }
 
-// Adds rows along the axes of P. A spring k with a damper c, both at the end of the step, exerts f = -k (x + h v) - c
-// v. With the impulse i = h f this is a soft row: v + i / (h (h k + c)) = -k x / (h k + c).
-void Connection::add_yielding_rows(Problem& problem, Anchor a, Anchor b, const Pose& X_WPa, const Pose& X_WPb,
-                                   double step) {
-  has_rows_ = true;
-  axes_W_ = X_WPa.orientation.toRotationMatrix();
-  row_impulses_ = turned(axes_W_.transpose(), impulses_);
-  const Vector3d gap_P = axes_W_.transpose() * gap(X_WPa, X_WPb);
-  const Vector3d twist_P = axes_W_.transpose() * twist(X_WPa, X_WPb);
+void Connection::add_rows(Problem& problem, const Anchors& anchors, const Ends& X_WS, const Ends& ahead, double step) {
+  const Pose X_WPa = X_WS.a * a_.X_SP;
+  point_W_ = 0.5 * (X_WPa.position + (X_WS.b * b_.X_SP).position);
+  if (yields_) {
+    has_rows_ = true;
+    axes_W_ = X_WPa.orientation.toRotationMatrix();
+    row_impulses_ = turned(axes_W_.transpose(), impulses_);
+  }
+  const Anchor a{anchors.index_of_member[a_.member], a_.segment};
+  const Anchor b = b_.member == Anchors::nobody ? Anchor{} : Anchor{anchors.index_of_member[b_.member], b_.segment};
+  const Errors errors = errors_at(X_WS);
+  const Errors errors_ahead = errors_at(ahead);
   for (int axis = 0; axis < 6; ++axis) {
-    double& kept = row_impulses_[static_cast<std::size_t>(axis)];
-    const auto [stiffness, damping, limit] = spring(axis);
-    const bool is_free = limit == 0.0 || (stiffness == 0.0 && damping == 0.0);
-    if (is_free) {
+    double& kept = (yields_ ? row_impulses_ : impulses_)[static_cast<std::size_t>(axis)];
+    if (yields_ && spring(axis).is_free()) {
       kept = 0.0;
       continue;
     }
-    const Vector3d direction_W = axes_W_.col(axis % 3);
+    const Vector3d direction_W = yields_ ? Vector3d(axes_W_.col(axis % 3)) : Vector3d::Unit(axis % 3);
     Row& row = axis < 3 ? problem.add_force_row(a, b, point_W_, direction_W, &kept)
                         : problem.add_torque_row(a, b, direction_W, &kept);
-    const double off = axis < 3 ? gap_P[axis] : twist_P[axis - 3];
-    row.set_limits(-limit * step, limit * step);
-    row.is_hold = true;
-    if (std::isinf(stiffness)) {
-      row.target = correction(off, axis < 3 ? most_linear_correction : most_angular_correction, step);
-    } else {
-      row.target = -stiffness * off / (step * stiffness + damping);
-      row.soften(1.0 / (step * (step * stiffness + damping)));
-    }
+    const double off = errors[axis];
+    const double by_turning = problem.velocity_by_turning(row, off, errors_ahead[axis], step);
+    const double most = axis < 3 ? most_linear_correction : most_angular_correction;
+    row.target = correction(correction_share, off, most, step) - by_turning;
+    if (yields_) make_yielding(row, spring(axis), off + step * by_turning, step);
   }
+}
+
+// A spring k with a damper c, both at the end of the step, exerts f = -k (x + h v) - c v. With the impulse i = h f this
+// is a soft row: v + i / (h (h k + c)) = -k x / (h k + c).
+void Connection::make_yielding(Row& row, const Spring& spring, double off, double step) {
+  row.set_limits(-spring.limit * step, spring.limit * step);
+  row.is_hold = true;
+  if (std::isinf(spring.stiffness)) return;
+  row.target = -spring.stiffness * off / (step * spring.stiffness + spring.damping);
+  row.soften(1.0 / (step * (step * spring.stiffness + spring.damping)));
 }
 
 void Connection::settle(const Pose& X_WSa, const Pose& X_WSb, double step) {

@@ -34,8 +34,14 @@ class Connection {
   /// Releases it because of its load in the last step, which `wrench` returns until the end of the next step.
   void break_now();
 
-  /// Adds three rows against relative translation and three against rotation. X_WS: poses of the segments of both ends.
-  void add_rows(Problem& problem, const Anchors& anchors, const Pose& X_WSa, const Pose& X_WSb, double step);
+  /// Poses X_WS of the segments of both ends.
+  struct Ends {
+    Pose a;
+    Pose b;
+  };
+  /// Adds three rows against relative translation and three against rotation. `ahead`: the ends after a step with the
+  /// present velocities.
+  void add_rows(Problem& problem, const Anchors& anchors, const Ends& X_WS, const Ends& ahead, double step);
   /// Returns whether `settle` must be called after each step.
   bool may_slip() const { return yields_; }
   /// Takes over the impulses of the step and, if it slipped, its new rest pose.
@@ -73,9 +79,19 @@ class Connection {
     double stiffness;
     double damping;
     double limit;
+
+    bool is_free() const { return limit == 0.0 || (stiffness == 0.0 && damping == 0.0); }
   };
   Spring spring(int axis) const;
-  void add_yielding_rows(Problem& problem, Anchor a, Anchor b, const Pose& X_WPa, const Pose& X_WPb, double step);
+  /// The displacement from frame P as b carries it to P as a carries it, along the axes of the rows.
+  struct Errors {
+    Eigen::Vector3d gap;
+    Eigen::Vector3d twist;  ///< rotation vector
+
+    double operator[](int axis) const { return axis < 3 ? gap[axis] : twist[axis - 3]; }
+  };
+  Errors errors_at(const Ends& X_WS) const;
+  static void make_yielding(Row& row, const Spring& spring, double off, double step);
   const Impulses& last() const { return holds_ ? impulses_ : breaking_; }
 
   End a_;

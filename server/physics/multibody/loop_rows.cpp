@@ -1,8 +1,9 @@
 #include "server/physics/multibody/loop_rows.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 
-#include "server/physics/dynamics/body_motion.hpp"
+#include "server/physics/dynamics/integration.hpp"
 #include "server/physics/mechanism/rotation.hpp"
 #include "server/physics/multibody/rows.hpp"
 #include "server/physics/world/corrections.hpp"
@@ -45,58 +46,59 @@ bool LoopRows::connect(int segment, int other) const {
   });
 }
 
+LoopRows::Errors LoopRows::errors_of(const Loop& loop, const Pose& X_WPp, const Pose& X_WPc) {
+  const Vector3d gap_W = X_WPc.position - X_WPp.position;
+  const Vector3d axis_W = X_WPp.orientation * loop.axis_P;
+  const Vector3d aside_W = X_WPp.orientation * loop.axis_P.unitOrthogonal();
+  const Vector3d other_aside_W = axis_W.cross(aside_W);
+  Errors errors;
+  const auto add = [&](const Vector3d& error_W, std::initializer_list<Vector3d> directions_W) {
+    for (const Vector3d& direction_W : directions_W) errors.add(direction_W, error_W.dot(direction_W));
+  };
+  if (loop.type != JointType::prismatic) add(gap_W, {axis_W});
+  add(gap_W, {aside_W, other_aside_W});
+  errors.linear = errors.count;
+  switch (loop.type) {
+    case JointType::ball: break;
+    case JointType::fixed:
+    case JointType::prismatic:
+      add(rotation_vector(X_WPc.orientation * X_WPp.orientation.conjugate()), {axis_W, aside_W, other_aside_W});
+      break;
+    case JointType::revolute:
+    case JointType::screw: add(axis_W.cross(X_WPc.orientation * loop.axis_P), {aside_W, other_aside_W}); break;
+    case JointType::universal: {
+      const Vector3d second_W = X_WPc.orientation * loop.second_axis_P;
+      const Vector3d normal_W = second_W.cross(axis_W);
+      const double sine = normal_W.norm();
+      errors.add(normal_W / sine, (second_W.dot(axis_W) - loop.second_axis_P.dot(loop.axis_P)) / sine);
+      break;
+    }
+  }
+  return errors;
+}
+
 void LoopRows::add_rows(Problem& problem, int index, const BodyMotion& body, double step) {
   for (Loop& loop : loops_) {
+    const Pose& X_WSp = loop.parent < 0 ? body.model_pose() : body.segment_pose(loop.parent);
+    const Pose X_WPp = X_WSp * loop.X_SP_parent;
     const Pose X_WPc = body.segment_pose(loop.child) * loop.X_SP_child;
-    const Pose X_WPp = (loop.parent < 0 ? body.model_pose() : body.segment_pose(loop.parent)) * loop.X_SP_parent;
     const Anchor child{index, loop.child};
     const Anchor parent = loop.parent < 0 ? Anchor{} : Anchor{index, loop.parent};
-    const Vector3d gap_W = X_WPc.position - X_WPp.position;
-    const Vector3d turn_W = rotation_vector(X_WPc.orientation * X_WPp.orientation.conjugate());
-    const Vector3d axis_W = X_WPp.orientation * loop.axis_P;
-    const Vector3d aside_W = X_WPp.orientation * loop.axis_P.unitOrthogonal();
-    const Vector3d other_aside_W = axis_W.cross(aside_W);
+    const Pose ahead_X_WSp = loop.parent < 0 ? X_WSp : pose_ahead(body, loop.parent, step);
+    const Errors ahead =
+        errors_of(loop, ahead_X_WSp * loop.X_SP_parent, pose_ahead(body, loop.child, step) * loop.X_SP_child);
+    loop.errors = errors_of(loop, X_WPp, X_WPc);
     loop.point_W = 0.5 * (X_WPc.position + X_WPp.position);
-    loop.row_count = 0;
-    const auto keep = [&](const Vector3d& direction_W) -> double* {
-      loop.directions_W[at(loop.row_count)] = direction_W;
-      return &loop.impulses[at(loop.row_count++)];
-    };
-    const auto correct = [&](Row& row, double off, double most) {
-      row.target = correction(off, most, step);
+    for (int i = 0; i < loop.errors.count; ++i) {
+      const bool is_linear = i < loop.errors.linear;
+      const Vector3d& direction_W = loop.errors.directions_W[at(i)];
+      double* const kept = &loop.impulses[at(i)];
+      Row& row = is_linear ? problem.add_force_row(child, parent, loop.point_W, direction_W, kept)
+                           : problem.add_torque_row(child, parent, direction_W, kept);
+      const double off = loop.errors.off[at(i)];
+      row.target = correction(1.0, off, is_linear ? most_linear_correction : most_angular_correction, step) -
+                   problem.velocity_by_turning(row, off, ahead.off[at(i)], step);
       if (row.inverse == 0.0) row.set_limits(0.0, 0.0);  // the tree already constrains it
-    };
-    const auto hold = [&](const Vector3d& direction_W) {
-      correct(problem.add_force_row(child, parent, loop.point_W, direction_W, keep(direction_W)),
-              gap_W.dot(direction_W), most_linear_correction);
-    };
-    const auto hold_turn = [&](const Vector3d& direction_W, double off) {
-      correct(problem.add_torque_row(child, parent, direction_W, keep(direction_W)), off, most_angular_correction);
-    };
-
-    if (loop.type != JointType::prismatic) hold(axis_W);
-    hold(aside_W);
-    hold(other_aside_W);
-    loop.linear_count = loop.row_count;
-    switch (loop.type) {
-      case JointType::ball: break;
-      case JointType::fixed:
-      case JointType::prismatic:
-        for (const Vector3d& direction_W : {axis_W, aside_W, other_aside_W})
-          hold_turn(direction_W, turn_W.dot(direction_W));
-        break;
-      case JointType::revolute:
-      case JointType::screw: {
-        const Vector3d tilt_W = axis_W.cross(X_WPc.orientation * loop.axis_P);
-        for (const Vector3d& direction_W : {aside_W, other_aside_W}) hold_turn(direction_W, tilt_W.dot(direction_W));
-        break;
-      }
-      case JointType::universal: {
-        const Vector3d second_W = X_WPc.orientation * loop.second_axis_P;
-        const double off = second_W.dot(axis_W) - loop.second_axis_P.dot(loop.axis_P);
-        hold_turn(second_W.cross(axis_W).normalized(), off);
-        break;
-      }
     }
   }
 }

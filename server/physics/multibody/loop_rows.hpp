@@ -11,7 +11,7 @@ class BodyMotion;
 class Problem;
 
 /// The joints of one body that close kinematic loops: rows between two of its segments, for joints that a tree cannot
-/// have. Each step corrects a share of their position error.
+/// have. Each step corrects the position error of the step before.
 class LoopRows {
  public:
   explicit LoopRows(const Mechanism& mechanism);
@@ -28,8 +28,8 @@ class LoopRows {
     for (const Loop& loop : loops_) {
       Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();
       Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();
-      for (int i = 0; i < loop.row_count; ++i)
-        (i < loop.linear_count ? linear_W : angular_W) += loop.impulses[at(i)] * loop.directions_W[at(i)];
+      for (int i = 0; i < loop.errors.count; ++i)
+        (i < loop.errors.linear ? linear_W : angular_W) += loop.impulses[at(i)] * loop.errors.directions_W[at(i)];
       visit(loop.parent_link, loop.child_link, loop.point_W, linear_W, angular_W);
     }
   }
@@ -44,6 +44,21 @@ class LoopRows {
  private:
   static constexpr std::size_t most_rows = 6;
 
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  /// The directions of the rows of a loop and its errors along them: `linear` ones against translation [m], then those
+  /// against rotation [rad].
+  struct Errors {
+    std::array<Eigen::Vector3d, most_rows> directions_W{};
+    std::array<double, most_rows> off{};
+    int linear = 0;
+    int count = 0;
+
+    void add(const Eigen::Vector3d& direction_W, double how_much) {
+      directions_W[at(count)] = direction_W;
+      off[at(count++)] = how_much;
+    }
+  };
   struct Loop {
     description::JointType type = description::JointType::fixed;
     std::size_t parent_link = 0;
@@ -55,13 +70,11 @@ class LoopRows {
     Eigen::Vector3d axis_P = Eigen::Vector3d::UnitZ();
     Eigen::Vector3d second_axis_P = Eigen::Vector3d::UnitZ();
     std::array<double, most_rows> impulses{};
-    // Data of this step: rows against translation, then against rotation.
-    std::array<Eigen::Vector3d, most_rows> directions_W{};
+    // Data of this step:
+    Errors errors;
     Eigen::Vector3d point_W = Eigen::Vector3d::Zero();
-    int linear_count = 0;
-    int row_count = 0;
   };
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  static Errors errors_of(const Loop& loop, const Pose& X_WPp, const Pose& X_WPc);
 
   std::vector<Loop> loops_;
 };

@@ -115,6 +115,11 @@ class Problem {
   double velocity(const Row& row) const;
   /// Returns the velocity along the row at the velocities before this step.
   double velocity_before(const Row& row) const;
+  /// Returns the velocity at which an error along a row grows only because the bodies turn: `ahead` is the error [m] or
+  /// [rad] after a step with the present velocities, `off` that of now. On a circle of radius r it is h v^2 / 2r.
+  double velocity_by_turning(const Row& row, double off, double ahead, double step) const {
+    return (ahead - off) / step - velocity_before(row);
+  }
 
  private:
   Row& begin_row(Anchor a, Anchor b, double* kept);

@@ -5,14 +5,15 @@
 /// Rates at which position errors are corrected, for both kinds of world.
 namespace cohort::physics {
 
-/// Share of an overlap, of an overshoot or of a gap in a connection that is corrected in one step.
+/// Share of an overlap, of an overshoot or of a gap in a connection that is corrected in one step. Many connections may
+/// be solved by passes, and velocities that these do not find yet must not be corrected at once.
 inline constexpr double correction_share = 0.2;
-/// Limits on the velocity that corrects the gap or the rotation error of a connection.
+/// Limits on the velocity that corrects the gap or the rotation error of a joint or a connection.
 inline constexpr double most_linear_correction = 0.5;   ///< [m/s]
 inline constexpr double most_angular_correction = 5.0;  ///< [rad/s]
-/// Returns the velocity that corrects a share of the error `off`.
-inline double correction(double off, double most, double step) {
-  return std::clamp(-correction_share * off / step, -most, most);
+/// Returns the velocity that corrects this share of the error `off`.
+inline double correction(double share, double off, double most, double step) {
+  return std::clamp(-share * off / step, -most, most);
 }
 /// Default threshold of bouncing [m/s]: without one, bodies would never come to rest.
 inline constexpr double least_bounce = 0.05;

@@ -219,14 +219,19 @@ for (const bar of ["tools", "menu"])
 
 // The picture.
 
-const resize = (): void => viewer.stage.resize(canvas.clientWidth, canvas.clientHeight);
+function resize(): void {
+  viewer.stage.resize(canvas.clientWidth, canvas.clientHeight);
+  viewer.touch();
+}
 new ResizeObserver(resize).observe(canvas);
 resize();
 viewer.wear(preferredTheme());
 viewer.onLayers = () => showPressed(viewer);
 showPressed(viewer);
+for (const kind of ["pointerdown", "pointermove", "pointerup", "wheel", "keydown", "keyup", "input", "change"])
+  addEventListener(kind, () => viewer.touch(), { capture: true, passive: true });
 function draw(now: number): void {
-  viewer.draw(now);
+  viewer.drawIfNew(now);
   requestAnimationFrame(draw);
 }
 if (!film.isOn) requestAnimationFrame(draw);

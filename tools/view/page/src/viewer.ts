@@ -1,4 +1,4 @@
-import { Plane, Quaternion, Raycaster, Sphere, Vector2, Vector3 } from "three";
+import { Matrix4, Plane, Quaternion, Raycaster, Sphere, Vector2, Vector3 } from "three";
 import { Chosen } from "./chosen";
 import {
   none,
@@ -35,6 +35,8 @@ export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sou
 
 const mostTold = 5; // selected entities
 const manyEntities = 1500; // above, shadows are off unless asked for
+const afterInput = 500; // [ms] for which an input may change the picture
+const betweenSame = 250; // [ms] between pictures in which nothing seems to move
 const boundsShare = 12; // the times that finding where everything is takes, between two of them
 
 /** The picture and sound of the world. */
@@ -75,6 +77,10 @@ export class Viewer {
   private nextBounds = 0; // [ms]
   private lastAspect = 0;
   private lastDrawn = performance.now();
+  private lastInput = performance.now();
+  private isMoving = true; // the last picture was not the one before
+  private lastFrame: SceneFrame | undefined;
+  private readonly lastView = new Matrix4();
   private lastPicture: number | undefined; // [ms] of the page's clock; nothing if the page was hidden since
   private world = "";
 
@@ -270,6 +276,18 @@ export class Viewer {
     return { position: position.toArray(), heading: Math.atan2(forward.y, forward.x) };
   }
 
+  /** Tells that an input, or another size, may change the picture. */
+  touch(): void {
+    this.lastInput = performance.now();
+  }
+
+  /** Draws a picture, but only a few times a second while poses and camera stay and there is no input. */
+  drawIfNew(now: number): void {
+    const isNew = this.isMoving || this.poses?.frame !== this.lastFrame || now - this.lastInput < afterInput;
+    if (isNew || Math.abs(now - this.lastDrawn) >= betweenSame) return this.draw(now);
+    this.lastPicture = undefined; // the time until the next one tells nothing about the speed of drawing
+  }
+
   draw(now: number): void {
     const elapsed = Math.min(1, Math.max(0, now - this.lastDrawn) / 1000);
     this.lastDrawn = now;
@@ -301,6 +319,9 @@ export class Viewer {
       this.chosen.selected,
     );
     ++this.framesDrawn;
+    this.isMoving = (poses?.blend ?? 1) < 1 || !this.lastView.equals(stage.camera.matrixWorld);
+    this.lastFrame = poses?.frame;
+    this.lastView.copy(stage.camera.matrixWorld);
   }
 
   /** Draws at full resolution, for a picture that is kept. */

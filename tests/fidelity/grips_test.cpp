@@ -40,8 +40,8 @@ struct HeldBox {
   }
 };
 
-// A box of 0.5 kg is held at 0.5 m from a hub that turns at 10 rad/s, where a straight step of 10 ms leads 2.5 mm out of
-// the circle.
+// A box of 0.5 kg is held at 0.5 m from a hub that turns at 10 rad/s. A straight step of 10 ms leads 2.5 mm out of its
+// circle.
 TEST(Connections, HoldWhatTurnsFastOnItsCircle) {
   for (const double sense : {1.0, -1.0}) {
     description::World world = empty_world();

@@ -77,7 +77,7 @@ TEST_P(Mechanisms, AFourBarLinkageMovesAsAParallelogram) {
 }
 
 // Two cranks and two couplers of 0.3 m swing for 20 s. Their ends move on arcs, where they would part by h v^2 / 2r
-// in each step. What is left falls with the third power of the step.
+// in each step. The error that is left falls with the third power of the step.
 TEST_P(Mechanisms, AFiveBarLinkageThatSwingsStaysClosed) {
   constexpr double length = 0.3;
   const Vector3d y = Vector3d::UnitY();
@@ -87,7 +87,7 @@ TEST_P(Mechanisms, AFiveBarLinkageThatSwingsStaysClosed) {
     link.inertial.X_LI.position = {0.5 * length, 0, 0};
     return link;
   };
-  const auto linkage_that_leans = [&](double angle) {  // of both cranks
+  const auto linkage_that_leans = [&](double angle) {
     const Vector3d left{-0.15, 0, 0}, right{0.15, 0, 0};
     const Vector3d along = length * Vector3d(std::sin(angle), 0, -std::cos(angle));
     const Vector3d apex = along + Vector3d(0, 0, -std::sqrt(length * length - 0.15 * 0.15));

@@ -115,8 +115,8 @@ class Problem {
   double velocity(const Row& row) const;
   /// Returns the velocity along the row at the velocities before this step.
   double velocity_before(const Row& row) const;
-  /// Returns the velocity at which an error along a row grows only because the bodies turn: `ahead` is the error [m] or
-  /// [rad] after a step with the present velocities, `off` that of now. On a circle of radius r it is h v^2 / 2r.
+  /// Returns the velocity at which the error `off` [m] or [rad] along a row grows only because the bodies turn. `ahead`
+  /// is the error after a step with the present velocities. On a circle of radius r, the velocity is h v^2 / 2r.
   double velocity_by_turning(const Row& row, double off, double ahead, double step) const {
     return (ahead - off) / step - velocity_before(row);
   }

@@ -334,9 +334,9 @@ TEST(Corrections, CloseAGapWithinTheStepAndOverlapsGently) {
   EXPECT_NEAR(physics::separating_velocity(0.002, step), -0.2, 1e-12);
   EXPECT_NEAR(physics::separating_velocity(-0.002, step), 0.04, 1e-12);
   EXPECT_NEAR(physics::separating_velocity(-1.0, step), 0.3, 1e-12);
-  EXPECT_NEAR(physics::correction(0.001, 0.5, step), -0.02, 1e-12);
-  EXPECT_NEAR(physics::correction(-1.0, 0.5, step), 0.5, 1e-12);
-  EXPECT_NEAR(physics::correction(1.0, 0.5, step), -0.5, 1e-12);
+  EXPECT_NEAR(physics::correction(physics::correction_share, 0.001, 0.5, step), -0.02, 1e-12);
+  EXPECT_NEAR(physics::correction(1.0, -1.0, 0.5, step), 0.5, 1e-12);
+  EXPECT_NEAR(physics::correction(1.0, 1.0, 0.5, step), -0.5, 1e-12);
 }
 
 TEST(Pushes, AreVisitedByBodyInTheOrderInWhichTheyWereAdded) {

@@ -184,6 +184,46 @@ TEST_P(Vehicles, WithTracksDriveAndTurnAsCommanded) {
   EXPECT_NEAR(height(), 0.0, 0.002);
 }
 
+std::string stone(int index, double x, double y, double size) {
+  const std::string edge = std::to_string(size);
+  return "<model name='stone" + std::to_string(index) + "'><pose>" + std::to_string(x) + " " + std::to_string(y) + " " +
+         std::to_string(0.5 * size) + " 0 0 " + std::to_string(0.1 * index) +
+         "</pose><link name='link'><inertial auto='true'><density>2500</density></inertial><collision name='c'>"
+         "<geometry><box><size>" +
+         edge + " " + edge + " " + edge + "</size></box></geometry></collision></link></model>";
+}
+
+// Stones between tracks and floor carry the vehicle: they are not pressed into the floor, at any step.
+class OverStones : public Vehicles {
+ protected:
+  void expect_that_stones_carry(std::chrono::milliseconds step) {
+    std::string stones;
+    for (int i = 0; i < 32; ++i) {
+      const double y = (i % 2 == 0 ? 1.0 : -1.0) * (i % 4 < 2 ? 0.17 : 0.23);
+      stones += stone(i, 0.4 + 0.06 * (i / 4), y, 0.01 + 0.004 * (i % 5));
+    }
+    load(tracked + stones);
+    world_.world().step = step;
+    world_.command(0, "cmd_vel/0/linear", {0.4});
+    double deepest = 0.0;
+    double highest = 0.0;
+    for (auto ticks = std::chrono::seconds(2) / step; ticks > 0; --ticks) {
+      world_.step();
+      highest = std::max(highest, height());
+      for (const physics::Contact& contact : world_.simulation().world().contacts())
+        if (contact.body_a == BodyId{0} || contact.body_b == BodyId{0}) deepest = std::max(deepest, -contact.distance);
+    }
+    EXPECT_LT(deepest, 3e-4);
+    EXPECT_GT(highest, 0.01) << "it was on the stones";
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Every, OverStones,
+                         ::testing::Values(std::pair(Fidelity::articulated, Dynamics::cohort),
+                                           std::pair(Fidelity::articulated, Dynamics::bullet)));
+
+TEST_P(OverStones, TracksDriveWithLongSteps) { expect_that_stones_carry(std::chrono::milliseconds(10)); }
+TEST_P(OverStones, TracksDriveWithShortSteps) { expect_that_stones_carry(std::chrono::milliseconds(2)); }
+
 TEST_P(Vehicles, WithATrackControllerCarryTheirLoad) {
   load(
       "<model name='conveyor'><pose>0 0 0.5 0 0 0</pose><link name='base'>" + box_inertial(5.0, 0.5) +

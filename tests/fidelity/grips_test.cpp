@@ -52,8 +52,8 @@ TEST(Connections, HoldWhatTurnsFastOnItsCircle) {
     hub.links.push_back({"hub", {}, solid_box(1.0, {0.1, 0.1, 0.1}), {}});
     hub.joints = {joint_of("axle", description::JointType::revolute, description::Joint::world, 0, Vector3d::UnitZ())};
     const auto turning = small.add(hub, at(0, 0, 1));
-    const auto box = small.add(loose("box", description::Box{{0.1, 0.1, 0.1}}, solid_box(0.5, {0.1, 0.1, 0.1})),
-                               at(0.5, 0, 1));
+    const auto box =
+        small.add(loose("box", description::Box{{0.1, 0.1, 0.1}}, solid_box(0.5, {0.1, 0.1, 0.1})), at(0.5, 0, 1));
     small.world().set_joint_state(turning, JointId{0}, std::array{0.0}, std::array{sense * 10.0});
     small.world().set_root_twist(box, {{0, 0, sense * 10.0}, {0, sense * 5.0, 0}});
     small.world().connections().connect({box, LinkId{0}}, Pose{}, {turning, LinkId{0}}, {});

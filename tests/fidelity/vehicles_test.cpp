@@ -199,8 +199,9 @@ class OverStones : public Vehicles {
   void expect_that_stones_carry(std::chrono::milliseconds step) {
     std::string stones;
     for (int i = 0; i < 32; ++i) {
+      const int row = i / 4;
       const double y = (i % 2 == 0 ? 1.0 : -1.0) * (i % 4 < 2 ? 0.17 : 0.23);
-      stones += stone(i, 0.4 + 0.06 * (i / 4), y, 0.01 + 0.004 * (i % 5));
+      stones += stone(i, 0.4 + 0.06 * row, y, 0.01 + 0.004 * (i % 5));
     }
     load(tracked + stones);
     world_.world().step = step;

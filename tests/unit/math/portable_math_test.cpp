@@ -41,7 +41,7 @@ class Exact {
   }
 
  private:
-  mpfr_t value_;
+  mpfr_t value_{};
 };
 
 // Random arguments, as many as a test needs.

@@ -281,11 +281,14 @@ export class Viewer {
     this.lastInput = performance.now();
   }
 
-  /** Draws a picture, but only a few times a second while poses and camera stay and there is no input. */
+  /**
+   * Draws a picture, but only a few times a second while poses and camera stay and there is no input. Anything else that
+   * changes, such as an image that has arrived, is seen that much later.
+   */
   drawIfNew(now: number): void {
     const isNew = this.isMoving || this.poses?.frame !== this.lastFrame || now - this.lastInput < afterInput;
-    if (isNew || Math.abs(now - this.lastDrawn) >= betweenSame) return this.draw(now);
-    this.lastPicture = undefined; // the time until the next one tells nothing about the speed of drawing
+    if (isNew || Math.abs(now - this.lastDrawn) >= betweenSame) this.draw(now);
+    else this.lastPicture = undefined; // the time until the next one tells nothing about the speed of drawing
   }
 
   draw(now: number): void {

@@ -31,12 +31,12 @@ Turn turned_freely(const BodyMotion& body, double step) {
   return {after, velocity_at(after)};
 }
 
-Eigen::Quaterniond turned(const BodyMotion& body, double step) {
+Eigen::Quaterniond turned_root(const BodyMotion& body, double step) {
   const double* v = body.velocities();
   return (rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2])) * body.state().root_rotation()).normalized();
 }
 
-Eigen::Vector3d moved(const BodyMotion& body, double step) {
+Eigen::Vector3d moved_root(const BodyMotion& body, double step) {
   const double* v = body.velocities() + 3;
   return body.reference() + step * Eigen::Vector3d(v[0], v[1], v[2]);
 }
@@ -76,9 +76,9 @@ void integrate(BodyMotion& body, const double* velocities, double step) {
       state.set_root_rotation(turn.rotation);
       std::copy_n(turn.angular_W.data(), 3, state.velocities());
     } else {
-      state.set_root_rotation(turned(body, step));
+      state.set_root_rotation(turned_root(body, step));
     }
-    state.set_reference(moved(body, step));
+    state.set_reference(moved_root(body, step));
   }
   body.update_poses();
 }
@@ -88,8 +88,8 @@ Pose pose_ahead(const BodyMotion& body, int segment, double step) {
   const Segment& its = mechanism.segments()[static_cast<std::size_t>(segment)];
   if (its.motion == Motion::free) {
     const Eigen::Quaterniond rotation =
-        mechanism.turns_freely() ? turned_freely(body, step).rotation : turned(body, step);
-    return {moved(body, step) - rotation * its.centre_S, rotation};
+        mechanism.turns_freely() ? turned_freely(body, step).rotation : turned_root(body, step);
+    return {moved_root(body, step) - rotation * its.centre_S, rotation};
   }
   const Pose X_WP = its.parent < 0 ? body.model_pose() : pose_ahead(body, its.parent, step);
   std::array<double, 4> coordinates{};
@@ -100,7 +100,7 @@ Pose pose_ahead(const BodyMotion& body, int segment, double step) {
 }
 
 // Conserves the momentum of the whole body except for external impulses: the motion of the root follows from that of
-// the joints. The angular velocity of the middle of the step turns the root, as in turn_freely. With the velocities
+// the joints. The angular velocity of the middle of the step turns the root, as in turned_freely. With the velocities
 // that the equations predict from the beginning of a step, a spinning wheel would make its hull swing further and
 // further.
 void fly(BodyMotion& body, const double* velocities, const Eigen::Vector3d& impulse_W,

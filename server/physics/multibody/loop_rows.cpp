@@ -70,7 +70,8 @@ LoopRows::Errors LoopRows::errors_of(const Loop& loop, const Pose& X_WPp, const 
       const Vector3d second_W = X_WPc.orientation * loop.second_axis_P;
       const Vector3d normal_W = second_W.cross(axis_W);
       const double sine = normal_W.norm();
-      errors.add(normal_W / sine, (second_W.dot(axis_W) - loop.second_axis_P.dot(loop.axis_P)) / sine);
+      const double off = second_W.dot(axis_W) - loop.second_axis_P.dot(loop.axis_P);
+      errors.add(normal_W.normalized(), sine > 0.0 ? off / sine : 0.0);
       break;
     }
   }

@@ -49,6 +49,30 @@ async function draws(page, file) {
     assert.match(pose, /^x -?\d+\.\d{3} /);
     assert.doesNotMatch(pose, /-0\.000|-0°/);
   }
+  await drawsLittleWhileStill(page);
+}
+
+async function drawsLittleWhileStill(page) {
+  await until(page, () => {
+    const { stillness, poses } = window.cohort.viewer;
+    return !stillness.isDue(performance.now(), performance.now(), poses);
+  });
+  const { pictures, elapsed, isDue } = await page.evaluate(async () => {
+    const { viewer } = window.cohort;
+    const begin = performance.now();
+    let pictures = 0;
+    viewer.draw = (now) => {
+      ++pictures;
+      Object.getPrototypeOf(viewer).draw.call(viewer, now);
+    };
+    await new Promise((resolve) => setTimeout(resolve, 1500));
+    delete viewer.draw;
+    const elapsed = performance.now() - begin;
+    window.dispatchEvent(new Event("pointermove"));
+    return { pictures, elapsed, isDue: viewer.stillness.isDue(performance.now(), performance.now(), viewer.poses) };
+  });
+  assert.ok(pictures >= 1 && pictures <= elapsed / 250 + 1, `${pictures} pictures in ${elapsed} ms`);
+  assert.ok(isDue, "after an input");
 }
 
 async function drawsMany(page, file) {

@@ -221,7 +221,7 @@ for (const bar of ["tools", "menu"])
 
 function resize(): void {
   viewer.stage.resize(canvas.clientWidth, canvas.clientHeight);
-  viewer.touch();
+  viewer.stillness.touch();
 }
 new ResizeObserver(resize).observe(canvas);
 resize();
@@ -229,9 +229,9 @@ viewer.wear(preferredTheme());
 viewer.onLayers = () => showPressed(viewer);
 showPressed(viewer);
 for (const kind of ["pointerdown", "pointermove", "pointerup", "wheel", "keydown", "keyup", "input", "change"])
-  addEventListener(kind, () => viewer.touch(), { capture: true, passive: true });
+  addEventListener(kind, () => viewer.stillness.touch(), { capture: true, passive: true });
 function draw(now: number): void {
-  viewer.drawIfNew(now);
+  viewer.drawIfDue(now);
   requestAnimationFrame(draw);
 }
 if (!film.isOn) requestAnimationFrame(draw);

@@ -1,4 +1,4 @@
-import { Matrix4, Plane, Quaternion, Raycaster, Sphere, Vector2, Vector3 } from "three";
+import { Plane, Quaternion, Raycaster, Sphere, Vector2, Vector3 } from "three";
 import { Chosen } from "./chosen";
 import {
   none,
@@ -29,14 +29,13 @@ import { withRoleColors } from "./picture/role_colors";
 import { Outline, pick } from "./picture/selection";
 import { Sound } from "./picture/sound";
 import { Stage } from "./picture/stage";
+import { Stillness } from "./picture/stillness";
 import { Textures } from "./picture/textures";
 
 export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sound" | "collisions";
 
 const mostTold = 5; // selected entities
 const manyEntities = 1500; // above, shadows are off unless asked for
-const afterInput = 500; // [ms] for which an input may change the picture
-const betweenSame = 250; // [ms] between pictures in which nothing seems to move
 const boundsShare = 12; // the times that finding where everything is takes, between two of them
 
 /** The picture and sound of the world. */
@@ -45,6 +44,7 @@ export class Viewer {
   readonly cameras: Cameras;
   readonly layers = new Set<Layer>(["rays", "shadows"]);
   readonly sound = new Sound();
+  readonly stillness = new Stillness();
   readonly inspector: Inspector;
   poses: Poses | undefined;
   readonly chosen = new Chosen(
@@ -77,10 +77,6 @@ export class Viewer {
   private nextBounds = 0; // [ms]
   private lastAspect = 0;
   private lastDrawn = performance.now();
-  private lastInput = performance.now();
-  private isMoving = true; // the last picture was not the one before
-  private lastFrame: SceneFrame | undefined;
-  private readonly lastView = new Matrix4();
   private lastPicture: number | undefined; // [ms] of the page's clock; nothing if the page was hidden since
   private world = "";
 
@@ -276,18 +272,9 @@ export class Viewer {
     return { position: position.toArray(), heading: Math.atan2(forward.y, forward.x) };
   }
 
-  /** Tells that an input, or another size, may change the picture. */
-  touch(): void {
-    this.lastInput = performance.now();
-  }
-
-  /**
-   * Draws a picture, but only a few times a second while poses and camera stay and there is no input. Anything else that
-   * changes, such as an image that has arrived, is seen that much later.
-   */
-  drawIfNew(now: number): void {
-    const isNew = this.isMoving || this.poses?.frame !== this.lastFrame || now - this.lastInput < afterInput;
-    if (isNew || Math.abs(now - this.lastDrawn) >= betweenSame) this.draw(now);
+  /** Draws a picture, but only a few times a second while nothing moves. */
+  drawIfDue(now: number): void {
+    if (this.stillness.isDue(now, this.lastDrawn, this.poses)) this.draw(now);
     else this.lastPicture = undefined; // the time until the next one tells nothing about the speed of drawing
   }
 
@@ -322,9 +309,7 @@ export class Viewer {
       this.chosen.selected,
     );
     ++this.framesDrawn;
-    this.isMoving = (poses?.blend ?? 1) < 1 || !this.lastView.equals(stage.camera.matrixWorld);
-    this.lastFrame = poses?.frame;
-    this.lastView.copy(stage.camera.matrixWorld);
+    this.stillness.take(poses, stage.camera);
   }
 
   /** Draws at full resolution, for a picture that is kept. */

@@ -18,8 +18,8 @@ export class Stillness {
   }
 
   /**
-   * Returns whether a picture is due `now`, if the last one was drawn at `lastDrawn`. What comes neither from poses nor
-   * from the camera nor from an input, such as an image that has arrived, is due with the next picture of a still page.
+   * Returns whether a picture is due `now`, if the last one was drawn at `lastDrawn`. An image that has arrived shows
+   * with the next picture of a still page, since neither poses nor the camera nor an input tell of it.
    */
   isDue(now: number, lastDrawn: number, poses: Poses | undefined): boolean {
     const isNew = this.isMoving || poses?.frame !== this.lastFrame || now - this.lastInput < afterInput;

@@ -7,6 +7,7 @@
 #include "server/physics/islands/assembly.hpp"
 #include "server/physics/solvers/convex_solver.hpp"
 #include "server/physics/solvers/impacts.hpp"
+#include "server/physics/solvers/iterative_solver.hpp"
 
 namespace cohort::physics {
 
@@ -30,35 +31,24 @@ class IslandSolver {
   bool set_up(Assembly& assembly);
   bool finish(Assembly& assembly);
   Method find_method(const Assembly& assembly) const;
-  void solve_rows(const Assembly& assembly);
+  void solve_rows(Assembly& assembly);
 
   IslandBodies bodies_;
   Problem problem_{bodies_};
   ConvexSolver convex_;
   Impacts impacts_;
   std::vector<std::uint32_t> sound_;  // members
-  bool has_connections_ = false;
   Method method_ = Method::passes;
   std::optional<Convergence::Outcome> outcome_;  // empty: not by the convex solver
 };
 
-/// Returns the change of a row's velocity in a pass below which the island has settled [m/s or rad/s].
-double settled_change(const Assembly& assembly);
-
-/// Returns whether any of these bodies stands on another moving body or is held only by others, as in a stack or
-/// between fingers.
-bool has_carried(std::span<const std::uint32_t> members, const Assembly& assembly);
-
-/// Damps the bodies of a calm heap that move slower than gravity makes a body in one step, if all are rigid bodies that
-/// nothing drives or carries. Call it after solving.
-/// A body that is held at two points would otherwise swing about them for ever, and friction that has not quite settled
-/// would let others rock.
-void damp_calm_heap(std::span<const std::uint32_t> members, const Assembly& assembly, IslandBodies& bodies);
+/// Returns how an island of these bodies is solved by passes.
+Passes passes_of(std::span<const std::uint32_t> members, Assembly& assembly);
 
 /// Returns whether an island of this many bodies is solved by Dantzig's algorithm.
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies);
 
-/// Returns whether the bodies of a heap without connections move so slowly, on average, that they will soon rest.
+/// Returns whether bodies without connections move so slowly, on average, that they will soon rest.
 bool is_calm_heap(std::span<const std::uint32_t> members, Assembly& assembly);
 
 /// Assigns to each member its index in `bodies`.

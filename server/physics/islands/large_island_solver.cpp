@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "server/physics/islands/island_solver.hpp"
 #include "server/physics/solvers/impacts.hpp"
@@ -10,13 +11,13 @@
 namespace cohort::physics {
 namespace {
 
-// A heap whose passes end before it has settled gets this multiple of the usual number in addition.
-constexpr std::uint32_t passes_of_heaps = 4;
 // A heap that is nearly at rest: passes over everything, and before each of them passes over the loads.
 constexpr int most_passes_of_calm = 20;
 constexpr int passes_over_loads = 10;
 constexpr std::uint32_t bodies_a_part = 32;
-constexpr std::size_t bodies_a_chunk = 16;
+
+// Damping of a heap that is nearly at rest [1/s]: what still rocks there has stopped after a few tenths of a second.
+constexpr double damping_of_calm = 10.0;
 
 // Seams for which no colour is free get this last one; its seams are solved one after the other.
 constexpr unsigned last_colour = 63;
@@ -33,16 +34,11 @@ void LargeIslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t>
 // Returns false, without moving any body, if one of them has invalid velocities.
 bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   number_bodies(sound_, assembly, bodies_);
-  workers_.for_each_chunk(sound_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+  workers_.for_each_chunk(sound_.size(), WorkerPool::fine_grain, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) assembly.set_up(sound_[i], bodies_);
   });
   if (!all_are_finite(assembly)) return false;
 
-  const bool has_connections = std::ranges::any_of(sound_, [&](std::uint32_t member) {
-    bool any = false;
-    assembly.connections.for_each_of(member, [&](const Connection&) { any = true; });
-    return any;
-  });
   const bool is_calm = is_calm_heap(sound_, assembly);
   friction_start_ = is_calm ? FrictionStart::last : FrictionStart::shared;
   cut(assembly);
@@ -57,21 +53,19 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
     for_each_share(phase,
                    [&](Share& share) { rebound_at_once(share.problem, assembly.step * assembly.gravity.norm()); });
-  const double share_of_last = has_connections ? start_of_connected : 1.0;
+  const Passes passes = passes_of(sound_, assembly);
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
-    for_each_share(phase, [&](Share& share) { SequentialImpulses(share.problem).start(share_of_last); });
-  const double settled = settled_change(assembly);
-  if (is_calm) {
-    settle(settled);
-  } else if (run_passes(assembly.settings.iterations) > settled && !has_connections && has_carried(sound_, assembly)) {
-    run_passes(passes_of_heaps * assembly.settings.iterations);
-  }
-  if (is_calm) damp_calm_heap(sound_, assembly, bodies_);
+    for_each_share(phase, [&](Share& share) { SequentialImpulses(share.problem).start(passes.share_of_last); });
+  if (is_calm)
+    settle(passes.settled);
+  else
+    make_passes(passes, [&](bool forwards) { return run_pass(forwards, true); });
+  if (is_calm) damp(assembly);
   if (!all_are_finite(assembly)) return false;
 
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
     for_each_share(phase, [](Share& share) { keep_impulses(share.problem); });
-  workers_.for_each_chunk(sound_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+  workers_.for_each_chunk(sound_.size(), WorkerPool::fine_grain, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) assembly.integrate(sound_[i], *problem_of_[i]);
   });
   return true;
@@ -81,6 +75,22 @@ bool LargeIslandSolver::all_are_finite(Assembly& assembly) {
   bool all = true;
   for (const std::uint32_t member : sound_) all = assembly.check(member, bodies_) && all;
   return all;
+}
+
+void LargeIslandSolver::damp(const Assembly& assembly) {
+  const auto is_left_alone = [&](std::uint32_t index) {
+    const Member& member = assembly.members[index];
+    return member.multibody->is_inert() && !member.fluid;
+  };
+  if (!std::ranges::all_of(sound_, is_left_alone)) return;
+  const double fall = assembly.step * assembly.gravity.norm();
+  const double kept = 1.0 / (1.0 + damping_of_calm * assembly.step);
+  for (std::size_t body = 0; body < sound_.size(); ++body) {
+    const std::span velocity(bodies_[static_cast<int>(body)].velocity(), 6);  // angular, linear
+    const bool is_slow = std::ranges::all_of(velocity.last(3), [&](double v) { return std::abs(v) < fall; });
+    if (!is_slow) continue;
+    for (double& v : velocity) v *= kept;
+  }
 }
 
 void LargeIslandSolver::cut(Assembly& assembly) {
@@ -217,15 +227,6 @@ double LargeIslandSolver::run_pass(bool forwards, bool with_friction) {
   double greatest = 0.0;
   for (std::size_t share = 0; share < phases_.back(); ++share) greatest = std::max(greatest, shares_[share].change);
   return greatest;
-}
-
-double LargeIslandSolver::run_passes(std::uint32_t most) {
-  double change = 0.0;
-  for (std::uint32_t i = 0; i < most; ++i) {
-    change = run_pass(i % 2 == 0, true);
-    if (change <= negligible_change) break;
-  }
-  return change;
 }
 
 // Passes over the loads before each pass over everything carry the weight of a heap down to the ground. Friction, whose

@@ -64,10 +64,13 @@ class LargeIslandSolver {
   void colour_seams();
   void add_rows_of_seam(Assembly& assembly, const Seam& seam, Problem& problem);
   bool all_are_finite(Assembly& assembly);
-  /// These return the greatest change of a row's velocity in the last pass.
+  /// Returns the greatest change of a row's velocity.
   double run_pass(bool forwards, bool with_friction);
-  double run_passes(std::uint32_t most);
   void settle(double settled);
+  /// Damps bodies that move slower than gravity makes a body in one step, if all are rigid bodies that nothing drives
+  /// or carries. A body that is held at two points would otherwise swing about them for ever, and friction that has not
+  /// quite settled would let others rock.
+  void damp(const Assembly& assembly);
   template <class Work>
   void for_each_share(std::size_t phase, Work&& work);
 

@@ -13,9 +13,6 @@
 namespace cohort::physics {
 namespace {
 
-constexpr std::size_t members_at_once = 16;
-constexpr std::size_t islands_at_once = 8;
-
 // Each thread has one solver for all worlds, so that many small worlds share memory that stays in the cache.
 IslandSolver& solver_of_this_thread() {
   static thread_local IslandSolver solver;
@@ -222,17 +219,20 @@ void MultibodyWorld::find_awake() {
 
 void MultibodyWorld::detect() {
   std::vector<Member>& members = assembly_.members;
-  workers_.for_each_chunk(awake_.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
-    double& furthest = memory_[worker].furthest;
-    for (std::size_t i = begin; i < end; ++i) furthest = std::max(furthest, assembly_.look_ahead(members[awake_[i]]));
-  });
+  workers_.for_each_chunk(awake_.size(), WorkerPool::fine_grain,
+                          [&](std::size_t begin, std::size_t end, unsigned worker) {
+                            double& furthest = memory_[worker].furthest;
+                            for (std::size_t i = begin; i < end; ++i)
+                              furthest = std::max(furthest, assembly_.look_ahead(members[awake_[i]]));
+                          });
   double furthest = 0.0;
   for (Memory& memory : memory_) furthest = std::max(furthest, std::exchange(memory.furthest, 0.0));
-  workers_.for_each_chunk(awake_.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
-    Memory& memory = memory_[worker];
-    for (std::size_t i = begin; i < end; ++i)
-      assembly_.look_around(members[awake_[i]], furthest, memory.near, memory.candidates);
-  });
+  workers_.for_each_chunk(awake_.size(), WorkerPool::fine_grain,
+                          [&](std::size_t begin, std::size_t end, unsigned worker) {
+                            Memory& memory = memory_[worker];
+                            for (std::size_t i = begin; i < end; ++i)
+                              assembly_.look_around(members[awake_[i]], furthest, memory.near, memory.candidates);
+                          });
 }
 
 void MultibodyWorld::find_islands() {
@@ -271,7 +271,7 @@ void MultibodyWorld::solve_islands() {
     return bodies >= LargeIslandSolver::least_bodies && !is_solved_directly(assembly_.settings, bodies);
   };
   outcomes_.assign(islands_.count(), std::nullopt);
-  workers_.for_each_chunk(islands_.count(), islands_at_once, [&](std::size_t begin, std::size_t end, unsigned) {
+  workers_.for_each_chunk(islands_.count(), WorkerPool::fine_grain, [&](std::size_t begin, std::size_t end, unsigned) {
     IslandSolver& solver = solver_of_this_thread();
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
       if (!is_large(island)) outcomes_[island] = solver.solve(assembly_, islands_.members(island));
@@ -283,9 +283,9 @@ void MultibodyWorld::solve_islands() {
   }
   count_outcomes();
   if (!assembly_.settings.sleeping) return;
-  workers_.for_each_chunk(islands_.count(), islands_at_once, [&](std::size_t begin, std::size_t end, unsigned) {
+  workers_.for_each_chunk(islands_.count(), WorkerPool::fine_grain, [&](std::size_t begin, std::size_t end, unsigned) {
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
-      for (const std::uint32_t member : islands_.members(island)) sleep_.count(member, is_large(island));
+      for (const std::uint32_t member : islands_.members(island)) sleep_.count(member);
   });
 }
 

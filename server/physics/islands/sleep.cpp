@@ -15,17 +15,14 @@ constexpr double long_enough = 0.5;  // [s]
 
 // A free body that rests on others is as slow as the solver leaves it; this is the share of the velocity that gravity
 // adds in a step. Anything with joints may be meant to move slowly.
-constexpr double still_share = 1e-3;
-// The solver of large islands is less exact.
-constexpr double still_share_if_large = 5e-3;
+constexpr double still_share = 5e-3;
 
 // `fall`: the velocity that gravity adds in a step.
-bool is_still(const Member& member, double fall, bool is_in_large_island) {
+bool is_still(const Member& member, double fall) {
   if (!member.is_finite || !member.is_inside) return false;
   const Multibody& body = *member.multibody;
   const bool is_free = body.mechanism().is_free_body();
-  const double share = is_in_large_island && body.is_inert() ? still_share_if_large : still_share;
-  const double slow = is_free ? std::max(still, share * fall) : still;
+  const double slow = is_free ? std::max(still, still_share * fall) : still;
   double slow_turn = slow;  // [rad/s]: as fast at the radius of gyration
   if (is_free) {
     const Segment& segment = body.mechanism().segments()[0];
@@ -45,10 +42,10 @@ bool is_still(const Member& member, double fall, bool is_in_large_island) {
 Sleep::Sleep(Assembly& assembly)
     : assembly_(assembly), enough_(static_cast<std::uint32_t>(std::ceil(long_enough / assembly.step))) {}
 
-void Sleep::count(std::uint32_t index, bool is_in_large_island) {
+void Sleep::count(std::uint32_t index) {
   Member& member = assembly_.members[index];
   const double fall = assembly_.step * assembly_.gravity.norm();
-  member.still_steps = is_still(member, fall, is_in_large_island) ? std::min(member.still_steps + 1, enough_) : 0;
+  member.still_steps = is_still(member, fall) ? std::min(member.still_steps + 1, enough_) : 0;
 }
 
 // Bodies with air or water forces, with measured forces or with a slipping connection do not sleep: more than their

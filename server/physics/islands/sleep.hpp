@@ -20,7 +20,7 @@ class Sleep {
 
   /// Counts how long the member has been still; call it after each step of the member. Threads may call it for
   /// different members.
-  void count(std::uint32_t index, bool is_in_large_island);
+  void count(std::uint32_t index);
   /// Puts islands to sleep that have been still for long enough; call it after a step and all its consequences.
   void fall_asleep(const Islands& islands);
   /// Returns the members that fell asleep together with this sleeping one.

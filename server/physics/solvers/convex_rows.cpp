@@ -7,8 +7,7 @@ namespace cohort::physics {
 namespace {
 
 // Shares of what the heaviest body yields. A smaller one needs fewer minima, a larger one fewer steps to each of them.
-constexpr double share_of_holds = 1e-6;      // loops and connections
-constexpr double share_of_pushes = 1e-6;     // contacts, limits of joints
+constexpr double share_of_pushes = 1e-6;     // contacts, limits of joints, loops and connections
 constexpr double share_of_friction = 1e-2;   // friction and motors
 constexpr double share_of_own_yield = 1e-1;  // the same, as a share of what the bodies of the row yield
 
@@ -70,28 +69,23 @@ void ConvexRows::set_compliance(ConvexTerm& term) {
   const bool has_upper = !of.has_fixed_limits() || of.upper < unlimited;
   term.has_guess = has_lower && has_upper && !of.is_hold;
   if (!term.has_guess) {
-    term.compliance = (has_lower != has_upper ? share_of_pushes : share_of_holds) * yielding;
+    term.compliance = share_of_pushes * yielding;
     return;
   }
   const double own = 1.0 / (term.count == 2 ? of.cone_inverse : of.inverse);
   term.compliance = std::min(share_of_friction * yielding, share_of_own_yield * own);
 }
 
-double ConvexRows::limit_of(const Row& row, double load) const {
-  return std::max(0.0, std::min(row.cap, row.friction * load));
-}
-
 void ConvexRows::guess_limit(ConvexTerm& term) {
   const Row& of = row(term);
   if (of.has_fixed_limits()) return;
-  double load = 0.0;
-  for (int j = of.load_begin; j < of.load_end; ++j) load += impulses_[at(j)];
+  double load = load_of(of);
   if (load == 0.0)
     for (int j = of.load_begin; j < of.load_end; ++j) {
       const Row& other = problem_->rows()[at(j)];
       load += std::max(0.0, (other.target - problem_->velocity(other)) * other.inverse);
     }
-  term.upper = limit_of(of, load);
+  term.upper = limit_of_friction(of, load);
   term.lower = -term.upper;
 }
 
@@ -139,7 +133,11 @@ void ConvexRows::extend(ConvexTerm& term) const {
   term.stiffness = {stiffness, term.count == 2 ? stiffness : 0.0, 0.0};
 }
 
-void ConvexRows::update(double share_of_limits) {
+double ConvexRows::load_of(const Row& row) const {
+  return load_on(row, [&](std::size_t i) { return impulses_[i]; });
+}
+
+void ConvexRows::update(double share) {
   for (ConvexTerm& term : terms_) {
     if (term.has_guess) term.guess = term.impulse;
     for (std::size_t i = 0; i < term.count; ++i) impulses_[term.row + i] = term.impulse[i];
@@ -147,9 +145,7 @@ void ConvexRows::update(double share_of_limits) {
   for (ConvexTerm& term : terms_) {
     const Row& of = row(term);
     if (of.has_fixed_limits()) continue;
-    double load = 0.0;
-    for (int j = of.load_begin; j < of.load_end; ++j) load += impulses_[at(j)];
-    term.upper += share_of_limits * (limit_of(of, load) - term.upper);
+    term.upper += share * (limit_of_friction(of, load_of(of)) - term.upper);
     term.lower = -term.upper;
   }
 }

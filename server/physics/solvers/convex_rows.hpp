@@ -6,6 +6,7 @@
 
 #include "server/physics/multibody/rows.hpp"
 #include "server/physics/solvers/block_cholesky.hpp"
+#include "server/physics/solvers/friction_limits.hpp"
 
 namespace cohort::physics {
 
@@ -52,7 +53,7 @@ class ConvexRows {
   void extend(ConvexTerm& term) const;
   /// Takes the present impulses as guesses, and moves the limits of friction by this share of the way to those of the
   /// present loads.
-  void update(double share_of_limits);
+  void update(double share);
   /// Writes impulses and limits to the rows of the problem.
   void apply();
 
@@ -60,7 +61,7 @@ class ConvexRows {
   void set_compliance(ConvexTerm& term);
   void guess_limit(ConvexTerm& term);
   double wanted(const ConvexTerm& term, std::size_t i, double share) const;
-  double limit_of(const Row& row, double load) const;
+  double load_of(const Row& row) const;
 
   Problem* problem_ = nullptr;
   std::vector<ConvexTerm> terms_;

@@ -11,9 +11,6 @@ constexpr int most_steps_a_minimum = 60;
 constexpr double minimal = 1e-4;
 
 constexpr int most_minima = 32;
-// Limits of friction move by this share of the way after the second minimum. With the whole way, limits that alternate
-// would do so for long.
-constexpr double share_of_limits = 0.6;
 constexpr double settled = 1e-9;  // residual with new guesses and limits at which no other minimum is needed
 
 }  // namespace
@@ -24,7 +21,9 @@ std::optional<Convergence::Outcome> ConvexSolver::solve(Problem& problem, std::u
     if (!problem.equations(body).is_symmetric()) return std::nullopt;
     mass += problem.equations(body).mechanism().moving_mass();
   }
-  if (mass == 0.0 || !take_bodies(problem) || !take_inertia()) return std::nullopt;
+  if (mass == 0.0) return std::nullopt;
+  take_bodies(problem);
+  if (!take_inertia()) return std::nullopt;
   outcome_ = {};
   most_steps_ = most_steps;
   start();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/physics/solvers/friction_limits.hpp"
 #include "server/physics/solvers/linear_complementarity.hpp"
 
 namespace cohort::physics {
@@ -17,16 +18,14 @@ class DirectSolver {
     set_limits(1.0);
     for (int solution = 0; solution < most_solutions; ++solution) {
       if (!complementarity_.solve(gains_, wanted_, lower_, upper_, impulses_)) return false;
-      if (set_limits(solution < undamped_solutions ? 1.0 : 0.5)) break;
+      if (set_limits(share_of_limits)) break;
     }
     apply();
     return true;
   }
 
  private:
-  // Number of solutions, each with friction limits from the normal impulses of the previous one. After the first few,
-  // which may oscillate, the limits move only halfway.
-  static constexpr int undamped_solutions = 8;
+  // Number of solutions, each with friction limits from the normal impulses of the previous one.
   static constexpr int most_solutions = 64;
   static constexpr double limit_tolerance = 1e-9;  // [N s or N m s]
   // Compliance of each row as a share of its own response; without it, redundant rows have no solution.
@@ -80,9 +79,7 @@ class DirectSolver {
         lower = row.lower;
         upper = row.upper;
       } else {
-        double load = 0.0;
-        for (int k = row.load_begin; k < row.load_end; ++k) load += impulses_[index(k)];
-        const double limit = std::max(0.0, std::min(row.cap, row.friction * load));
+        const double limit = limit_of_friction(row, load_on(row, [&](std::size_t k) { return impulses_[k]; }));
         if (std::abs(limit - upper) > limit_tolerance) hold = false;
         upper += share * (limit - upper);
         lower = -upper;

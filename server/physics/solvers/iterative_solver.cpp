@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/physics/solvers/friction_limits.hpp"
+
 namespace cohort::physics {
 
 void SequentialImpulses::start(double share) {
@@ -48,9 +50,7 @@ inline double SequentialImpulses::turn(std::size_t index) {
 }
 
 inline double SequentialImpulses::limit_of(const Row& row) const {
-  double load = 0.0;
-  for (int i = row.load_begin; i < row.load_end; ++i) load += rows_[static_cast<std::size_t>(i)].impulse;
-  return std::min(row.cap, row.friction * load);
+  return limit_of_friction(row, load_on(row, [&](std::size_t i) { return rows_[i].impulse; }));
 }
 
 inline double SequentialImpulses::velocity(const Row& row) const {
@@ -95,30 +95,6 @@ double SequentialImpulses::turn_cone(Row& first, Row& second) {
     wanted_second *= share;
   }
   return std::max(change(first, wanted_first), change(second, wanted_second));
-}
-
-namespace {
-
-// By multiplication: `pow` may round differently on other CPUs, and the result would depend on that.
-bool would_settle(double change, double ratio, std::uint32_t passes_left, double settled) {
-  for (std::uint32_t i = 0; i < passes_left && change > settled; ++i) change *= ratio;
-  return change <= settled;
-}
-
-}  // namespace
-
-double solve_iteratively(Problem& problem, const Passes& passes, double share_of_last) {
-  SequentialImpulses impulses(problem);
-  impulses.start(share_of_last);
-  double change = 0.0;
-  for (std::uint32_t i = 0; i < passes.most; ++i) {
-    const double before = change;
-    change = impulses.pass(i % 2 == 0);
-    if (change <= (i + 1 < passes.least ? negligible_change : passes.settled)) break;
-    if (i > 0 && i + 1 >= passes.least && !would_settle(change, change / before, passes.most - 1 - i, passes.settled))
-      break;
-  }
-  return change;
 }
 
 }  // namespace cohort::physics

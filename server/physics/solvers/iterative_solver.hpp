@@ -39,15 +39,20 @@ class SequentialImpulses {
 /// gain energy without bound.
 inline constexpr double start_of_connected = 0.9;
 
-/// How long to solve: `least` passes, unless nothing changes any more. Up to `most` passes follow while one still
-/// changes the velocity of a row by more than `settled` [m/s or rad/s], if they converge so fast that they get there.
+/// How long to solve: `least` passes, unless nothing changes any more. Up to `most_times` as many are made while one
+/// still changes the velocity of a row by more than `settled` [m/s or rad/s].
 struct Passes {
   std::uint32_t least = 0;
-  std::uint32_t most = 0;
+  std::uint32_t most_times = 1;
   double settled = 0.0;
+  double share_of_last = 1.0;  ///< share of the last step's impulses for the warm start
 };
 
-/// Makes passes in alternating directions. Returns the greatest change of a row's velocity in the last one.
-double solve_iteratively(Problem& problem, const Passes& passes, double share_of_last);
+/// Makes passes in alternating directions. `pass(forwards)` returns the greatest change of a row's velocity.
+template <class Pass>
+void make_passes(const Passes& passes, Pass&& pass) {
+  for (std::uint32_t i = 0; i < passes.most_times * passes.least; ++i)
+    if (pass(i % 2 == 0) <= (i + 1 < passes.least ? negligible_change : passes.settled)) break;
+}
 
 }  // namespace cohort::physics

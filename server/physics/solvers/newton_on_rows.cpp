@@ -7,20 +7,17 @@ namespace cohort::physics {
 namespace {
 
 constexpr double most_elimination_work = 4e6;  // multiplications in one factorisation
-constexpr int most_dofs_of_body = 64;
 constexpr int most_shares = 20;
 constexpr double flat = 0.1;  // share of the first slope at which a line search ends
 
 }  // namespace
 
-bool NewtonOnRows::take_bodies(Problem& problem) {
+void NewtonOnRows::take_bodies(Problem& problem) {
   problem_ = &problem;
   is_factorised_ = false;
   sizes_.clear();
   for (int body = 0; body < problem.body_count(); ++body) sizes_.push_back(problem.equations(body).size());
-  if (std::ranges::any_of(sizes_, [](int size) { return size > most_dofs_of_body; })) return false;
   matrix_.reset(sizes_);
-  return true;
 }
 
 bool NewtonOnRows::take_inertia() {

@@ -14,8 +14,8 @@ namespace cohort::physics {
 /// Reuses its memory.
 class NewtonOnRows {
  protected:
-  /// Starts with the bodies of a problem, which must outlive this. Returns false if a body has too many dofs.
-  bool take_bodies(Problem& problem);
+  /// Starts with the bodies of a problem, which must outlive this.
+  void take_bodies(Problem& problem);
   /// Takes the couplings and the inertia of the bodies. Returns false if a factorisation would cost too much.
   bool take_inertia();
   /// Starts from the velocities with the present impulses of the terms.

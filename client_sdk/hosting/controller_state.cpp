@@ -1,6 +1,6 @@
 #include "client_sdk/hosting/controller_state.hpp"
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "client_sdk/text/edit_distance.hpp"
+#include "idl/text/edit_distance.hpp"
 
 namespace cohort {
 

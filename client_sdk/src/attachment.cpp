@@ -16,7 +16,7 @@
 #include "client_sdk/src/robot_descriptions.hpp"
 #include "client_sdk/src/standard_streams.hpp"
 #include "client_sdk/src/this_process.hpp"
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "idl/dds/transport.hpp"
 
 namespace cohort {

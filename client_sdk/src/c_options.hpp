@@ -5,7 +5,7 @@
 
 #include "client_sdk/hosting/c_handles.hpp"
 #include "client_sdk/include/cohort/cohort_control.h"
-#include "client_sdk/include/cohort/types.hpp"
+#include "idl/include/cohort/types.hpp"
 
 struct CohortRunEvent {
   cohort::RunEvent event;

@@ -8,7 +8,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort {
 namespace {

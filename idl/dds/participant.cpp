@@ -18,7 +18,7 @@
 #include <system_error>
 #include <vector>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "idl/dds/dds.hpp"
 
 namespace cohort::wire {

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "client_sdk/include/cohort/types.hpp"
+#include "idl/include/cohort/types.hpp"
 
 /// The operations with which clients control a run: docs/protocol.md, "Control". Each is a struct of its fields. `code`
 /// is its number, and `Returned` the type of its result, in addition to the common fields of every Reply. Entities are

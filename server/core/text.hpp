@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "client_sdk/text/edit_distance.hpp"
+#include "idl/text/edit_distance.hpp"
 
 /// Parsing of user input: strict, of whole texts, and independent of the locale. Numbers are converted exactly.
 namespace cohort {

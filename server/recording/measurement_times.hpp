@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "idl/messages/device_message.hpp"
+#include "server/messages/device_message.hpp"
 #include "server/simulation/simulation.hpp"
 
 namespace cohort::recording {

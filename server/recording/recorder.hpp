@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "idl/messages/device_messages.hpp"
+#include "server/messages/device_messages.hpp"
 #include "server/core/periodic_ticks.hpp"
 #include "server/description/experiment.hpp"
 #include "server/recording/mcap/writing/recording_file.hpp"

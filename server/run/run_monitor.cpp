@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort::session {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "server/core/bounded_file.hpp"
 #include "server/core/hash.hpp"
 #include "server/run/exchange.hpp"

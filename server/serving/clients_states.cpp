@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "server/serving/clients.hpp"
 
 namespace cohort::session {

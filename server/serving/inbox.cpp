@@ -1,6 +1,6 @@
 #include "server/serving/inbox.hpp"
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort::session {
 namespace {

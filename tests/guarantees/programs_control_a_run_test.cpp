@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "client_sdk/src/control/experiment_query.hpp"
+#include "server/messages/experiment_inputs.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tests/support/controlled_run.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "idl/wire/control_messages.hpp"
 #include "tests/support/worlds/field_of_robots.hpp"
 

@@ -8,7 +8,7 @@ import nbformat
 import pytest
 from nbclient import NotebookClient
 
-folder = pathlib.Path(__file__).parents[2] / "client_sdk/python/notebooks"
+folder = pathlib.Path(__file__).parents[2] / "tools/python/notebooks"
 
 
 @pytest.fixture

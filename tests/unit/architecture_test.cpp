@@ -54,7 +54,14 @@ struct Source {
   Names headers;  // other headers
 };
 
-const std::string public_headers = "client_sdk/include/";
+const std::vector<std::string> public_headers = {"client_sdk/include/", "idl/include/"};
+
+// Returns the file of a public header `cohort/…`.
+std::string public_header(const std::string& header) {
+  for (const std::string& folder : public_headers)
+    if (std::filesystem::exists(COHORT_SOURCE_DIR "/" + folder + header)) return folder + header;
+  return public_headers.front() + header;
+}
 
 // Notes the includes of a file of this text; `is_beside` says whether a file is in its folder.
 template <class IsBeside>
@@ -65,7 +72,7 @@ void note_includes(Source& source, const std::string& text, const IsBeside& is_b
   }
   for (const std::string& header : matches_in("\n" + text, std::regex("\n[ \t]*#[ \t]*include[ \t]*<([^>]+)>"))) {
     if (header.starts_with("cohort/"))
-      source.files.insert(public_headers + header);
+      source.files.insert(public_header(header));
     else
       source.headers.insert(header);
   }
@@ -140,6 +147,32 @@ TEST(Architecture, EveryFolderIsListedAndIncludesWhatItNamesAndNothingElse) {
       EXPECT_TRUE(used[folder].contains(named))
           << folder << " does not include " << named << ", which is listed for it";
   }
+}
+
+TEST(Architecture, TheTopLevelFoldersIncludeOnlyThoseBefore) {
+  const std::vector<std::string> order = {"idl", "client_sdk", "server", "tools"};
+  const auto place_of = [&](const std::string& file) {
+    return std::ranges::find(order, std::filesystem::path(file).begin()->string()) - order.begin();
+  };
+  for (const Source& source : read_sources())
+    for (const std::string& file : source.files)
+      EXPECT_LE(place_of(file), place_of(source.path)) << source.path << " includes " << file;
+}
+
+// As the includes, the imports of the page: `from "./name"`.
+TEST(Architecture, ModulesOfThePageImportEachOtherInNoCircle) {
+  const std::filesystem::path top = COHORT_SOURCE_DIR "/tools/view/page/src";
+  Graph modules;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(top)) {
+    if (entry.path().extension() != ".ts") continue;
+    std::stringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    Names& imported = modules[entry.path().lexically_relative(top).replace_extension()];
+    for (const std::string& name : matches_in(text.str(), std::regex("from \"(\\.[^\"]+)\"")))
+      imported.insert((entry.path().parent_path() / name).lexically_normal().lexically_relative(top));
+  }
+  ASSERT_TRUE(modules["main"].contains("data/connection"));
+  EXPECT_EQ(circle_in(modules), "");
 }
 
 TEST(Architecture, EveryIncludeIsSeenWhereverItStands) {
@@ -265,7 +298,8 @@ TEST(Architecture, NoTwoHeadersHaveTheSameName) {
   for (const Source& source : read_sources()) {
     const std::filesystem::path path = source.path;
     if (path.extension() == ".cpp" || path.extension() == ".c") continue;
-    if (source.path.starts_with(public_headers)) continue;  // <cohort/...> tells them apart
+    const auto is_public = [&](const std::string& folder) { return source.path.starts_with(folder); };
+    if (std::ranges::any_of(public_headers, is_public)) continue;  // <cohort/...> tells them apart
     const auto [found, is_new] = paths.emplace(path.stem(), source.path);
     EXPECT_TRUE(is_new) << source.path << " and " << found->second;
   }

@@ -12,7 +12,7 @@
 
 #include "client_sdk/src/network_clock.hpp"
 #include "client_sdk/src/this_process.hpp"
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort {
 namespace {

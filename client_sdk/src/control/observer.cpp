@@ -12,7 +12,7 @@
 #include "client_sdk/src/control/control_values.hpp"
 #include "client_sdk/src/control/run_history_query.hpp"
 #include "client_sdk/src/event_descriptor.hpp"
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "idl/messages/scene_messages.hpp"
 
 namespace cohort {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "client_sdk/include/cohort/control.hpp"
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "idl/messages/run_history.hpp"
 
 namespace cohort {

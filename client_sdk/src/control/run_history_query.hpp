@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "client_sdk/include/cohort/types.hpp"
+#include "idl/include/cohort/types.hpp"
 #include "idl/wire/control_messages.hpp"
 
 namespace cohort {

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "idl/dds/ros2/participant_state.hpp"
 #include "idl/dds/ros2/ros_participant.hpp"
 #include "idl/messages/cdr.hpp"

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
 #include "server/description/select_robots.hpp"

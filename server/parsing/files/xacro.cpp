@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "server/core/text.hpp"
 #include "server/description/input_error.hpp"
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "server/serving/control/control_actions.hpp"
 #include "server/serving/control/control_texts.hpp"
 #include "server/serving/control/requests/request_checks.hpp"

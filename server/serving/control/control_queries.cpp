@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "idl/messages/experiment_files.hpp"
+#include "server/messages/experiment_inputs.hpp"
 #include "idl/messages/run_history.hpp"
 #include "server/serving/control/entity_filter.hpp"
 

@@ -1,4 +1,4 @@
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 
 #include <gtest/gtest.h>
 

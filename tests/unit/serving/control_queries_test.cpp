@@ -4,6 +4,7 @@
 
 #include "client_sdk/include/cohort/control.hpp"
 #include "client_sdk/src/control/experiment_query.hpp"
+#include "server/messages/experiment_inputs.hpp"
 #include "tests/support/robots.hpp"
 
 // Questions to a run, without a network.

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort::avr {
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "tools/bridges/avr/kilobot.hpp"
 
 namespace cohort::avr::kilobot {

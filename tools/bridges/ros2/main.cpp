@@ -9,6 +9,7 @@
 #include "client_sdk/src/control/experiment_query.hpp"
 #include "client_sdk/src/standard_streams.hpp"
 #include "idl/dds/ros2/ros_names.hpp"
+#include "server/messages/experiment_inputs.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "tools/bridges/common/bridge_program.hpp"
 #include "tools/bridges/ros2/ros_bridge.hpp"

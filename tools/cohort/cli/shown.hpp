@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "client_sdk/src/standard_streams.hpp"
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 
 /// Output for users and programs: valid UTF-8 without terminal control sequences, even if the input is not.
 namespace cohort::tool {

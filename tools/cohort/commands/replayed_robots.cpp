@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "idl/dds/ros2/ros_names.hpp"
-#include "idl/messages/device_messages.hpp"
+#include "server/messages/device_messages.hpp"
 #include "idl/messages/ros_geometry_messages.hpp"
 #include "server/description/select_robots.hpp"
 

@@ -13,6 +13,7 @@
 #include "client_sdk/src/control/control_client.hpp"
 #include "client_sdk/src/control/experiment_query.hpp"
 #include "client_sdk/src/domains.hpp"
+#include "server/messages/experiment_inputs.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "tools/cohort/cli/terminal/key_reader.hpp"
 #include "tools/cohort/commands/commands.hpp"

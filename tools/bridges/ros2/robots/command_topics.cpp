@@ -6,9 +6,9 @@
 #include <utility>
 #include <variant>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "idl/dds/ros2/ros_names.hpp"
-#include "idl/messages/command_messages.hpp"
+#include "server/messages/command_messages.hpp"
 #include "idl/messages/ros_navigation_messages.hpp"
 #include "idl/messages/ros_std_messages.hpp"
 #include "idl/messages/ros_type_hash.hpp"

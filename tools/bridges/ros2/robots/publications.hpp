@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "client_sdk/include/cohort/client.hpp"
-#include "client_sdk/include/cohort/types.hpp"
+#include "idl/include/cohort/types.hpp"
 #include "idl/dds/ros2/ros_participant.hpp"
-#include "idl/messages/device_messages.hpp"
+#include "server/messages/device_messages.hpp"
 #include "idl/messages/ros_navigation_messages.hpp"
 #include "server/core/periodic_ticks.hpp"
 #include "tools/bridges/ros2/robots/drive.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "client_sdk/text/printable.hpp"
+#include "idl/text/printable.hpp"
 #include "idl/messages/ros_messages.hpp"
 
 namespace cohort::ros2 {

@@ -1,6 +1,6 @@
-#include "idl/messages/device_messages.hpp"
+#include "server/messages/device_messages.hpp"
 
-#include "idl/messages/device_message_list.hpp"
+#include "server/messages/device_message_list.hpp"
 
 namespace cohort::messages {
 

@@ -1,4 +1,4 @@
-#include "idl/messages/device_messages.hpp"
+#include "server/messages/device_messages.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "idl/messages/cohort_device_messages.hpp"
-#include "idl/messages/command_messages.hpp"
+#include "server/messages/command_messages.hpp"
 #include "tests/support/worlds/sensing_world.hpp"
 
 namespace cohort::messages {

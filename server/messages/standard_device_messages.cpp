@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "idl/messages/cohort_device_messages.hpp"
-#include "idl/messages/device_message_list.hpp"
+#include "server/messages/device_message_list.hpp"
 
 /// Devices with messages in ROS.
 namespace cohort::messages {

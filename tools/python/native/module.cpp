@@ -6,7 +6,7 @@
 #include "client_sdk/math/portable_math.hpp"
 #include "client_sdk/python/hosting/file_controllers.hpp"
 #include "client_sdk/python/hosting/unlocked.hpp"
-#include "client_sdk/python/native/parts.hpp"
+#include "tools/python/native/parts.hpp"
 
 NB_MODULE(_native, module) {
   nanobind::set_leak_warnings(false);  // about objects that are alive when Python exits

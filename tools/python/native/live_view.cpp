@@ -1,4 +1,4 @@
-#include "client_sdk/python/native/live_view.hpp"
+#include "tools/python/native/live_view.hpp"
 
 #include <unistd.h>
 

@@ -14,11 +14,11 @@
 #include <string>
 
 #include "client_sdk/python/hosting/unlocked.hpp"
-#include "client_sdk/python/native/array_simulation.hpp"
-#include "client_sdk/python/native/arrays.hpp"
-#include "client_sdk/python/native/channels.hpp"
-#include "client_sdk/python/native/one_user.hpp"
-#include "client_sdk/python/native/parts.hpp"
+#include "tools/python/native/array_simulation.hpp"
+#include "tools/python/native/arrays.hpp"
+#include "tools/python/native/channels.hpp"
+#include "tools/python/native/one_user.hpp"
+#include "tools/python/native/parts.hpp"
 #include "server/viewing/picture.hpp"
 
 namespace cohort::python {

@@ -1,4 +1,4 @@
-#include "client_sdk/python/native/array_simulation.hpp"
+#include "tools/python/native/array_simulation.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "idl/messages/device_message_list.hpp"
+#include "server/messages/device_message_list.hpp"
 
 #include <algorithm>
 #include <map>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "idl/messages/device_message.hpp"
+#include "server/messages/device_message.hpp"
 
 namespace cohort::messages {
 

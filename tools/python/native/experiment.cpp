@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "client_sdk/python/hosting/unlocked.hpp"
-#include "client_sdk/python/native/parts.hpp"
+#include "tools/python/native/parts.hpp"
 #include "server/core/snapshot.hpp"
 #include "server/description/input_error.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"

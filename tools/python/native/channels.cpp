@@ -1,4 +1,4 @@
-#include "client_sdk/python/native/channels.hpp"
+#include "tools/python/native/channels.hpp"
 
 #include <nanobind/stl/string.h>
 

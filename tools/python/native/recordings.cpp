@@ -21,10 +21,10 @@
 #include <vector>
 
 #include "client_sdk/python/hosting/unlocked.hpp"
-#include "client_sdk/python/native/arrays.hpp"
-#include "client_sdk/python/native/collected_tables.hpp"
-#include "client_sdk/python/native/interruption.hpp"
-#include "client_sdk/python/native/parts.hpp"
+#include "tools/python/native/arrays.hpp"
+#include "tools/python/native/collected_tables.hpp"
+#include "tools/python/native/interruption.hpp"
+#include "tools/python/native/parts.hpp"
 #include "server/recording/difference.hpp"
 #include "server/recording/mcap/format/mcap_error.hpp"
 #include "server/recording/recording.hpp"

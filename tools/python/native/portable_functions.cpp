@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "client_sdk/python/native/arrays.hpp"
-#include "client_sdk/python/native/parts.hpp"
+#include "tools/python/native/arrays.hpp"
+#include "tools/python/native/parts.hpp"
 
 namespace cohort::python {
 namespace {

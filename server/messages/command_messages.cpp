@@ -1,11 +1,11 @@
-#include "idl/messages/command_messages.hpp"
+#include "server/messages/command_messages.hpp"
 
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
 #include "idl/messages/cohort_device_messages.hpp"
-#include "idl/messages/device_message_list.hpp"
+#include "server/messages/device_message_list.hpp"
 
 namespace cohort::messages {
 namespace {

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "client_sdk/python/native/array_simulation.hpp"
+#include "tools/python/native/array_simulation.hpp"
 #include "server/viewing/scene_maker.hpp"
 #include "tools/view/messages/scene_publisher.hpp"
 #include "tools/view/source.hpp"

@@ -1,4 +1,4 @@
-#include "client_sdk/python/native/collected_tables.hpp"
+#include "tools/python/native/collected_tables.hpp"
 
 #include <span>
 #include <utility>

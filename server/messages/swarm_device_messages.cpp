@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "idl/messages/cohort_device_messages.hpp"
-#include "idl/messages/device_message_list.hpp"
+#include "server/messages/device_message_list.hpp"
 
 /// Devices with messages in cohort_msgs.
 namespace cohort::messages {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints a table of the cost of control steps in Python: Cohort, its batch as a lower bound, and other simulators.
 
-    tools/python-environment --benchmarks                          # prints a Python that has all of them
+    tools/dev/python-environment --benchmarks                          # prints a Python that has all of them
     PYTHONPATH=build/release/python PYTHON tests/benchmarks/python_benchmark.py [--seconds S] [--worlds N]
 
 A step is one tick of 10 ms of one world: all robots sense and are commanded. Rows are measured in turns, so that other

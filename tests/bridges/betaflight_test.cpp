@@ -278,7 +278,7 @@ class Betaflight : public ::testing::Test {
  protected:
   void SetUp() override {
     if (std::string_view(COHORT_BETAFLIGHT).empty())
-      GTEST_SKIP() << "without the program: tools/python-environment --bridges makes it, tools/test finds it";
+      GTEST_SKIP() << "without the program: tools/dev/python-environment --bridges makes it, tools/test finds it";
     const pid_t child = ::fork();
     if (child == 0) ::_exit(::unshare(CLONE_NEWUSER | CLONE_NEWNET) == 0 ? 0 : 1);
     int status = 0;

@@ -272,7 +272,7 @@ TEST(Px4Wire, PymavlinkDecodesAllMessagesAndItsControlsDriveTheRover) {
 }
 #else
 TEST(Px4Wire, PymavlinkDecodesAllMessagesAndItsControlsDriveTheRover) {
-  GTEST_SKIP() << "no environment of tools/python-environment --bridges (COHORT_BRIDGES_PYTHON)";
+  GTEST_SKIP() << "no environment of tools/dev/python-environment --bridges (COHORT_BRIDGES_PYTHON)";
 }
 #endif
 

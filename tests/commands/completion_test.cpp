@@ -30,7 +30,7 @@ const std::vector<Case> cases = {
     {"cohort serve x.yaml --secure " COHORT_SOURCE_DIR "/to", COHORT_SOURCE_DIR "/tools", COHORT_SOURCE_DIR "/tests"},
 };
 
-constexpr const char* install_shells = ": tools/install-packages tools/packages-shells.txt";
+constexpr const char* install_shells = ": tools/dev/install-packages tools/dev/packages-shells.txt";
 
 // `asked` prints the completions of a shell for $WRITTEN, one per line.
 void expect_completions(const std::string& shell, const std::string& asked) {

@@ -1,4 +1,4 @@
-#include "tools/cohort/commands/doctor/doctor.hpp"
+#include "tools/cli/commands/doctor/doctor.hpp"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

@@ -14,7 +14,7 @@ namespace {
 // has names of its own for the same parts.
 TEST(ClientOnCycloneDdsForPython, GivesIdenticalResults) {
   if (std::string_view(COHORT_CYCLONEDDS_PYTHON).empty())
-    GTEST_SKIP() << "no Cyclone DDS 11 here: tools/python-environment --cyclonedds";
+    GTEST_SKIP() << "no Cyclone DDS 11 here: tools/dev/python-environment --cyclonedds";
   const ReservedDomain domain;
   const ScratchFolder folder;
   const std::string experiment = (folder / "experiment.yaml").string();

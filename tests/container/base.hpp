@@ -21,7 +21,7 @@ inline Ended run_for_long(std::vector<std::string> command, const Process::Envir
 inline std::optional<std::string> make_base(const std::filesystem::path& folder) {
   if (geteuid() != 0) return "Debian can be unpacked by root only";
   if (!is_installed("debootstrap"))
-    return "there is no debootstrap: tools/install-packages tools/packages-container.txt";
+    return "there is no debootstrap: tools/dev/install-packages tools/dev/packages-container.txt";
   const Ended made = run_for_long({COHORT_SOURCE_DIR "/tests/container/make_base", folder});
   if (made.exit_code != 0) return "no Debian can be unpacked here: " + made.out;
   return std::nullopt;

@@ -15,7 +15,7 @@ constexpr auto npos = std::string::npos;
 const std::string demo = "/usr/share/cohort/worlds/experiments/obstacle_avoidance.yaml";
 const std::string sdk_image = "localhost/cohort-sdk:" COHORT_VERSION;
 
-constexpr const char* install_list = ": tools/install-packages tools/packages-container.txt";
+constexpr const char* install_list = ": tools/dev/install-packages tools/dev/packages-container.txt";
 
 // The images of docker/, built of these sources.
 class Container : public ::testing::Test {

@@ -11,13 +11,14 @@ namespace fs = std::filesystem;
 TEST(Wheel, InstallsInAnEmptyEnvironmentOfACleanDebianAndRunsToTheSameBits) {
   const fs::path folder = COHORT_CONTAINER_DIR;
   if (const auto reason = make_base(folder)) GTEST_SKIP() << *reason;
-  const Ended made = run_for_long({COHORT_SOURCE_DIR "/tools/wheel"});
+  const Ended made = run_for_long({COHORT_SOURCE_DIR "/tools/dev/wheel"});
   ASSERT_EQ(made.exit_code, 0) << made.out;
   // The dependencies, in the version that is tested.
   const ScratchFolder wheels;
-  const std::string script = "cd " COHORT_SOURCE_DIR
-                             " && cp build/wheels/*.whl \"$1\" && build/python-wheel/bin/pip freeze | grep '^numpy==' > "
-                             "\"$1/needed\" && build/python-wheel/bin/pip download -q --no-deps -r \"$1/needed\" -d \"$1\"";
+  const std::string script =
+      "cd " COHORT_SOURCE_DIR
+      " && cp build/wheels/*.whl \"$1\" && build/python-wheel/bin/pip freeze | grep '^numpy==' > "
+      "\"$1/needed\" && build/python-wheel/bin/pip download -q --no-deps -r \"$1/needed\" -d \"$1\"";
   const Ended gathered = run_for_long({"sh", "-ec", script, "sh", wheels.path()});
   ASSERT_EQ(gathered.exit_code, 0) << gathered.out;
 

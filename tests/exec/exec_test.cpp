@@ -144,7 +144,7 @@ TEST(Exec, TheProgramsClockGoesOnThroughAReset) {
 
 TEST(Exec, RunsAClientOnFastDds) {
   const std::string client = COHORT_BUILD_DIR "/bin/fastdds_client";
-  if (!std::filesystem::exists(client)) GTEST_SKIP() << "there is no Fast DDS: tools/packages-conformance.txt";
+  if (!std::filesystem::exists(client)) GTEST_SKIP() << "there is no Fast DDS: tools/dev/packages-conformance.txt";
   const FieldOfRobots field(2, 5.0);
   ControlledRun run(field, {}, false);
   Process program(exec(run.domain(), {client, COHORT_BUILD_DIR "/lib/controllers/obstacle_avoidance.so",

@@ -257,8 +257,8 @@ TEST_F(Installation, HasTheShippedExperimentAndItsController) {
 
 TEST_F(Installation, HasThePageOfTheView) {
   if (!fs::exists(COHORT_BUILD_DIR "/share/cohort/view/page.js"))
-    GTEST_SKIP() << "the page was not built: it needs a way to npm's registry, and tools/install-packages "
-                    "tools/packages-node.txt";
+    GTEST_SKIP() << "the page was not built: it needs a way to npm's registry, and tools/dev/install-packages "
+                    "tools/dev/packages-node.txt";
   const fs::path recording = *scratch / "page.mcap";
   const fs::path experiment = prefix / "share/cohort/worlds/experiments/obstacle_avoidance.yaml";
   const Ended recorded = run({cohort(), "run", experiment, "--duration", "0.1", "--record", recording});

@@ -99,7 +99,7 @@ TEST(RosMessages, ThatDifferAreFound) {
 #else
 
 TEST(RosMessages, AreReadByTheDefinitionsOfDistributions) {
-  GTEST_SKIP() << "no environment of tools/python-environment --rosbags (COHORT_ROSBAGS_PYTHON)";
+  GTEST_SKIP() << "no environment of tools/dev/python-environment --rosbags (COHORT_ROSBAGS_PYTHON)";
 }
 
 #endif

@@ -17,7 +17,7 @@ struct Ros2Distribution {
   std::string python;  ///< empty if its environment is not there
 
   std::string missing() const {
-    return python.empty() ? "no environment of tools/python-environment --ros2 " + name : std::string();
+    return python.empty() ? "no environment of tools/dev/python-environment --ros2 " + name : std::string();
   }
 };
 

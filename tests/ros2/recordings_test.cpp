@@ -85,7 +85,7 @@ TEST_F(Ros2Recordings, BecomeBagsOfRosbag2Later) {
 #else
 
 TEST(Ros2Recordings, AreBagsOfRosbag2) {
-  GTEST_SKIP() << "no environment of tools/python-environment --rosbags (COHORT_ROSBAGS_PYTHON)";
+  GTEST_SKIP() << "no environment of tools/dev/python-environment --rosbags (COHORT_ROSBAGS_PYTHON)";
 }
 
 #endif

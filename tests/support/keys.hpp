@@ -5,7 +5,7 @@
 
 #include "idl/dds/identity.hpp"
 #include "tests/support/process.hpp"
-#include "tools/cohort/commands/security/certificates.hpp"
+#include "tools/cli/commands/security/certificates.hpp"
 
 namespace cohort::test {
 

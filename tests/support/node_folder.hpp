@@ -22,8 +22,8 @@ class NodeFolder {
 
   /// Installs the packages once, in the first process that needs them. Returns the reason why it cannot, or nothing.
   std::optional<std::string> prepare(const std::string& script) const {
-    if (node_.empty()) return "there is no node: tools/install-packages tools/packages-node.txt";
-    if (npm_.empty()) return "there is no npm: tools/install-packages tools/packages-node.txt";
+    if (node_.empty()) return "there is no node: tools/dev/install-packages tools/dev/packages-node.txt";
+    if (npm_.empty()) return "there is no npm: tools/dev/install-packages tools/dev/packages-node.txt";
     std::filesystem::create_directories(folder_);
     const FileLock lock(folder_ / "lock");
     install(script);

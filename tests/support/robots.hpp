@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/figures/tracked_robot.hpp"
+#include "tools/dev/figures/tracked_robot.hpp"
 
 /// Small worlds, described in code: what the tests of physics, sensing and simulation stand on.
 namespace cohort::test {

@@ -23,9 +23,9 @@ class Films : public ::testing::Test {
   void SetUp() override {
     for (const char* program : {"chromium", "ffmpeg"})
       if (!is_installed(program))
-        GTEST_SKIP() << "there is no " << program << ": tools/install-packages tools/packages-browser.txt";
+        GTEST_SKIP() << "there is no " << program << ": tools/dev/install-packages tools/dev/packages-browser.txt";
     if (!fs::exists(COHORT_BUILD_DIR "/share/cohort/view/page.js"))
-      GTEST_SKIP() << "the page was not built: tools/install-packages tools/packages-node.txt";
+      GTEST_SKIP() << "the page was not built: tools/dev/install-packages tools/dev/packages-node.txt";
     run_demo({"--duration", "2", "--record", scratch / "run.mcap", "--record-snapshots", "1"});
     fs::create_directory(scratch / "tmp");
   }

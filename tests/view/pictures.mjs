@@ -1,5 +1,5 @@
 // Takes the pictures of the page that docs/view.md shows, as PNG files: node pictures.mjs COHORT FOLDER. See
-// tools/make-view-pictures.
+// tools/dev/make-view-pictures.
 import { join } from "node:path";
 import { chromium } from "playwright-core";
 import { look, run, until } from "./in_page.mjs";

@@ -78,7 +78,7 @@ class InABrowser : public Viewing {
   void SetUp() override {
     Viewing::SetUp();
     if (!has_browser() && !IsSkipped())
-      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-browser.txt";
+      GTEST_SKIP() << "there is no chromium: tools/dev/install-packages tools/dev/packages-browser.txt";
   }
 };
 

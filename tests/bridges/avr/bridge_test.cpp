@@ -20,7 +20,7 @@ class AvrBridge : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(firmware("avoid.elf")))
-      GTEST_SKIP() << "there is no avr-gcc: tools/install-packages tools/packages-avr.txt";
+      GTEST_SKIP() << "there is no avr-gcc: tools/dev/install-packages tools/dev/packages-avr.txt";
     write_file(folder_ / "world.yaml",
                "world:\n  name: room\n  model:\n"
                "    - {name: ground, static: true, link: {collision: {geometry: {plane: {}}}}}\n"
@@ -90,7 +90,7 @@ TEST_F(AvrBridge, AProgramInCAvoidsObstaclesWithTheSameBitsForAnyNumberOfThreads
 
 TEST_F(AvrBridge, ASketchForAnArduinoAvoidsObstaclesWithTheSameBits) {
   if (!std::filesystem::exists(firmware("sketch.elf")))
-    GTEST_SKIP() << "there is no core for Arduino: tools/install-packages tools/packages-avr.txt";
+    GTEST_SKIP() << "there is no core for Arduino: tools/dev/install-packages tools/dev/packages-avr.txt";
   std::vector<std::string> hashes;
   for (int i = 0; i < 2; ++i) {
     const auto made = run(shipped, "sketch.elf", {"--duration", "10"});
@@ -106,7 +106,7 @@ TEST_F(AvrBridge, ASketchForAnArduinoAvoidsObstaclesWithTheSameBits) {
 // A wall is 1 m ahead of the robot's axle, 7 cm behind its sensor.
 TEST_F(AvrBridge, AnUltrasonicSensorSaysHowFarAWallIs) {
   if (!std::filesystem::exists(firmware("sketch.elf")))
-    GTEST_SKIP() << "there is no core for Arduino: tools/install-packages tools/packages-avr.txt";
+    GTEST_SKIP() << "there is no core for Arduino: tools/dev/install-packages tools/dev/packages-avr.txt";
   const auto made = run(alone_, "sketch.elf", {"--duration", "1.5"});
   made->end();
   std::smatch match;

@@ -42,7 +42,7 @@ class AvrCore : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(firmware("signals.elf")))
-      GTEST_SKIP() << "there is no avr-gcc: tools/install-packages tools/packages-avr.txt";
+      GTEST_SKIP() << "there is no avr-gcc: tools/dev/install-packages tools/dev/packages-avr.txt";
   }
 };
 

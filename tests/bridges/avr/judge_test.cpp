@@ -58,7 +58,7 @@ class AvrJudge : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(COHORT_AVR_FIRMWARE "/edges.hex"))
-      GTEST_SKIP() << "there is no avr-gcc: tools/install-packages tools/packages-avr.txt";
+      GTEST_SKIP() << "there is no avr-gcc: tools/dev/install-packages tools/dev/packages-avr.txt";
     if (const auto missing = folder.prepare(script)) GTEST_SKIP() << *missing;
   }
   inline static const std::string script = "judge.mjs";

@@ -78,7 +78,7 @@ class KilobotFirmware : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(firmware("kilobot.elf")))
-      GTEST_SKIP() << "there is no avr-gcc: tools/install-packages tools/packages-avr.txt";
+      GTEST_SKIP() << "there is no avr-gcc: tools/dev/install-packages tools/dev/packages-avr.txt";
   }
   Air air_;
 };

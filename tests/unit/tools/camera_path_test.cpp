@@ -1,4 +1,4 @@
-#include "tools/film/camera_path.hpp"
+#include "tools/view/film/camera_path.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "tools/drawing/chart.hpp"
+#include "tools/cli/drawing/chart.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "tools/drawing/chart_groups.hpp"
-#include "tools/drawing/svg.hpp"
+#include "tools/cli/drawing/chart_groups.hpp"
+#include "tools/cli/drawing/svg.hpp"
 
 namespace cohort::figures {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/figures/figures.hpp"
+#include "tools/dev/figures/figures.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/film/film_source.hpp"
+#include "tools/view/film/film_source.hpp"
 
 #include <gtest/gtest.h>
 

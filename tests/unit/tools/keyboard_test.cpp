@@ -1,10 +1,10 @@
-#include "tools/cohort/running/keyboard.hpp"
+#include "tools/cli/running/keyboard.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "tools/cohort/running/team_controllers.hpp"
+#include "tools/cli/running/team_controllers.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/cohort/commands/manual/manual.hpp"
+#include "tools/cli/commands/manual/manual.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include "server/parsing/keys/details.hpp"
 #include "server/parsing/keys/experiment_keys.hpp"
 #include "tests/support/files.hpp"
-#include "tools/cohort/commands/manual/entries.hpp"
-#include "tools/cohort/commands/manual/reference_pages.hpp"
+#include "tools/cli/commands/manual/entries.hpp"
+#include "tools/cli/commands/manual/reference_pages.hpp"
 
 namespace cohort::tool {
 namespace {

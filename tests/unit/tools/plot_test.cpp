@@ -1,4 +1,4 @@
-#include "tools/drawing/plot.hpp"
+#include "tools/cli/drawing/plot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@
 
 #include "tests/support/files.hpp"
 #include "tests/support/robots.hpp"
-#include "tools/cohort/cli/output_file.hpp"
-#include "tools/drawing/outline.hpp"
-#include "tools/drawing/svg.hpp"
+#include "tools/cli/common/output_file.hpp"
+#include "tools/cli/drawing/outline.hpp"
+#include "tools/cli/drawing/svg.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/cohort/cli/terminal/printed_table.hpp"
+#include "tools/cli/common/terminal/printed_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/cohort/running/watchdog.hpp"
+#include "tools/cli/running/watchdog.hpp"
 
 #include <gtest/gtest.h>
 

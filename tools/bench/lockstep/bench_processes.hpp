@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/processes/children.hpp"
+#include "tools/cli/processes/children.hpp"
 
 namespace cohort::bench {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "tools/bench/report.hpp"
-#include "tools/drawing/chart.hpp"
+#include "tools/cli/drawing/chart.hpp"
 
 namespace cohort::bench {
 namespace {

@@ -31,7 +31,7 @@ def page_folder():
     if not (folder / "index.html").is_file():
         raise FileNotFoundError(
             f"the web page of the view is missing from '{folder}'. To build it, install node 18 and npm "
-            "(tools/install-packages tools/packages-node.txt), then run "
+            "(tools/dev/install-packages tools/dev/packages-node.txt), then run "
             "cmake --build build/release --target view_page"
         )
     return folder

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "tools/data/table.hpp"
+#include "tools/cli/data/table.hpp"
 
 namespace cohort::python {
 

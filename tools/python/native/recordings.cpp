@@ -21,16 +21,16 @@
 #include <vector>
 
 #include "client_sdk/python/hosting/unlocked.hpp"
-#include "tools/python/native/arrays.hpp"
-#include "tools/python/native/collected_tables.hpp"
-#include "tools/python/native/interruption.hpp"
-#include "tools/python/native/parts.hpp"
 #include "server/recording/difference.hpp"
 #include "server/recording/mcap/format/mcap_error.hpp"
 #include "server/recording/recording.hpp"
 #include "server/recording/replay.hpp"
 #include "server/recording/run_messages.hpp"
-#include "tools/data/recording_tables.hpp"
+#include "tools/cli/data/recording_tables.hpp"
+#include "tools/python/native/arrays.hpp"
+#include "tools/python/native/collected_tables.hpp"
+#include "tools/python/native/interruption.hpp"
+#include "tools/python/native/parts.hpp"
 
 namespace cohort::python {
 namespace {

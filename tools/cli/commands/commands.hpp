@@ -1,0 +1,68 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "tools/cli/common/command_line.hpp"
+#include "tools/cli/common/exit_codes.hpp"
+#include "tools/cli/common/log.hpp"
+#include "tools/cli/common/log_flags.hpp"
+
+/// The commands of `cohort`, one file each. Commands that no run needs and that take long to build are in a second
+/// program, `cohort-whole`, which has all commands. `in_whole` lists them; `cohort` starts that program for them.
+namespace cohort::tool {
+
+/// A command: its part of the command line, and the function that executes it.
+struct Subcommand {
+  CommandLine line;
+  /// Returns the process's exit code. An exception is a user's error and ends the process with exit_usage.
+  std::function<int(Log& log, const std::atomic<bool>& stop)> run;
+};
+
+/// A command of `cohort-whole`.
+struct InWhole {
+  const char* name;
+  const char* text;  ///< for help
+};
+namespace in_whole {
+inline constexpr InWhole view = {"view", "Show a recording or a running server in a browser"};
+inline constexpr InWhole page = {"page", "Write a recording as one HTML file that plays in any browser"};
+inline constexpr InWhole film = {"film", "Make a film or pictures of a recording"};
+inline constexpr InWhole completion = {"completion", "Print a shell's completion script"};
+inline constexpr InWhole man_page = {"man-page", "Print the manual page, which contains the help of all commands"};
+inline constexpr InWhole bench = {
+    "bench", "Compare the performance of Cohort with that of other physics engines on the same scenes"};
+}  // namespace in_whole
+
+/// Each function adds its command to `app`. The functions that take `flags` show the message options after their own in
+/// help.
+Subcommand add_run(CommandLine app, LogFlags& flags);
+Subcommand add_serve(CommandLine app, LogFlags& flags);
+Subcommand add_host(CommandLine app, LogFlags& flags);
+Subcommand add_teleop(CommandLine app);
+Subcommand add_exec(CommandLine app);
+Subcommand add_ctl(CommandLine app);
+Subcommand add_record(CommandLine app);
+Subcommand add_view(CommandLine app);
+Subcommand add_page(CommandLine app);
+Subcommand add_film(CommandLine app);
+Subcommand add_examples(CommandLine app);
+Subcommand add_check(CommandLine app);
+Subcommand add_export(CommandLine app);
+Subcommand add_models(CommandLine app);
+Subcommand add_samples(CommandLine app);
+Subcommand add_security(CommandLine app);
+Subcommand add_doctor(CommandLine app);
+Subcommand add_recordings(CommandLine app);
+Subcommand add_replay(CommandLine app);
+Subcommand add_diff(CommandLine app);
+Subcommand add_export_data(CommandLine app);
+Subcommand add_plot(CommandLine app);
+Subcommand add_recover(CommandLine app);
+Subcommand add_help(CommandLine app);
+Subcommand add_completion(CommandLine app);
+Subcommand add_man_page(CommandLine app);
+Subcommand add_bench(CommandLine app);
+
+}  // namespace cohort::tool

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+
+#include "server/description/experiment.hpp"
+#include "tools/cli/running/run_options.hpp"
+
+namespace cohort::tool {
+
+/// Applies the recording options of the command line to the experiment. Throws std::invalid_argument for a selector
+/// that selects no robot.
+void set_recorded(description::Experiment& experiment, const RecordOptions& options);
+
+/// Checks before a long run that the folder of a recording is not a rosbag2 bag of other files. Throws
+/// std::runtime_error if it is.
+void check_rosbag2_metadata(const std::filesystem::path& recording);
+
+/// Writes `metadata.yaml` beside a recording, so that rosbag2 reads the folder as a bag. Throws std::runtime_error if
+/// the recording is damaged, or the folder is a bag of other files.
+void write_rosbag2_metadata(const std::filesystem::path& recording);
+
+}  // namespace cohort::tool

@@ -1,0 +1,9 @@
+#include "tools/dev/figures/figures.hpp"
+
+namespace cohort::figures {
+
+std::vector<Page> all_pages() {
+  return {proximity_and_ground(), light_and_sound(), motion(), gripping(), surroundings()};
+}
+
+}  // namespace cohort::figures

@@ -1,9 +1,0 @@
-#include "tools/figures/figures.hpp"
-
-namespace cohort::figures {
-
-std::vector<Page> all_pages() {
-  return {proximity_and_ground(), light_and_sound(), motion(), gripping(), surroundings()};
-}
-
-}  // namespace cohort::figures

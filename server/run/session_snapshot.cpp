@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "idl/include/cohort/version.h"
 #include "idl/text/printable.hpp"
 #include "server/core/bounded_file.hpp"
 #include "server/core/hash.hpp"

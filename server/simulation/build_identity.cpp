@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "idl/include/cohort/version.h"
 #include "server/core/commit.hpp"
 #include "server/core/hash.hpp"
 #include "server/core/random.hpp"

@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "idl/include/cohort/version.h"
 #include "server/core/hash.hpp"
 #include "server/core/random.hpp"
 #include "server/core/snapshot.hpp"

@@ -178,6 +178,7 @@ TEST(Documents, NameTheVersionOfTheProject) {
   std::vector<VersionPlace> places = {
       {"CMakeLists.txt", versions_in({"pyproject.toml", "regex = '(.*)\\(\\?P<value>"}).at(0) + "([0-9.]+)"},
       {"idl/cohort_msgs/package.xml", "<version>(.*)</version>"},
+      {"idl/include/cohort/version.h", "COHORT_VERSION \"(.*)\""},
       {"CITATION.cff", "\nversion: (.*)"},
       {"CHANGELOG.md", R"(\n## (\d\S*) — )"},
       {"docker/Dockerfile", "image\\.version=\"(.*?)\""},

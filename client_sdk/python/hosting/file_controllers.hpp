@@ -1,6 +1,7 @@
 #pragma once
 
 #include "client_sdk/hosting/controller_host.hpp"
+#include "idl/include/cohort/version.h"
 
 namespace cohort::python {
 

@@ -15,6 +15,8 @@
 #include <system_error>
 #include <vector>
 
+#include "idl/include/cohort/version.h"
+
 // This library is not linked against Python: it looks up the functions below in the user's Python.
 namespace cohort::python {
 namespace {

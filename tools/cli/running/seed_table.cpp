@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "idl/include/cohort/version.h"
 #include "tools/cli/common/wording.hpp"
 #include "tools/cli/data/csv_tables.hpp"
 

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "client_sdk/src/standard_streams.hpp"
+#include "idl/include/cohort/version.h"
 #include "tools/cli/commands/commands.hpp"
 #include "tools/cli/common/command_tree.hpp"
 

@@ -6,6 +6,7 @@
 #include "client_sdk/math/portable_math.hpp"
 #include "client_sdk/python/hosting/file_controllers.hpp"
 #include "client_sdk/python/hosting/unlocked.hpp"
+#include "idl/include/cohort/version.h"
 #include "tools/python/native/parts.hpp"
 
 NB_MODULE(_native, module) {

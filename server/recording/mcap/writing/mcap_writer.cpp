@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "idl/include/cohort/version.h"
 #include "server/recording/mcap/format/crc32.hpp"
 #include "server/recording/mcap/format/mcap_records.hpp"
 

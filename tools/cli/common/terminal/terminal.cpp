@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "idl/include/cohort/version.h"
 #include "tools/cli/common/shown.hpp"
 #include "tools/cli/common/wording.hpp"
 

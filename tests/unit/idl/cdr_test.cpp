@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "idl/messages/experiment_files.hpp"
 #include "tests/support/any_message.hpp"
 #include "tests/support/every_ros_message.hpp"
 

@@ -147,7 +147,7 @@ std::string value_text(const UrdfAttribute& attribute) {
   return kind + (attribute.required ? " · required" : "");
 }
 
-std::string text_of(const UrdfForm& form) {
+std::string text_of_form(const UrdfForm& form) {
   std::string text = bullet_of(fmt::format("`{}`{}", form.name, form.has_effect ? "" : " · **ignored**"));
   for (const UrdfAttribute& attribute : form.attributes)
     text += bullet_of(fmt::format("`{}@{}` · {}", form.name, attribute.name, value_text(attribute)));
@@ -177,7 +177,7 @@ std::string urdf_elements() {
   for (const std::string_view parent : parents) {
     text += fmt::format("\n## In `<{}>`\n\n", parent);
     for (const UrdfForm& form : parsing::urdf_forms())
-      if (form.parent == parent) text += text_of(form);
+      if (form.parent == parent) text += text_of_form(form);
   }
   text +=
       "\n## In `<gazebo>`\n\nElements that set an [element of SDFormat](sdf-elements.md). All others are added to the "

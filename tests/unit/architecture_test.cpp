@@ -330,11 +330,11 @@ Names kinds_named_in(std::string code, const Names& kinds) {
 }
 
 // Other code asks for general properties of a device (description/device_properties.hpp). So a new kind is a struct in
-// description/, a reader in parsing/ and one file in sensing/ or actuation/.
-TEST(Architecture, ConcreteKindsOfDevicesAreNamedWhereTheyAreDescribedReadSensedAndMovedAlone) {
+// description/, a reader in parsing/, one file in sensing/ or actuation/, and a message in messages/.
+TEST(Architecture, ConcreteKindsOfDevicesAreNamedWhereTheyAreDescribedReadSensedMovedAndSentAlone) {
   const Names kinds = device_kinds();
   ASSERT_GT(kinds.size(), 30u);
-  const Names homes = {"description", "parsing", "sensing", "actuation"};
+  const Names homes = {"description", "parsing", "sensing", "actuation", "messages"};
   std::map<std::string, Names> exceptions = {
       // The gripper's function, on which its actuator and its sensor build.
       {"server/gripping/grippers.cpp", {"Gripper"}},

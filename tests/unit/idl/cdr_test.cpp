@@ -60,11 +60,11 @@ struct Grown {
 };
 
 TEST(Cdr, AnEarlierVersionOfAGrownMessageHasDefaultValues) {
-  const Grown first = decode<Grown>(bytes_of_hex("00010000 07000000"));
+  const auto first = decode<Grown>(bytes_of_hex("00010000 07000000"));
   EXPECT_EQ(first.first, 7U);
   EXPECT_EQ(first.second, "default");
   EXPECT_EQ(first.third, std::vector<double>{1.0});
-  const Grown second = decode<Grown>(bytes_of_hex("00010000 07000000 02000000 6100"));
+  const auto second = decode<Grown>(bytes_of_hex("00010000 07000000 02000000 6100"));
   EXPECT_EQ(second.second, "a");
   EXPECT_EQ(second.third, std::vector<double>{1.0});
   EXPECT_TRUE(decode<Grown>(bytes_of_hex("00010000 07000000 02000000 6100 0000 00000000")).third.empty());
@@ -106,12 +106,12 @@ template <class Tuple>
 struct TypesOf;
 template <class... Each>
 struct TypesOf<std::tuple<Each...>> {
-  using type = testing::Types<Each...>;
+  using List = testing::Types<Each...>;
 };
 using All = TypesOf<decltype(std::tuple_cat(
     test::StandardMessages(), test::SimulationMessages(), test::CohortMessages(),
     std::tuple<ExperimentFiles, ros::ParticipantEntitiesInfo, ros::HumbleParticipantEntitiesInfo,
-               ros::simulation::SetEntityState::FormerRequest>()))>::type;
+               ros::simulation::SetEntityState::FormerRequest>()))>::List;
 TYPED_TEST_SUITE(RosMessages, All);
 
 TYPED_TEST(RosMessages, AreDecodedAsEncodedAndRefusedIfTruncated) {

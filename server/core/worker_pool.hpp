@@ -18,7 +18,7 @@ class WorkerPool {
   unsigned threads() const { return threads_; }
 
   /// A grain for indices that take microseconds each.
-  static constexpr std::size_t fine_grain = 8;
+  static constexpr std::size_t fine = 8;
 
   /// Calls `body(begin, end, worker)` for chunks of at most `grain` indices that cover [0, count), and returns when all
   /// are done. `worker` < threads(), and no two concurrent chunks have the same one. Exceptions are passed on. Only one

@@ -11,7 +11,7 @@
 #include <mutex>
 
 #include "tests/commands/small_experiment.hpp"
-#include "tools/cli/processes/children.hpp"
+#include "tools/common/processes/children.hpp"
 
 namespace cohort::test {
 namespace {

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "tests/support/file_lock.hpp"
-#include "tools/cli/processes/external_program.hpp"
+#include "tools/common/processes/external_program.hpp"
 
 namespace cohort::test {
 namespace {

@@ -196,6 +196,11 @@ TEST(Documents, NameTheVersionOfTheProject) {
     for (const std::string& version : versions) EXPECT_EQ(version, COHORT_VERSION) << place.file;
   }
   const std::string version = COHORT_VERSION;
+  std::string in_numbers;
+  for (const char* const part : {"MAJOR", "MINOR", "PATCH"})
+    in_numbers +=
+        "." + versions_in({"idl/include/cohort/version.h", "COHORT_VERSION_" + std::string(part) + " (\\d+)"}).at(0);
+  EXPECT_EQ(in_numbers, "." + version);
   for (const char* const page : {"docs/install.md", "docs/clients.md"})
     for (const std::string& wanted : versions_in({page, R"(find_package\(Cohort (\d+\.\d+))"}))
       EXPECT_EQ(wanted, version.substr(0, version.rfind('.'))) << page;

@@ -17,7 +17,7 @@ constexpr std::uint32_t passes_of_unsettled = 5;
 // This multiple is made for fast-spinning bodies: their equations are not symmetric, as the other solvers require.
 constexpr std::uint32_t passes_where_fast = 10;
 // A wall of 100 bricks at rest takes two or three steps of Newton's method, but over 16 when it begins to stand.
-constexpr std::uint32_t steps_for_heap = 30;
+constexpr std::uint32_t most_steps_if_calm = 30;
 
 // Returns whether any of them has a connection, such as a grip.
 bool has_connections(std::span<const std::uint32_t> members, Assembly& assembly) {
@@ -39,7 +39,7 @@ Passes passes_of(std::span<const std::uint32_t> members, Assembly& assembly) {
           .share_of_last = is_connected ? start_of_connected : 1.0};
 }
 
-bool is_calm_heap(std::span<const std::uint32_t> members, Assembly& assembly) {
+bool are_calm(std::span<const std::uint32_t> members, Assembly& assembly) {
   const double fall = assembly.step * assembly.gravity.norm();
   double sum = 0.0;
   for (const std::uint32_t member : members) {
@@ -88,12 +88,12 @@ std::optional<Convergence::Outcome> IslandSolver::solve(Assembly& assembly, std:
   return outcome_;
 }
 
-std::optional<Convergence::Outcome> IslandSolver::solve_calm_heap(Assembly& assembly,
-                                                                  std::span<const std::uint32_t> members) {
-  if (assembly.settings.solver != description::Solver::convex || !is_calm_heap(members, assembly)) return std::nullopt;
+std::optional<Convergence::Outcome> IslandSolver::solve_if_calm(Assembly& assembly,
+                                                                std::span<const std::uint32_t> members) {
+  if (assembly.settings.solver != description::Solver::convex || !are_calm(members, assembly)) return std::nullopt;
   take(assembly, members);
   if (!set_up(assembly) || method_ != Method::convex) return std::nullopt;
-  outcome_ = convex_.solve(problem_, steps_for_heap);
+  outcome_ = convex_.solve(problem_, most_steps_if_calm);
   return outcome_ && finish(assembly) ? outcome_ : std::nullopt;
 }
 

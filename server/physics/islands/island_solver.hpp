@@ -20,7 +20,7 @@ class IslandSolver {
 
   /// Solves a large island that is nearly at rest as one problem. Returns nothing, without moving any body, if it is
   /// not at rest, if the world has another solver, if that would cost too much, or if a velocity is invalid.
-  std::optional<Convergence::Outcome> solve_calm_heap(Assembly& assembly, std::span<const std::uint32_t> members);
+  std::optional<Convergence::Outcome> solve_if_calm(Assembly& assembly, std::span<const std::uint32_t> members);
 
  private:
   enum class Method : std::uint8_t { convex, passes, many_passes, direct };
@@ -49,7 +49,7 @@ Passes passes_of(std::span<const std::uint32_t> members, Assembly& assembly);
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies);
 
 /// Returns whether bodies without connections move so slowly, on average, that they will soon rest.
-bool is_calm_heap(std::span<const std::uint32_t> members, Assembly& assembly);
+bool are_calm(std::span<const std::uint32_t> members, Assembly& assembly);
 
 /// Assigns to each member its index in `bodies`.
 void number_bodies(std::span<const std::uint32_t> members, Assembly& assembly, IslandBodies& bodies);

@@ -34,12 +34,12 @@ void LargeIslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t>
 // Returns false, without moving any body, if one of them has invalid velocities.
 bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   number_bodies(sound_, assembly, bodies_);
-  workers_.for_each_chunk(sound_.size(), WorkerPool::fine_grain, [&](std::size_t begin, std::size_t end, unsigned) {
+  workers_.for_each_chunk(sound_.size(), WorkerPool::fine, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) assembly.set_up(sound_[i], bodies_);
   });
   if (!all_are_finite(assembly)) return false;
 
-  const bool is_calm = is_calm_heap(sound_, assembly);
+  const bool is_calm = are_calm(sound_, assembly);
   friction_start_ = is_calm ? FrictionStart::last : FrictionStart::shared;
   cut(assembly);
   workers_.for_each_chunk(parts_.count(), 1, [&](std::size_t part, std::size_t, unsigned) {
@@ -56,16 +56,17 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   const Passes passes = passes_of(sound_, assembly);
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
     for_each_share(phase, [&](Share& share) { SequentialImpulses(share.problem).start(passes.share_of_last); });
-  if (is_calm)
+  if (is_calm) {
     settle(passes.settled);
-  else
+    damp(assembly);
+  } else {
     make_passes(passes, [&](bool forwards) { return run_pass(forwards, true); });
-  if (is_calm) damp(assembly);
+  }
   if (!all_are_finite(assembly)) return false;
 
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
     for_each_share(phase, [](Share& share) { keep_impulses(share.problem); });
-  workers_.for_each_chunk(sound_.size(), WorkerPool::fine_grain, [&](std::size_t begin, std::size_t end, unsigned) {
+  workers_.for_each_chunk(sound_.size(), WorkerPool::fine, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) assembly.integrate(sound_[i], *problem_of_[i]);
   });
   return true;

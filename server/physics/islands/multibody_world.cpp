@@ -219,20 +219,17 @@ void MultibodyWorld::find_awake() {
 
 void MultibodyWorld::detect() {
   std::vector<Member>& members = assembly_.members;
-  workers_.for_each_chunk(awake_.size(), WorkerPool::fine_grain,
-                          [&](std::size_t begin, std::size_t end, unsigned worker) {
-                            double& furthest = memory_[worker].furthest;
-                            for (std::size_t i = begin; i < end; ++i)
-                              furthest = std::max(furthest, assembly_.look_ahead(members[awake_[i]]));
-                          });
+  workers_.for_each_chunk(awake_.size(), WorkerPool::fine, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    double& furthest = memory_[worker].furthest;
+    for (std::size_t i = begin; i < end; ++i) furthest = std::max(furthest, assembly_.look_ahead(members[awake_[i]]));
+  });
   double furthest = 0.0;
   for (Memory& memory : memory_) furthest = std::max(furthest, std::exchange(memory.furthest, 0.0));
-  workers_.for_each_chunk(awake_.size(), WorkerPool::fine_grain,
-                          [&](std::size_t begin, std::size_t end, unsigned worker) {
-                            Memory& memory = memory_[worker];
-                            for (std::size_t i = begin; i < end; ++i)
-                              assembly_.look_around(members[awake_[i]], furthest, memory.near, memory.candidates);
-                          });
+  workers_.for_each_chunk(awake_.size(), WorkerPool::fine, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    Memory& memory = memory_[worker];
+    for (std::size_t i = begin; i < end; ++i)
+      assembly_.look_around(members[awake_[i]], furthest, memory.near, memory.candidates);
+  });
 }
 
 void MultibodyWorld::find_islands() {
@@ -263,7 +260,7 @@ void MultibodyWorld::wake_group_of(std::uint32_t sleeper) {
   sleep_.wake(sleeper);
 }
 
-// Small islands come first, each solved by one worker, then the large ones, each solved by all workers. A large heap
+// Small islands come first, each solved by one worker, then the large ones, each solved by all workers. A large island
 // that is nearly at rest is solved more precisely by one of them, so that it comes to rest.
 void MultibodyWorld::solve_islands() {
   const auto is_large = [&](std::uint32_t island) {
@@ -271,19 +268,19 @@ void MultibodyWorld::solve_islands() {
     return bodies >= LargeIslandSolver::least_bodies && !is_solved_directly(assembly_.settings, bodies);
   };
   outcomes_.assign(islands_.count(), std::nullopt);
-  workers_.for_each_chunk(islands_.count(), WorkerPool::fine_grain, [&](std::size_t begin, std::size_t end, unsigned) {
+  workers_.for_each_chunk(islands_.count(), WorkerPool::fine, [&](std::size_t begin, std::size_t end, unsigned) {
     IslandSolver& solver = solver_of_this_thread();
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
       if (!is_large(island)) outcomes_[island] = solver.solve(assembly_, islands_.members(island));
   });
   for (std::uint32_t island = 0; island < islands_.count(); ++island) {
     if (!is_large(island)) continue;
-    outcomes_[island] = solver_of_this_thread().solve_calm_heap(assembly_, islands_.members(island));
+    outcomes_[island] = solver_of_this_thread().solve_if_calm(assembly_, islands_.members(island));
     if (!outcomes_[island]) large_island_solver_.solve(assembly_, islands_.members(island));
   }
   count_outcomes();
   if (!assembly_.settings.sleeping) return;
-  workers_.for_each_chunk(islands_.count(), WorkerPool::fine_grain, [&](std::size_t begin, std::size_t end, unsigned) {
+  workers_.for_each_chunk(islands_.count(), WorkerPool::fine, [&](std::size_t begin, std::size_t end, unsigned) {
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
       for (const std::uint32_t member : islands_.members(island)) sleep_.count(member);
   });

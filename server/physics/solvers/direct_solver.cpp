@@ -18,14 +18,16 @@ class DirectSolver {
     set_limits(1.0);
     for (int solution = 0; solution < most_solutions; ++solution) {
       if (!complementarity_.solve(gains_, wanted_, lower_, upper_, impulses_)) return false;
-      if (set_limits(share_of_limits)) break;
+      if (set_limits(solution < undamped_solutions ? 1.0 : share_of_limits)) break;
     }
     apply();
     return true;
   }
 
  private:
-  // Number of solutions, each with friction limits from the normal impulses of the previous one.
+  // Number of solutions, each with friction limits from the normal impulses of the previous one. The limits move the
+  // whole way at first, since most settle within a few solutions.
+  static constexpr int undamped_solutions = 8;
   static constexpr int most_solutions = 64;
   static constexpr double limit_tolerance = 1e-9;  // [N s or N m s]
   // Compliance of each row as a share of its own response; without it, redundant rows have no solution.

@@ -7,8 +7,8 @@
 
 namespace cohort::physics {
 
-/// Where limits of friction are found again and again from the loads of the last solution, they move by this share of
-/// the way each time. With the whole way, limits that alternate would do so for long.
+/// Limits of friction follow from the loads of the last solution, again and again. If they have not settled soon, they
+/// move by this share of the way: with the whole way, limits that alternate would do so for long.
 inline constexpr double share_of_limits = 0.6;
 
 /// Returns the load on a row of friction, if `impulse_of(i)` is the impulse of row i.

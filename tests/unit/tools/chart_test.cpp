@@ -1,11 +1,11 @@
-#include "tools/cli/drawing/chart.hpp"
+#include "tools/common/drawing/chart.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "tools/cli/drawing/chart_groups.hpp"
-#include "tools/cli/drawing/svg.hpp"
+#include "tools/common/drawing/chart_groups.hpp"
+#include "tools/common/drawing/svg.hpp"
 
 namespace cohort::figures {
 namespace {

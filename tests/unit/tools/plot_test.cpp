@@ -1,4 +1,4 @@
-#include "tools/cli/drawing/plot.hpp"
+#include "tools/common/drawing/plot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@
 #include "tests/support/files.hpp"
 #include "tests/support/robots.hpp"
 #include "tools/cli/common/output_file.hpp"
-#include "tools/cli/drawing/outline.hpp"
-#include "tools/cli/drawing/svg.hpp"
+#include "tools/common/drawing/outline.hpp"
+#include "tools/common/drawing/svg.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/cli/processes/children.hpp"
+#include "tools/common/processes/children.hpp"
 
 namespace cohort::bench {
 

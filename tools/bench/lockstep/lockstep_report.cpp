@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "tools/bench/report.hpp"
-#include "tools/cli/drawing/chart.hpp"
+#include "tools/common/drawing/chart.hpp"
 
 namespace cohort::bench {
 namespace {

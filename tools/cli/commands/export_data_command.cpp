@@ -9,9 +9,9 @@
 #include "tools/cli/commands/shared_options.hpp"
 #include "tools/cli/common/output_file.hpp"
 #include "tools/cli/common/wording.hpp"
-#include "tools/cli/data/csv_tables.hpp"
-#include "tools/cli/data/hdf5_tables.hpp"
-#include "tools/cli/data/recording_tables.hpp"
+#include "tools/common/data/csv_tables.hpp"
+#include "tools/common/data/hdf5_tables.hpp"
+#include "tools/common/data/recording_tables.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -15,8 +15,8 @@
 #include "tools/cli/commands/shared_options.hpp"
 #include "tools/cli/common/output_file.hpp"
 #include "tools/cli/common/picture_file.hpp"
-#include "tools/cli/drawing/chart.hpp"
-#include "tools/cli/drawing/plot.hpp"
+#include "tools/common/drawing/chart.hpp"
+#include "tools/common/drawing/plot.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "server/core/atomic_file.hpp"
 #include "tools/cli/common/output_file.hpp"
-#include "tools/cli/processes/external_program.hpp"
+#include "tools/common/processes/external_program.hpp"
 
 namespace cohort::tool {
 namespace {

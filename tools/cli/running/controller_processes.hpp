@@ -7,8 +7,8 @@
 
 #include "server/serving/server.hpp"
 #include "tools/cli/common/log.hpp"
-#include "tools/cli/processes/children.hpp"
 #include "tools/cli/running/team_controllers.hpp"
+#include "tools/common/processes/children.hpp"
 
 namespace cohort::tool {
 

@@ -8,11 +8,11 @@
 #include "tools/cli/common/exit_codes.hpp"
 #include "tools/cli/common/output_file.hpp"
 #include "tools/cli/common/picture_file.hpp"
-#include "tools/cli/drawing/plot.hpp"
 #include "tools/cli/running/profile.hpp"
 #include "tools/cli/running/run_recording.hpp"
 #include "tools/cli/running/summary_file.hpp"
 #include "tools/cli/running/team_controllers.hpp"
+#include "tools/common/drawing/plot.hpp"
 
 namespace cohort::tool {
 

@@ -8,10 +8,10 @@
 #include "server/run/run.hpp"
 #include "tools/cli/common/terminal/printed_table.hpp"
 #include "tools/cli/common/terminal/terminal.hpp"
-#include "tools/cli/drawing/plot_view.hpp"
-#include "tools/cli/drawing/run_trace.hpp"
 #include "tools/cli/running/run_options.hpp"
 #include "tools/cli/running/watchdog.hpp"
+#include "tools/common/drawing/plot_view.hpp"
+#include "tools/common/drawing/run_trace.hpp"
 
 namespace cohort::tool {
 

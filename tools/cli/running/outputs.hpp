@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 
-#include "tools/cli/drawing/viewpoint.hpp"
+#include "tools/common/drawing/viewpoint.hpp"
 
 namespace cohort::tool {
 

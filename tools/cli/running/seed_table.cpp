@@ -8,7 +8,7 @@
 
 #include "idl/include/cohort/version.h"
 #include "tools/cli/common/wording.hpp"
-#include "tools/cli/data/csv_tables.hpp"
+#include "tools/common/data/csv_tables.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "server/serving/server.hpp"
 #include "tools/cli/common/log.hpp"
-#include "tools/cli/processes/children.hpp"
 #include "tools/cli/running/run_options.hpp"
 #include "tools/cli/running/team_controllers.hpp"
+#include "tools/common/processes/children.hpp"
 
 namespace cohort::tool {
 

@@ -14,9 +14,9 @@
 
 #include "server/core/processors.hpp"
 #include "tools/cli/common/exit_codes.hpp"
-#include "tools/cli/processes/children.hpp"
 #include "tools/cli/running/summary_file.hpp"
 #include "tools/cli/running/team_controllers.hpp"
+#include "tools/common/processes/children.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -17,7 +17,7 @@
 #include "tools/cli/common/installed_files.hpp"
 #include "tools/cli/common/output_file.hpp"
 #include "tools/cli/common/wording.hpp"
-#include "tools/cli/processes/connected_program.hpp"
+#include "tools/common/processes/connected_program.hpp"
 #include "tools/view/film/browser/film_page.hpp"
 #include "tools/view/film/camera_path.hpp"
 #include "tools/view/film/film_source.hpp"

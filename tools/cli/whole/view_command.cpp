@@ -21,7 +21,7 @@
 #include "tools/cli/commands/shared_options.hpp"
 #include "tools/cli/common/installed_files.hpp"
 #include "tools/cli/common/shown.hpp"
-#include "tools/cli/processes/external_program.hpp"
+#include "tools/common/processes/external_program.hpp"
 #include "tools/view/sources/followed_run.hpp"
 #include "tools/view/sources/recording_source.hpp"
 #include "tools/view/web/admission.hpp"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tools/cli/drawing/chart.hpp"
+#include "tools/common/drawing/chart.hpp"
 
 /// How each device of an s-bot responds (docs/sbot.md), measured in small worlds, beside the closed forms of the thesis
 /// (chapter 3) or of mechanics. The same at each run.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "server/simulation/simulation.hpp"
-#include "tools/cli/drawing/chart.hpp"
+#include "tools/common/drawing/chart.hpp"
 #include "tools/dev/figures/tracked_robot.hpp"
 
 namespace cohort::figures {

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "tools/cli/data/table.hpp"
+#include "tools/common/data/table.hpp"
 
 namespace cohort::python {
 

@@ -26,7 +26,7 @@
 #include "server/recording/recording.hpp"
 #include "server/recording/replay.hpp"
 #include "server/recording/run_messages.hpp"
-#include "tools/cli/data/recording_tables.hpp"
+#include "tools/common/data/recording_tables.hpp"
 #include "tools/python/native/arrays.hpp"
 #include "tools/python/native/collected_tables.hpp"
 #include "tools/python/native/interruption.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "server/core/atomic_file.hpp"
-#include "tools/cli/processes/connected_program.hpp"
+#include "tools/common/processes/connected_program.hpp"
 
 namespace cohort::film {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "tools/cli/common/output_file.hpp"
-#include "tools/cli/processes/external_program.hpp"
+#include "tools/common/processes/external_program.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tools/cli/common/shown.hpp"
-#include "tools/cli/data/csv_tables.hpp"
+#include "tools/common/data/csv_tables.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tools/cli/processes/connected_program.hpp"
+#include "tools/common/processes/connected_program.hpp"
 
 namespace cohort::film {
 

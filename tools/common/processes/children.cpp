@@ -1,4 +1,4 @@
-#include "tools/cli/processes/children.hpp"
+#include "tools/common/processes/children.hpp"
 
 #include <fcntl.h>
 #include <linux/close_range.h>
@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "server/core/thread_room.hpp"
-#include "tools/cli/processes/external_program.hpp"
+#include "tools/common/processes/external_program.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -11,7 +11,7 @@
 #include "server/description/world.hpp"
 #include "server/geometry/shapes/shapes.hpp"
 #include "server/simulation/simulation.hpp"
-#include "tools/cli/drawing/viewpoint.hpp"
+#include "tools/common/drawing/viewpoint.hpp"
 
 /// The data of a run for a plot, in the viewer's frame V.
 namespace cohort::tool {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "tools/cli/data/table.hpp"
+#include "tools/common/data/table.hpp"
 
 namespace cohort::data {
 

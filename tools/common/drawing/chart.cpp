@@ -1,4 +1,4 @@
-#include "tools/cli/drawing/chart.hpp"
+#include "tools/common/drawing/chart.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "tools/cli/drawing/chart_groups.hpp"
-#include "tools/cli/drawing/plot_view.hpp"
-#include "tools/cli/drawing/svg.hpp"
+#include "tools/common/drawing/chart_groups.hpp"
+#include "tools/common/drawing/plot_view.hpp"
+#include "tools/common/drawing/svg.hpp"
 
 namespace cohort::figures {
 namespace {

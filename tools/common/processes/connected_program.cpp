@@ -1,4 +1,4 @@
-#include "tools/cli/processes/connected_program.hpp"
+#include "tools/common/processes/connected_program.hpp"
 
 #include <fcntl.h>
 #include <linux/close_range.h>
@@ -17,7 +17,7 @@
 #include <thread>
 #include <utility>
 
-#include "tools/cli/processes/external_program.hpp"
+#include "tools/common/processes/external_program.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/cli/drawing/chart_page.hpp"
+#include "tools/common/drawing/chart_page.hpp"
 
 /// The styles of a chart's lines, and the legend of a page with groups of series.
 namespace cohort::figures {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "tools/cli/drawing/run_trace.hpp"
+#include "tools/common/drawing/run_trace.hpp"
 
 namespace cohort::tool {
 

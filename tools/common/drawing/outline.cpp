@@ -1,4 +1,4 @@
-#include "tools/cli/drawing/outline.hpp"
+#include "tools/common/drawing/outline.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "tools/cli/drawing/svg.hpp"
+#include "tools/common/drawing/svg.hpp"
 
 #include <fmt/format.h>
 

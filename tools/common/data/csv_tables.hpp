@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tools/cli/data/table.hpp"
+#include "tools/common/data/table.hpp"
 
 namespace cohort::data {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "tools/cli/drawing/run_trace.hpp"
+#include "tools/common/drawing/run_trace.hpp"
 
 /// The layout of a plot on the page. The viewer's frame has x to the right and y upwards [m]. On the page, y points
 /// downwards; its unit is a CSS pixel when the picture is shown at its own size.

@@ -1,4 +1,4 @@
-#include "tools/cli/processes/external_program.hpp"
+#include "tools/common/processes/external_program.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

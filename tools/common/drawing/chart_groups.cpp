@@ -1,4 +1,4 @@
-#include "tools/cli/drawing/chart_groups.hpp"
+#include "tools/common/drawing/chart_groups.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <string_view>
 
-#include "tools/cli/drawing/svg.hpp"
+#include "tools/common/drawing/svg.hpp"
 
 namespace cohort::figures {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "server/recording/recording.hpp"
-#include "tools/cli/data/table.hpp"
+#include "tools/common/data/table.hpp"
 
 namespace cohort::data {
 

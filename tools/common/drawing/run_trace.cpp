@@ -1,4 +1,4 @@
-#include "tools/cli/drawing/run_trace.hpp"
+#include "tools/common/drawing/run_trace.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tools/cli/data/csv_tables.hpp"
+#include "tools/common/data/csv_tables.hpp"
 
 #include <charconv>
 #include <system_error>

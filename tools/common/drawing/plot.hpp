@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "tools/cli/drawing/run_trace.hpp"
+#include "tools/common/drawing/run_trace.hpp"
 
 namespace cohort::tool {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/cli/drawing/chart_page.hpp"
+#include "tools/common/drawing/chart_page.hpp"
 
 /// Pages of charts as SVG, with measured values as dots and theoretical values as thin lines. The functions are pure:
 /// equal arguments give equal text.

@@ -1,4 +1,4 @@
-#include "tools/cli/drawing/plot.hpp"
+#include "tools/common/drawing/plot.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "server/geometry/shapes/convex_hull_2d.hpp"
-#include "tools/cli/drawing/outline.hpp"
-#include "tools/cli/drawing/plot_view.hpp"
-#include "tools/cli/drawing/svg.hpp"
+#include "tools/common/drawing/outline.hpp"
+#include "tools/common/drawing/plot_view.hpp"
+#include "tools/common/drawing/svg.hpp"
 
 namespace cohort::tool {
 namespace {

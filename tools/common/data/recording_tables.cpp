@@ -1,4 +1,4 @@
-#include "tools/cli/data/recording_tables.hpp"
+#include "tools/common/data/recording_tables.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tools/cli/drawing/plot_view.hpp"
+#include "tools/common/drawing/plot_view.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tools/cli/data/hdf5_tables.hpp"
+#include "tools/common/data/hdf5_tables.hpp"
 
 #include <hdf5.h>
 

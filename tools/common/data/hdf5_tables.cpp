@@ -38,7 +38,7 @@ std::string last_error() {
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
-  Handle(hid_t id, Close close, const std::filesystem::path& file) : id_(id), close_(close) {
+  Handle(hid_t id, Close close_it, const std::filesystem::path& file) : id_(id), close_(close_it) {
     if (id < 0) throw WriteError(file.string() + " cannot be written as HDF5: " + last_error());
   }
   Handle(const Handle&) = delete;

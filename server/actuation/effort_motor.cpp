@@ -8,7 +8,7 @@ class EffortMotor final : public ActuatorOf<description::EffortMotor> {
  public:
   using ActuatorOf::ActuatorOf;
   std::vector<Channel> channels() const override {
-    const char* unit = mount_.joint(device_.joint).type == description::JointType::prismatic ? "N" : "N m";
+    const char* unit = facts_of(mount_.joint(device_.joint).type).slides ? "N" : "N m";
     return {{device_.name + "/0/effort", unit, 1, -device_.max_effort, device_.max_effort, 0.0}};
   }
   void apply(std::span<const double> values) override {

@@ -10,7 +10,7 @@ class PositionMotor final : public ActuatorOf<description::PositionMotor> {
  public:
   using ActuatorOf::ActuatorOf;
   std::vector<Channel> channels() const override {
-    const char* unit = mount_.joint(device_.joint).type == description::JointType::prismatic ? "m" : "rad";
+    const char* unit = facts_of(mount_.joint(device_.joint).type).slides ? "m" : "rad";
     const description::JointAxis& axis = mount_.joint(device_.joint).axis;
     return {{device_.name + "/0/position", unit, 1, axis.lower, axis.upper, std::clamp(0.0, axis.lower, axis.upper)}};
   }

@@ -8,7 +8,7 @@ class VelocityMotor final : public ActuatorOf<description::VelocityMotor> {
  public:
   using ActuatorOf::ActuatorOf;
   std::vector<Channel> channels() const override {
-    const char* unit = mount_.joint(device_.joint).type == description::JointType::prismatic ? "m/s" : "rad/s";
+    const char* unit = facts_of(mount_.joint(device_.joint).type).slides ? "m/s" : "rad/s";
     return {{device_.name + "/0/velocity", unit, 1, -device_.max_velocity, device_.max_velocity, 0.0}};
   }
   void apply(std::span<const double> values) override {

@@ -11,6 +11,7 @@
 
 #include "server/description/devices.hpp"
 #include "server/description/emitter.hpp"
+#include "server/description/joint_type.hpp"
 #include "server/description/shape.hpp"
 
 /// A model as plain data, which is read once and never changed. Units are SI, angles in radians. Frames are as in
@@ -104,8 +105,6 @@ struct GripRing {
   Pose X_LR;
   double radius = 0.0;  ///< [m]
 };
-
-enum class JointType { fixed, revolute, prismatic, ball, universal, screw };
 
 /// One direction in which a joint turns [rad] or slides [m].
 struct JointAxis {

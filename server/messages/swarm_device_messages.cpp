@@ -150,7 +150,7 @@ void add_messages(DeviceMessageList& list, const description::TreelEncoder& enco
 
 void add_messages(DeviceMessageList& list, const description::TorqueSensor& sensor) {
   const description::Joint& joint = list.model().joints[sensor.joint];
-  const bool slides = joint.type == description::JointType::prismatic;
+  const bool slides = facts_of(joint.type).slides;
   const std::size_t at = list.offset(sensor.name + (slides ? "/0/force" : "/0/torque"));
   list.add<cohort_msgs::Effort>(sensor, {"effort", "", DeviceTopic::Naming::always},
                                 [at, name = joint.name](cohort_msgs::Effort& message, Values values) {

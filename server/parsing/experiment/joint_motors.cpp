@@ -34,16 +34,14 @@ std::string escaped(const std::string& text) {
 bool drives(const Device& device) { return !motor_limits(device).empty() || output_count(device) > 0; }
 
 bool is_movable(const Model& model, std::size_t joint) {
-  const JointType type = model.joints[joint].type;
-  const bool has_one_axis = type == JointType::revolute || type == JointType::prismatic || type == JointType::screw;
-  return has_one_axis &&
+  return facts_of(model.joints[joint].type).axes == 1 &&
          std::ranges::find(model.couplings, joint, &description::Coupling::follower) == model.couplings.end();
 }
 
 double given_or(double limit, double usual) { return std::isfinite(limit) && limit > 0.0 ? limit : usual; }
 
 std::string motor_text(const Joint& joint, double weight) {
-  const double usual_velocity = joint.type == JointType::prismatic ? usual_slide : usual_turn;
+  const double usual_velocity = facts_of(joint.type).slides ? usual_slide : usual_turn;
   const std::string name = escaped(joint.name);
   return "    <cohort:position_motor name=\"" + name + "\"><cohort:joint>" + name +
          "</cohort:joint><cohort:max_velocity>" + shortest_text(given_or(joint.axis.max_velocity, usual_velocity)) +

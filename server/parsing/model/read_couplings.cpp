@@ -15,13 +15,10 @@ std::optional<std::size_t> find_joint(const Model& model, const std::string& nam
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
     if (joint.name != name) continue;
-    const bool is_universal = joint.type == JointType::universal;
-    const bool has_axis = second_axis ? is_universal : joint.type != JointType::fixed && joint.type != JointType::ball;
-    if (has_axis) return i;
-    report.problem(where, "the joint '" + name + "' " +
-                              (joint.type == JointType::fixed  ? "is fixed"
-                               : joint.type == JointType::ball ? "is a ball joint, which has no single axis"
-                                                               : "has one axis, and no 'axis2'"));
+    const description::JointTypeFacts& facts = facts_of(joint.type);
+    if (facts.axes > (second_axis ? 1 : 0)) return i;
+    const std::string flaw(facts.flaw.empty() ? "has one axis, and no 'axis2'" : facts.flaw);
+    report.problem(where, "the joint '" + name + "' " + flaw);
     return std::nullopt;
   }
   report.problem(where, why_no_joint(model, name));

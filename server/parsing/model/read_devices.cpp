@@ -129,8 +129,7 @@ std::string References::flaw_of_joint(Referent to, std::size_t index) {
     return wheels_.insert(index).second ? "" : "is already listed as the joint of a wheel";
   }
   if (to == Referent::joint) return "";
-  if (joint.type == JointType::fixed) return "is fixed";
-  if (joint.type == JointType::ball) return "is a ball joint, which has no single axis";
+  if (const std::string_view flaw = facts_of(joint.type).flaw; !flaw.empty()) return std::string(flaw);
   if (to == Referent::moving_joint) return "";
   if (wheels_.contains(index)) return "is already driven by a treel_drive, as the joint of one of its wheels";
   return motorised_.insert(index).second ? "" : "already has a motor";

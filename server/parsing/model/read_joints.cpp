@@ -21,13 +21,10 @@ std::optional<std::size_t> index_of(const std::vector<Link>& links, const std::s
 }
 
 std::optional<JointType> read_type(const Element& joint, const SdfReport& report) {
-  constexpr std::pair<std::string_view, JointType> types[] = {
-      {"fixed", JointType::fixed},         {"revolute", JointType::revolute}, {"continuous", JointType::revolute},
-      {"prismatic", JointType::prismatic}, {"ball", JointType::ball},         {"universal", JointType::universal},
-      {"revolute2", JointType::universal}, {"screw", JointType::screw}};
   const std::string type = joint.attribute("type");
-  for (const auto& [name, known] : types)
-    if (name == type) return known;
+  if (type == "continuous") return JointType::revolute;
+  if (type == "revolute2") return JointType::universal;
+  if (const auto known = description::joint_type_named(type)) return known;
   report.problem(&joint, "the joint type '" + type +
                              "' is not supported; expected fixed, revolute, continuous, prismatic, ball, universal, "
                              "revolute2, screw or gearbox");

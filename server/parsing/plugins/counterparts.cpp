@@ -149,8 +149,7 @@ void joint_state_publisher(ModelPlugin& plugin) {
     return;
   }
   for (const Joint& joint : plugin.model().joints)
-    if (plugin.has_joint(joint) && joint.type != JointType::fixed && joint.type != JointType::ball)
-      encode(plugin.without_scope(joint.name), nullptr);
+    if (plugin.has_joint(joint) && facts_of(joint.type).axes > 0) encode(plugin.without_scope(joint.name), nullptr);
 }
 
 namespace {

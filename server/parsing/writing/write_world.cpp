@@ -113,8 +113,7 @@ class WorldWriter {
     add_end("first", joint.first, joint.first_link);
     add_end("second", joint.second, joint.second_link);
     if (joint.X_LP) add_key(element, "pose", *joint.X_LP);
-    if (joint.type != JointType::fixed)
-      add_key(element, "type", std::string(joint.type == JointType::ball ? "ball" : "revolute"));
+    if (joint.type != JointType::fixed) add_key(element, "type", std::string(facts_of(joint.type).name));
     if (joint.type == JointType::revolute) add_key(element, "axis", joint.axis_P);
     if (joint.damping > 0.0) add_key(element, "damping", joint.damping);
     if (std::isfinite(joint.breaking_force)) add_key(element, "breaking_force", joint.breaking_force);
@@ -258,12 +257,8 @@ class WorldWriter {
   }
 
   static void write_joint(XmlNode& parent, const Joint& joint, const Model& model) {
-    constexpr std::pair<JointType, const char*> names[] = {
-        {JointType::fixed, "fixed"}, {JointType::revolute, "revolute"},   {JointType::prismatic, "prismatic"},
-        {JointType::ball, "ball"},   {JointType::universal, "universal"}, {JointType::screw, "screw"}};
     XmlNode& element = add_named(parent, "joint", without_scope_marks(joint.name));
-    for (const auto& [type, name] : names)
-      if (type == joint.type) element.attributes.emplace_back("type", name);
+    element.attributes.emplace_back("type", facts_of(joint.type).name);
     add_pose(element, joint.X_LJ);
     add_value(
         element, "parent",

@@ -52,7 +52,10 @@ void ArticulatedBody::move_outwards(const BodyMotion& body) {
       part.velocity.tail<3>() += parent.velocity.head<3>().cross(part.way_W);
     }
     const Matrix3d R = X_WS.orientation.toRotationMatrix();
-    find_axes(segment, R, part);
+    for (int i = 0; i < part.dofs; ++i) {
+      const Spatial axis = axis_of_joint(segment, R, i);
+      axes_.col(part.first_dof + i) << axis.angular, axis.linear;
+    }
     part.joint_velocity.setZero();
     for (int i = part.first_dof; i < part.first_dof + part.dofs; ++i)
       part.joint_velocity += body.velocities()[i] * axes_.col(i);
@@ -60,20 +63,6 @@ void ArticulatedBody::move_outwards(const BodyMotion& body) {
     part.velocity += part.joint_velocity;
     const auto& added_masses = body.mechanism().added_masses();
     find_force(segment, X_WS, R, added_masses.empty() ? nullptr : &added_masses[s], part);
-  }
-}
-
-void ArticulatedBody::find_axes(const Segment& segment, const Matrix3d& R, const Part& part) {
-  for (int i = 0; i < part.dofs; ++i) {
-    auto axis = axes_.col(part.first_dof + i);
-    axis.setZero();
-    switch (segment.motion) {
-      case Motion::free: axis[i] = 1.0; break;
-      case Motion::ball: axis.head<3>() = R.col(i); break;
-      case Motion::revolute: axis.head<3>() = R * segment.axis_S; break;
-      case Motion::prismatic: axis.tail<3>() = R * segment.axis_S; break;
-      case Motion::anchored: break;
-    }
   }
 }
 

@@ -53,7 +53,6 @@ class ArticulatedBody {
   };
 
   void move_outwards(const BodyMotion& body);
-  void find_axes(const Segment& segment, const Eigen::Matrix3d& R, const Part& part);
   void find_drifts(const Part& part);
   void find_force(const Segment& segment, const Pose& X_WS, const Eigen::Matrix3d& R, const SpatialMatrix* added_mass,
                   Part& part) const;

@@ -49,22 +49,11 @@ Twist BodyMotion::segment_twist(int of_segment, const Eigen::Vector3d& point_W) 
   for (int s = of_segment; s >= 0; s = mechanism_->segments()[static_cast<std::size_t>(s)].parent) {
     const Segment& segment = mechanism_->segments()[static_cast<std::size_t>(s)];
     const Pose& X_WS = segment_pose(s);
-    const double* v = velocities() + segment.first_dof;
-    Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();
-    Eigen::Vector3d pivot_W = X_WS.position;
-    switch (segment.motion) {
-      case Motion::anchored: break;
-      case Motion::free:
-        angular_W = {v[0], v[1], v[2]};
-        pivot_W = reference();
-        twist.linear_W += Eigen::Vector3d(v[3], v[4], v[5]);
-        break;
-      case Motion::revolute: angular_W = v[0] * (X_WS.orientation * segment.axis_S); break;
-      case Motion::prismatic: twist.linear_W += v[0] * (X_WS.orientation * segment.axis_S); break;
-      case Motion::ball: angular_W = X_WS.orientation * Eigen::Vector3d(v[0], v[1], v[2]); break;
-    }
-    twist.angular_W += angular_W;
-    twist.linear_W += angular_W.cross(point_W - pivot_W);
+    const Spatial joint = motion_at_joint(segment, X_WS.orientation, velocities() + segment.first_dof);
+    const Eigen::Vector3d pivot_W = segment.motion == Motion::free ? reference() : X_WS.position;
+    twist.angular_W += joint.angular;
+    twist.linear_W += joint.linear;
+    twist.linear_W += joint.angular.cross(point_W - pivot_W);
   }
   return twist;
 }
@@ -73,14 +62,13 @@ double BodyMotion::greatest_speed(double reach) const {
   double sum = 0.0;
   for (const Segment& segment : mechanism_->segments()) {
     const double* v = velocities() + segment.first_dof;
-    const auto length = [&](int i) { return std::abs(v[i]) + std::abs(v[i + 1]) + std::abs(v[i + 2]); };
-    switch (segment.motion) {
-      case Motion::anchored: break;
-      case Motion::free: sum += reach * length(0) + length(3); break;
-      case Motion::revolute: sum += reach * std::abs(v[0]); break;
-      case Motion::prismatic: sum += std::abs(v[0]); break;
-      case Motion::ball: sum += reach * length(0); break;
-    }
+    const auto speed_of = [&](int first, int last) {
+      double speed = 0.0;
+      for (int i = first; i < last; ++i) speed += std::abs(v[i]);
+      return speed;
+    };
+    const int turning = turning_dofs_of(segment.motion);
+    sum += reach * speed_of(0, turning) + speed_of(turning, segment.dofs);
   }
   return sum;
 }

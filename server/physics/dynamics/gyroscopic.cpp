@@ -29,20 +29,6 @@ bool is_round(const std::vector<Segment>& segments, std::size_t s) {
          std::ranges::none_of(segments, [&](const Segment& other) { return other.parent == static_cast<int>(s); });
 }
 
-// Returns the angular velocity relative to the parent, in world axes.
-Vector3d angular_velocity_at_joint(const BodyMotion& body, std::size_t s, const Eigen::Matrix3d& R_WS) {
-  const Segment& segment = body.mechanism().segments()[s];
-  const double* v = body.velocities() + segment.first_dof;
-  switch (segment.motion) {
-    case Motion::free: return {v[0], v[1], v[2]};
-    case Motion::ball: return R_WS * Vector3d(v[0], v[1], v[2]);
-    case Motion::revolute: return v[0] * (R_WS * segment.axis_S);
-    case Motion::prismatic:
-    case Motion::anchored: break;
-  }
-  return Vector3d::Zero();
-}
-
 // Returns whether a ball joint turns too fast. Its velocities are in axes of its segment and seem to turn with that;
 // for a round segment only the rotation of its parent counts.
 bool has_fast_ball(const BodyMotion& body, double step, bool is_held) {
@@ -91,8 +77,7 @@ bool has_fast_fluid(const BodyMotion& body, double step) {
 double bound_of_turning(const BodyMotion& body) {
   double turn = 0.0;
   for (const Segment& segment : body.mechanism().segments()) {
-    if (segment.motion == Motion::prismatic) continue;
-    const int turning = std::min(segment.dofs, 3);  // a free root: the first three
+    const int turning = turning_dofs_of(segment.motion);
     for (int i = segment.first_dof; i < segment.first_dof + turning; ++i) turn += std::abs(body.velocities()[i]);
   }
   return turn;
@@ -122,14 +107,14 @@ bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_h
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const Pose& X_WS = body.segment_poses()[s];
     const Eigen::Matrix3d R = X_WS.orientation.toRotationMatrix();
-    turning[s].angular_W = angular_velocity_at_joint(body, s, R);
+    turning[s].angular_W = motion_at_joint(segments[s], R, body.velocities() + segments[s].first_dof).angular;
     if (segments[s].parent >= 0) turning[s].angular_W += turning[at(segments[s].parent)].angular_W;
     turning[s].inertia_W = R * segments[s].inertia_S * R.transpose();
     turning[s].angular_momentum_W = turning[s].inertia_W * turning[s].angular_W;
   }
   for (std::size_t s = segments.size(); s-- > 0;) {
     const Segment& segment = segments[s];
-    if (segment.motion != Motion::prismatic && segment.motion != Motion::anchored) {
+    if (turning_dofs_of(segment.motion) > 0) {
       const Vector3d spin_W = turning[s].angular_momentum_W - turning[s].inertia_W * turning[s].angular_W;
       const Vector3d axis_W = body.segment_poses()[s].orientation * segment.axis_S;
       const bool is_hinge = segment.motion == Motion::revolute;

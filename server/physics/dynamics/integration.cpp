@@ -41,21 +41,6 @@ Eigen::Vector3d moved_root(const BodyMotion& body, double step) {
   return body.reference() + step * Eigen::Vector3d(v[0], v[1], v[2]);
 }
 
-void move_joint(const Segment& segment, const double* v, double step, double* coordinates) {
-  switch (segment.motion) {
-    case Motion::anchored:
-    case Motion::free: break;
-    case Motion::revolute:
-    case Motion::prismatic: coordinates[0] += step * v[0]; break;
-    case Motion::ball: {
-      const Eigen::Quaterniond before(coordinates);
-      const Eigen::Quaterniond turned = (before * rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2]))).normalized();
-      for (int i = 0; i < 4; ++i) coordinates[i] = turned.coeffs()[i];  // x y z w
-      break;
-    }
-  }
-}
-
 void move_joints(BodyMotion& body, double step) {
   BodyState& state = body.state();
   for (const Segment& segment : body.mechanism().segments())
@@ -93,8 +78,8 @@ Pose pose_ahead(const BodyMotion& body, int segment, double step) {
   }
   const Pose X_WP = its.parent < 0 ? body.model_pose() : pose_ahead(body, its.parent, step);
   std::array<double, 4> coordinates{};
-  const int count = its.motion == Motion::anchored ? 0 : its.motion == Motion::ball ? 4 : 1;
-  std::copy_n(body.state().coordinates(its.first_coordinate), count, coordinates.begin());
+  std::copy_n(body.state().coordinates(its.first_coordinate), zero_coordinates_of(its.motion).size(),
+              coordinates.begin());
   move_joint(its, body.velocities() + its.first_dof, step, coordinates.data());
   return moved_by_joint(its, X_WP * its.X_PS, coordinates.data());
 }

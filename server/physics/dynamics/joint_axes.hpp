@@ -6,12 +6,6 @@
 
 namespace cohort::physics {
 
-/// A spatial velocity, acceleration or force; for a force, `angular` is the torque and `linear` the force.
-struct Spatial {
-  Eigen::Vector3d angular;
-  Eigen::Vector3d linear;
-};
-
 /// Computes, by dof, the velocity that a unit rate gives to everything it carries, about the body's reference point in
 /// world axes.
 void find_joint_axes(const BodyMotion& body, std::vector<Spatial>& axes);

@@ -27,13 +27,10 @@ WholeBody::WholeBody(const BodyMotion& body) {
       motion.linear_W =
           motions[parent].linear_W + motion.angular_W.cross(X_WS.position - body.segment_poses()[parent].position);
     }
-    const double* v = body.velocities() + segment.first_dof;
-    switch (segment.motion) {
-      case Motion::anchored:
-      case Motion::free: break;
-      case Motion::revolute: motion.angular_W += v[0] * (X_WS.orientation * segment.axis_S); break;
-      case Motion::prismatic: motion.linear_W += v[0] * (X_WS.orientation * segment.axis_S); break;
-      case Motion::ball: motion.angular_W += X_WS.orientation * Vector3d(v[0], v[1], v[2]); break;
+    if (segment.motion != Motion::free) {
+      const Spatial joint = motion_at_joint(segment, X_WS.orientation, body.velocities() + segment.first_dof);
+      motion.angular_W += joint.angular;
+      motion.linear_W += joint.linear;
     }
     motion.centre_W = X_WS * segment.centre_S;
     motion.centre_velocity_W = motion.linear_W + motion.angular_W.cross(motion.centre_W - X_WS.position);

@@ -99,8 +99,6 @@ void ForceRecord::find_accelerations(const std::vector<double>& velocities, cons
     const Segment& segment = mechanism_.segments()[s];
     const double* v = velocities.data() + segment.first_dof;
     const double* a = accelerations.data() + segment.first_dof;
-    const auto velocity = [&](int i) { return Vector3d(v[i], v[i + 1], v[i + 2]); };
-    const auto acceleration = [&](int i) { return Vector3d(a[i], a[i + 1], a[i + 2]); };
     SegmentMotion& motion = segments_[s];
     motion = {zero, zero, zero, zero};
     if (segment.parent >= 0) {
@@ -112,36 +110,21 @@ void ForceRecord::find_accelerations(const std::vector<double>& velocities, cons
       motion.acceleration_W += motion.angular_acceleration_W.cross(arm_W) + w.cross(w.cross(arm_W));
     }
     const Vector3d w = motion.angular_velocity_W;  // the parent's
-    switch (segment.motion) {
-      case Motion::anchored: break;
-      case Motion::free: {
-        const Vector3d arm_W = X_WS_[s].position - reference_W_;
-        motion.angular_velocity_W = velocity(0);
-        motion.angular_acceleration_W = acceleration(0);
-        motion.velocity_W = velocity(3) + motion.angular_velocity_W.cross(arm_W);
-        motion.acceleration_W = acceleration(3) + motion.angular_acceleration_W.cross(arm_W) +
-                                motion.angular_velocity_W.cross(motion.angular_velocity_W.cross(arm_W));
-        break;
-      }
-      case Motion::revolute: {
-        const Vector3d axis_W = X_WS_[s].orientation * segment.axis_S;
-        motion.angular_velocity_W += v[0] * axis_W;
-        motion.angular_acceleration_W += a[0] * axis_W + w.cross(v[0] * axis_W);
-        break;
-      }
-      case Motion::prismatic: {
-        const Vector3d axis_W = X_WS_[s].orientation * segment.axis_S;
-        motion.velocity_W += v[0] * axis_W;
-        motion.acceleration_W += a[0] * axis_W + 2.0 * w.cross(v[0] * axis_W);
-        break;
-      }
-      case Motion::ball: {
-        const Vector3d relative_W = X_WS_[s].orientation * velocity(0);
-        motion.angular_velocity_W += relative_W;
-        motion.angular_acceleration_W += X_WS_[s].orientation * acceleration(0) + w.cross(relative_W);
-        break;
-      }
+    const Spatial joint = motion_at_joint(segment, X_WS_[s].orientation, v);
+    const Spatial change = motion_at_joint(segment, X_WS_[s].orientation, a);
+    if (segment.motion == Motion::free) {
+      const Vector3d arm_W = X_WS_[s].position - reference_W_;
+      motion.angular_velocity_W = joint.angular;
+      motion.angular_acceleration_W = change.angular;
+      motion.velocity_W = joint.linear + joint.angular.cross(arm_W);
+      motion.acceleration_W =
+          change.linear + change.angular.cross(arm_W) + joint.angular.cross(joint.angular.cross(arm_W));
+      continue;
     }
+    motion.angular_velocity_W += joint.angular;
+    motion.angular_acceleration_W += change.angular + w.cross(joint.angular);
+    motion.velocity_W += joint.linear;
+    motion.acceleration_W += change.linear + 2.0 * w.cross(joint.linear);
   }
 }
 

@@ -2,9 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <span>
 #include <stdexcept>
-
-#include "server/physics/mechanism/rotation.hpp"
 
 namespace cohort::physics {
 namespace {
@@ -38,20 +37,6 @@ DeviceOutputs::Wheels wheels_of(const Mechanism& mechanism, const description::T
 }
 
 }  // namespace
-
-Pose moved_by_joint(const Segment& segment, const Pose& X_WS, const double* coordinates) {
-  Pose moved = X_WS;
-  switch (segment.motion) {
-    case Motion::free:
-    case Motion::anchored: break;
-    case Motion::revolute: moved.orientation *= rotation_about(segment.axis_S, coordinates[0]); break;
-    case Motion::prismatic: moved.position += coordinates[0] * (moved.orientation * segment.axis_S); break;
-    case Motion::ball:
-      moved.orientation *= Eigen::Quaterniond(coordinates[3], coordinates[0], coordinates[1], coordinates[2]);
-      break;
-  }
-  return moved;
-}
 
 Mechanism::Mechanism(const description::Model& model, description::Fidelity fidelity)
     : model_(&model), links_(model.links.size()), joints_(model.joints.size()) {
@@ -246,24 +231,14 @@ int Mechanism::add_segment(int parent, Motion motion, const Pose& X_PS, const Ei
   segment.axis_S = axis_S;
   segment.first_dof = dof_count();
   segment.first_coordinate = static_cast<int>(zero_coordinates_.size());
-  switch (motion) {
-    case Motion::free: segment.dofs = 6; break;
-    case Motion::anchored: segment.dofs = 0; break;
-    case Motion::revolute:
-    case Motion::prismatic:
-      segment.dofs = 1;
-      zero_coordinates_.push_back(0.0);
-      break;
-    case Motion::ball:
-      segment.dofs = 3;
-      zero_coordinates_.insert(zero_coordinates_.end(), {0.0, 0.0, 0.0, 1.0});
-      break;
-  }
+  segment.dofs = dofs_of(motion);
+  const std::span<const double> zero = zero_coordinates_of(motion);
+  zero_coordinates_.insert(zero_coordinates_.end(), zero.begin(), zero.end());
   int above = parent < 0 ? -1 : segments_[static_cast<std::size_t>(parent)].last_dof;
   for (int i = 0; i < segment.dofs; ++i) {
     Dof dof;
     if (axis != nullptr) dof.axis = *axis;
-    if (motion == Motion::revolute || motion == Motion::prismatic) dof.coordinate = segment.first_coordinate;
+    if (segment.dofs == 1) dof.coordinate = segment.first_coordinate;
     is_chain_ = is_chain_ && above == dof_count() - 1;
     parents_.push_back(above);
     above = dof_count();

@@ -7,34 +7,10 @@
 #include "server/description/world.hpp"
 #include "server/physics/mechanism/device_outputs.hpp"
 #include "server/physics/mechanism/lanes.hpp"
+#include "server/physics/mechanism/segment.hpp"
 #include "server/physics/mechanism/spatial_inertia.hpp"
 
 namespace cohort::physics {
-
-/// The motion of a segment relative to its parent. `free`: six dofs; `anchored`: fixed to the world.
-enum class Motion { free, anchored, revolute, prismatic, ball };
-
-/// Links that are welded together and move as one. Frame S has its origin at the joint above, or at the root link, and
-/// the principal axes of the segment's mass.
-struct Segment {
-  int parent = -1;  ///< -1: none; `X_PS` is then in the model's frame
-  Motion motion = Motion::free;
-  Pose X_PS;  ///< with all coordinates at zero
-  /// Rotation from the frame of the joint above, or of the root link, to S.
-  Eigen::Quaterniond principal_axes = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d axis_S;  ///< for a revolute or prismatic joint
-  int first_dof = 0;
-  int dofs = 0;
-  int first_coordinate = 0;
-  int last_dof = -1;  ///< its own, or that of the nearest segment above that has one; -1: immovable
-
-  double mass = 0.0;                                    ///< may be zero: the middle of a universal joint
-  Eigen::Vector3d centre_S = Eigen::Vector3d::Zero();   ///< centre of mass
-  Eigen::Matrix3d inertia_S = Eigen::Matrix3d::Zero();  ///< about the centre of mass, diagonal
-};
-
-/// Returns the pose of a segment that a joint holds; `X_WS` is its pose with `coordinates` at zero.
-Pose moved_by_joint(const Segment& segment, const Pose& X_WS, const double* coordinates);
 
 /// One degree of freedom of a joint, or one of the six of a free root (which has no damping, spring or limit).
 struct Dof {

@@ -7,6 +7,12 @@ namespace cohort::physics {
 
 using description::SpatialMatrix;
 
+/// A spatial velocity, acceleration or force; for a force, `angular` is the torque and `linear` the force.
+struct Spatial {
+  Eigen::Vector3d angular;
+  Eigen::Vector3d linear;
+};
+
 /// Returns the matrix with cross_matrix(v) * u = v x u.
 inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return (Eigen::Matrix3d() << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0).finished();

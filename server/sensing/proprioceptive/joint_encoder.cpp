@@ -9,7 +9,7 @@ class JointEncoder final : public SensorOf<description::JointEncoder> {
   using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
     const description::Joint& joint = mount_.joint(device_.joint);
-    const std::string unit = joint.type == description::JointType::prismatic ? "m" : "rad";
+    const std::string unit = facts_of(joint.type).slides ? "m" : "rad";
     return {{device_.name + "/0/position", unit, 1, joint.axis.lower, joint.axis.upper, 0.0},
             {device_.name + "/0/velocity", unit + "/s", 1, -infinity, infinity, 0.0}};
   }

@@ -8,7 +8,7 @@ class TorqueSensor final : public SensorOf<description::TorqueSensor> {
  public:
   using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
-    const bool slides = mount_.joint(device_.joint).type == description::JointType::prismatic;
+    const bool slides = facts_of(mount_.joint(device_.joint).type).slides;
     return {{device_.name + (slides ? "/0/force" : "/0/torque"), slides ? "N" : "N m", 1, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {

@@ -15,12 +15,11 @@ using description::JointType;
 using description::Model;
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view joint_types[] = {"fixed", "revolute", "prismatic", "ball", "universal", "screw"};
 constexpr std::string_view shape_kinds[] = {"box",     "sphere",    "cylinder", "plane",
                                             "capsule", "ellipsoid", "mesh",     "heightmap"};
 static_assert(std::size(shape_kinds) == std::variant_size_v<description::Shape>);
 
-std::string_view type_of(const Joint& joint) { return joint_types[static_cast<std::size_t>(joint.type)]; }
+std::string_view type_of(const Joint& joint) { return facts_of(joint.type).name; }
 
 std::string name_of_link(const Model& model, std::size_t link) {
   return link == Joint::world ? "world" : model.links[link].name;
@@ -89,8 +88,8 @@ Json facts_of(const Seen& seen, const Joint& joint) {
                    {"spring_stiffness", axis.spring_stiffness},
                    {"spring_reference", axis.spring_reference}};
   };
-  if (joint.type != JointType::fixed && joint.type != JointType::ball) add_axis("axis", joint.axis);
-  if (joint.type == JointType::universal) add_axis("second_axis", joint.second_axis);
+  if (facts_of(joint.type).axes > 0) add_axis("axis", joint.axis);
+  if (facts_of(joint.type).axes > 1) add_axis("second_axis", joint.second_axis);
   if (joint.type == JointType::screw) facts["thread_pitch"] = joint.thread_pitch;
   return facts;
 }
@@ -183,7 +182,7 @@ std::string facts_as_text(const Simulation& simulation) {
                           link.collisions.size());
     }
     const auto add = [&](const Joint& joint, const char* kind) {
-      const bool has_range = joint.type != JointType::fixed && joint.type != JointType::ball;
+      const bool has_range = facts_of(joint.type).axes > 0;
       text += fmt::format("  {} {}  {}  {} to {}{}\n", kind, joint.name, type_of(joint),
                           name_of_link(seen.model, joint.parent), name_of_link(seen.model, joint.child),
                           has_range ? "  " + range_of(joint.axis) : "");

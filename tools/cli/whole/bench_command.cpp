@@ -2,10 +2,10 @@
 
 #include <limits>
 
-#include "tools/bench/bench.hpp"
-#include "tools/bench/lockstep/bench_client.hpp"
-#include "tools/bench/lockstep/lockstep.hpp"
-#include "tools/bench/thesis/thesis.hpp"
+#include "tests/benchmarks/comparison/bench.hpp"
+#include "tests/benchmarks/comparison/lockstep/bench_client.hpp"
+#include "tests/benchmarks/comparison/lockstep/lockstep.hpp"
+#include "tests/benchmarks/comparison/thesis/thesis.hpp"
 #include "tools/cli/commands/commands.hpp"
 #include "tools/cli/common/output_file.hpp"
 #include "tools/cli/common/shown.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "tests/benchmarks/comparison/report.hpp"
+#include "tests/benchmarks/comparison/measuring/report.hpp"
 
 namespace cohort::bench {
 namespace {

@@ -12,7 +12,7 @@ namespace cohort::bench {
 /// Computes for the given CPU time of the calling thread [s].
 void compute(double seconds);
 
-/// A client process of `cohort bench lockstep`: a client of the server over DDS, or of the raw UDP exchange (UdpFloor).
+/// A client process of `cohort-bench lockstep`: a client of the server over DDS, or of the raw UDP exchange (UdpFloor).
 struct BenchClient {
   std::vector<std::string> robots;  ///< selectors; empty: a client of UdpFloor
   std::uint32_t domain = 0;

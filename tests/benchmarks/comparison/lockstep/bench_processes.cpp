@@ -12,7 +12,7 @@ std::vector<tool::Children::Command> commands_of(const std::vector<std::vector<s
   std::vector<tool::Children::Command> commands;
   for (const std::vector<std::string>& own : arguments) {
     tool::Children::Command command;
-    command.arguments = {program, "bench", "client"};
+    command.arguments = {program, "client"};
     command.arguments.insert(command.arguments.end(), own.begin(), own.end());
     command.name = "bench";
     command.restarts = false;

@@ -12,10 +12,10 @@
 
 namespace cohort::bench {
 
-/// Client processes of `cohort bench lockstep`, and their CPU time. The destructor ends them.
+/// Client processes of `cohort-bench lockstep`, and their CPU time. The destructor ends them.
 class BenchProcesses {
  public:
-  /// `arguments` are those of each process after `cohort bench client`. `failed` is called if a process ends before
+  /// `arguments` are those of each process after `cohort-bench client`. `failed` is called if a process ends before
   /// `may_end`.
   BenchProcesses(const std::vector<std::vector<std::string>>& arguments,
                  std::function<void(const std::string&)> failed);

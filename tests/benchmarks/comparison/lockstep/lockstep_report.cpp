@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "tests/benchmarks/comparison/report.hpp"
+#include "tests/benchmarks/comparison/measuring/report.hpp"
 #include "tools/common/drawing/chart.hpp"
 
 namespace cohort::bench {

@@ -1,17 +1,21 @@
-#include <fmt/format.h>
-
 #include <limits>
 
+#include "client_sdk/src/standard_streams.hpp"
 #include "tests/benchmarks/comparison/bench.hpp"
 #include "tests/benchmarks/comparison/lockstep/bench_client.hpp"
 #include "tests/benchmarks/comparison/lockstep/lockstep.hpp"
 #include "tests/benchmarks/comparison/thesis/thesis.hpp"
-#include "tools/cli/commands/commands.hpp"
+#include "tools/cli/common/build_facts.hpp"
+#include "tools/cli/common/exit_codes.hpp"
 #include "tools/cli/common/output_file.hpp"
+#include "tools/cli/common/run_program.hpp"
 #include "tools/cli/common/shown.hpp"
 
-namespace cohort::tool {
+// The program cohort-bench.
 namespace {
+
+using namespace cohort;
+using namespace cohort::tool;
 
 struct BenchCommand {
   enum class What { scenes, thesis, lockstep, client };
@@ -73,7 +77,7 @@ int measure_lockstep(const BenchCommand& command, Log& log, const bench::Surroun
   return exit_ok;
 }
 
-int bench(const BenchCommand& command, Log& log, const std::atomic<bool>& stop) {
+int measure(const BenchCommand& command, Log& log, const std::atomic<bool>& stop) {
   const bench::Surroundings surroundings{[&](const std::string& message) { log.progress(message); }, stop};
   try {
     switch (command.what) {
@@ -133,7 +137,7 @@ void add_scenes_options(CommandLine line, BenchCommand& command) {
       "All engines take turns in this process, with the same robots, poses, commands and steps. Their models\n"
       "differ: the others have wheels where Cohort has tracks. The torque of MuJoCo's motors decreases with speed.\n"
       "Enki is planar, without turrets, joints or torque limits. docs/bench.md describes scenes and engines.\n"
-      "Example: cohort bench --scene crowd --robots 128,1000 --json results.json");
+      "Example: cohort-bench --scene crowd --robots 128,1000 --json results.json");
 }
 
 void add_thesis_options(CommandLine line, BenchCommand& command) {
@@ -203,10 +207,10 @@ void add_lockstep_options(CommandLine line, BenchCommand& command) {
       "Compares a server and its clients in lockstep over DDS with the same number of processes that exchange the "
       "same\n"
       "bytes over raw UDP. The two alternate. docs/bench.md describes the measurement.\n"
-      "Example: cohort bench lockstep --robots 8,128 --placement eights");
+      "Example: cohort-bench lockstep --robots 8,128 --placement eights");
 }
 
-// Adds the options of the client processes that `cohort bench lockstep` starts.
+// Adds the options of the client processes that `lockstep` starts.
 void add_client_options(CommandLine line, bench::BenchClient& client) {
   line.add_option("--robots", client.robots).comma_separated();
   line.add_option("--domain", client.domain);
@@ -217,26 +221,36 @@ void add_client_options(CommandLine line, bench::BenchClient& client) {
   line.add_option("--command-bytes", client.udp.command_bytes);
 }
 
-}  // namespace
-
-Subcommand add_bench(CommandLine app) {
+void add_commands(CommandLine line, BenchCommand& command) {
   using What = BenchCommand::What;
-  const auto command = std::make_shared<BenchCommand>();
-  CommandLine line = app.add_subcommand(in_whole::bench.name, in_whole::bench.text);
-  add_scenes_options(line, *command);
   const auto add = [&](const char* name, const char* text, What what) {
     CommandLine sub = line.add_subcommand(name, text);
-    sub.callback([command, what] { command->what = what; });
+    sub.callback([&command, what] { command.what = what; });
     return sub;
   };
   add_thesis_options(
-      add("thesis", "Repeat the benchmark tables of the 2005 thesis that Cohort continues", What::thesis), *command);
+      add("thesis", "Repeat the benchmark tables of the 2005 thesis that Cohort continues", What::thesis), command);
   add_lockstep_options(
-      add("lockstep", "Measure the overhead of the lockstep barrier compared with raw UDP", What::lockstep), *command);
+      add("lockstep", "Measure the overhead of the lockstep barrier compared with raw UDP", What::lockstep), command);
   CommandLine client = add("client", "", What::client);
   client.hide();
-  add_client_options(client, command->client);
-  return {line, [command](Log& log, const std::atomic<bool>& stop) { return bench(*command, log, stop); }};
+  add_client_options(client, command.client);
 }
 
-}  // namespace cohort::tool
+}  // namespace
+
+int main(int argc, char** argv) {
+  open_standard_streams();
+  outlive_readers();
+  CommandLine line("Compare the performance of Cohort with that of other physics engines on the same scenes",
+                   "cohort-bench");
+  line.set_version(version_text, "Print the version and build information");
+  line.set_help("Print this help and exit");
+  BenchCommand command;
+  add_scenes_options(line, command);
+  add_commands(line, command);
+  LogFlags flags;
+  add_log_flags(line, flags);
+  return run_program(line, flags, argc, argv,
+                     [&](Log& log, const std::atomic<bool>& stop) { return measure(command, log, stop); });
+}

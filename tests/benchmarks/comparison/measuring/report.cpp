@@ -1,4 +1,4 @@
-#include "tests/benchmarks/comparison/report.hpp"
+#include "tests/benchmarks/comparison/measuring/report.hpp"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include <numeric>
 
 #include "server/geometry/scene/scene.hpp"
-#include "tools/bench/scenes/bench_scene.hpp"
-#include "tools/bench/scenes/ray_field.hpp"
+#include "tests/benchmarks/comparison/scenes/bench_scene.hpp"
+#include "tests/benchmarks/comparison/scenes/ray_field.hpp"
 
 namespace cohort::bench {
 namespace {

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "tools/bench/engines/engines.hpp"
+#include "tests/benchmarks/comparison/engines/engines.hpp"
 
 namespace cohort::bench {
 namespace {

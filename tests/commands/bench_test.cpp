@@ -10,6 +10,7 @@
 namespace cohort::test {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 std::vector<std::string> known_engines() {
@@ -262,6 +263,64 @@ TEST(BenchThesis, RunsOnlySelectedTables) {
   EXPECT_GT(row["cohort 10 ms"].value("seconds", 0.0), 0.0);
   const Ended ended = run_to_end({cohort_program(), "bench", "thesis", "--table", "5.5"});
   EXPECT_EQ(ended.exit_code, 2);
+}
+
+// A copy of `cohort` in a folder without cohort-bench.
+class BenchCommand : public ::testing::Test {
+ protected:
+  BenchCommand() {
+    fs::create_directory(elsewhere_);
+    fs::copy_file(cohort_program(), cohort_);
+  }
+  Ended run(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> command = {cohort_};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return run_to_end(command, {{"PATH", elsewhere_}});
+  }
+  // Makes a cohort-bench that prints its name and its arguments.
+  static void make_bench(const fs::path& folder, const std::string& name) {
+    const fs::path program = folder / "cohort-bench";
+    write_file(program, "#!/bin/sh\nprintf '%s\\n' " + name + " \"$@\"\nexit 7\n");
+    fs::permissions(program, fs::perms::owner_all);
+  }
+
+  const ScratchFolder folder_;
+  const fs::path elsewhere_ = folder_ / "elsewhere";
+  const fs::path cohort_ = folder_ / "cohort";
+};
+
+TEST_F(BenchCommand, StartsTheProgramBesideItsOwnWithTheSameArguments) {
+  make_bench(elsewhere_, "elsewhere");
+  make_bench(folder_.path(), "beside");
+  const Ended ended = run({"--verbose", "bench", "thesis", "--json", "bench", "--help", "a b"});
+  EXPECT_EQ(ended.out, "beside\n--verbose\nthesis\n--json\nbench\n--help\na b\n");
+  EXPECT_EQ(ended.err, "");
+  EXPECT_EQ(ended.exit_code, 7);
+}
+
+TEST_F(BenchCommand, StartsTheProgramInPathIfThereIsNoneBesideIt) {
+  make_bench(elsewhere_, "elsewhere");
+  const Ended ended = run({"bench", "--scene", "crowd"});
+  EXPECT_EQ(ended.out, "elsewhere\n--scene\ncrowd\n");
+  EXPECT_EQ(ended.exit_code, 7);
+}
+
+TEST_F(BenchCommand, SaysHowToGetTheProgramIfItIsMissing) {
+  const Ended ended = run({"bench", "--help"});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_EQ(ended.out, "");
+  EXPECT_EQ(ended.err, "cohort: error: 'cohort bench' requires the program cohort-bench, which is neither in " +
+                           folder_.path().string() +
+                           " nor in PATH; 'cmake --build --preset release --target cohort-bench' builds it from "
+                           "source\n");
+}
+
+TEST_F(BenchCommand, SaysWhyTheProgramCannotStart) {
+  make_bench(folder_.path(), "beside");
+  fs::permissions(folder_ / "cohort-bench", fs::perms::owner_read);
+  const Ended ended = run({"bench"});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_EQ(ended.err, "cohort: error: cannot start cohort-bench: Permission denied\n");
 }
 
 TEST(Bench, RejectsAMissingEngineAndNamesItsPackage) {

@@ -311,7 +311,7 @@ TEST(Errors, ReportAViewThatWasNotBuilt) {
 }
 
 TEST(Help, ShowsAnExampleForEveryCommand) {
-  for (const char* command : {"", "run", "serve", "host", "check", "view", "page", "film", "bench"}) {
+  for (const char* command : {"", "run", "serve", "host", "check", "view", "page", "film"}) {
     std::vector<std::string> arguments = {cohort_program(), command, "--help"};
     if (*command == '\0') arguments.erase(arguments.begin() + 1);
     const Ended help = run_to_end(arguments);
@@ -321,6 +321,14 @@ TEST(Help, ShowsAnExampleForEveryCommand) {
     EXPECT_NE(help.out.find("--log-format"), std::string::npos) << help.out;
     EXPECT_NE(help.out.find("--verbose"), std::string::npos) << help.out;
   }
+}
+
+TEST(Help, OfTheBenchIsThatOfItsProgram) {
+  const Ended help = run_to_end({cohort_program(), "bench", "--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_EQ(help.err, "");
+  for (const char* text : {"cohort-bench [OPTIONS]", "Example: cohort-bench", "--log-format", "--verbose"})
+    EXPECT_NE(help.out.find(text), std::string::npos) << text << help.out;
 }
 
 TEST(Help, ShowsVersionAndBuild) {

@@ -1,34 +1,19 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <filesystem>
-#include <fstream>
 #include <system_error>
 
 #include "tools/cli/commands/commands.hpp"
+#include "tools/cli/common/become.hpp"
 
 // Stubs in `cohort` for the commands of cohort-whole.
 namespace cohort::tool {
 namespace {
 
-// Returns the command line of this process.
-std::vector<std::string> own_words() {
-  std::ifstream file("/proc/self/cmdline", std::ios::binary);
-  std::vector<std::string> words;
-  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
-  return words;
-}
-
 // Replaces this process with cohort-whole, with the same command line.
 int become_whole(const char* command, Log& log) {
-  const std::filesystem::path whole = std::filesystem::read_symlink("/proc/self/exe").replace_filename("cohort-whole");
-  std::vector<std::string> words = own_words();
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  ::execv(whole.c_str(), arguments.data());
-  const int error = errno;
+  const std::filesystem::path whole = path_beside("cohort-whole");
+  const int error = become(whole, own_words());
   if (error == ENOENT)
     log.error(
         fmt::format("'cohort {}' requires the program {}, which does not exist; 'cmake --build --preset release "
@@ -52,6 +37,5 @@ Subcommand add_page(CommandLine app) { return add_left(std::move(app), in_whole:
 Subcommand add_film(CommandLine app) { return add_left(std::move(app), in_whole::film); }
 Subcommand add_completion(CommandLine app) { return add_left(std::move(app), in_whole::completion); }
 Subcommand add_man_page(CommandLine app) { return add_left(std::move(app), in_whole::man_page); }
-Subcommand add_bench(CommandLine app) { return add_left(std::move(app), in_whole::bench); }
 
 }  // namespace cohort::tool

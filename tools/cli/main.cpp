@@ -1,39 +1,12 @@
 #include <algorithm>
-#include <cstdlib>
-#include <string>
-#include <string_view>
 
-#include "client_sdk/include/cohort/client.hpp"
 #include "client_sdk/src/standard_streams.hpp"
-#include "idl/dds/transport.hpp"
-#include "server/core/atomic_file.hpp"
-#include "server/core/thread_room.hpp"
-#include "server/description/input_error.hpp"
 #include "tools/cli/commands/commands.hpp"
 #include "tools/cli/common/build_facts.hpp"
-#include "tools/cli/common/output_file.hpp"
 
 namespace {
 
 using namespace cohort::tool;
-
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one log for the process.
-Log* dds_log = nullptr;
-
-void log_dds_to(Log& log) {
-  dds_log = &log;
-  cohort::wire::set_dds_log([](std::string_view message, cohort::wire::DdsLogKind kind) noexcept {
-    using cohort::wire::DdsLogKind;
-    if (kind == DdsLogKind::refusal) return dds_log->warning(std::string(message));
-    if (kind != DdsLogKind::fatal) return dds_log->debug("dds: " + std::string(message));
-    // Cyclone ends the process after this message.
-    if (message.find("ddsrt_thread_create failed") != std::string_view::npos) {
-      dds_log->error(cohort::ThreadLimit("a thread of DDS").what());
-      std::_Exit(exit_failed);
-    }
-    dds_log->error("dds: " + std::string(message));
-  });
-}
 
 // Returns the commands in the order of help. `flags` must outlive `app`.
 std::vector<Subcommand> add_commands(CommandLine app, LogFlags& flags) {
@@ -49,26 +22,6 @@ std::vector<Subcommand> add_commands(CommandLine app, LogFlags& flags) {
     add_log_flags(commands.back().line, flags);
   }
   return commands;
-}
-
-// Runs the selected command and logs its exceptions. Returns the exit code.
-int run_chosen(const std::vector<Subcommand>& commands, Log& log, const std::atomic<bool>& stop) {
-  const auto chosen = std::ranges::find_if(commands, [](const Subcommand& each) { return each.line.parsed(); });
-  try {
-    return chosen->run(log, stop);
-  } catch (const cohort::description::InputError& error) {
-    log.problems(error);
-  } catch (const cohort::WriteError& error) {
-    log.error(error.what());
-    return exit_failed;
-  } catch (const std::bad_alloc& error) {
-    log.error(text_of(error));
-    return exit_failed;
-  } catch (const std::exception& error) {
-    log.error(text_of(error));
-    if (cohort::is_thread_limit(error)) return exit_failed;
-  }
-  return exit_usage;
 }
 
 }  // namespace
@@ -88,19 +41,7 @@ int main(int argc, char** argv) {
       "Exit codes: 0 success, 1 the run failed, 2 an error in the command line, in a file or in the set-up, 130 "
       "interrupted.");
   const std::vector<Subcommand> commands = add_commands(line, flags);
-
-  LogOptions options;
-  try {
-    if (!line.parse(argc, argv)) {
-      Log log(options);
-      return code_after_output(exit_ok, log);
-    }
-    options = log_options(flags);
-  } catch (const UsageError& error) {
-    Log({.format = format_of_unreadable(argc, argv)}).error(error.what());
-    return exit_usage;
-  }
-  Log log(options);
-  log_dds_to(log);
-  return code_after_output(run_chosen(commands, log, cohort::stop_on_signals()), log);
+  return run_program(line, flags, argc, argv, [&](Log& log, const std::atomic<bool>& stop) {
+    return std::ranges::find_if(commands, [](const Subcommand& each) { return each.line.parsed(); })->run(log, stop);
+  });
 }

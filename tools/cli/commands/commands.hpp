@@ -1,13 +1,12 @@
 #pragma once
 
-#include <atomic>
-#include <functional>
 #include <vector>
 
 #include "tools/cli/common/command_line.hpp"
 #include "tools/cli/common/exit_codes.hpp"
 #include "tools/cli/common/log.hpp"
 #include "tools/cli/common/log_flags.hpp"
+#include "tools/cli/common/run_program.hpp"
 
 /// The commands of `cohort`, one file each. Commands that no run needs and that take long to build are in a second
 /// program, `cohort-whole`, which has all commands. `in_whole` lists them; `cohort` starts that program for them.
@@ -16,8 +15,7 @@ namespace cohort::tool {
 /// A command: its part of the command line, and the function that executes it.
 struct Subcommand {
   CommandLine line;
-  /// Returns the process's exit code. An exception is a user's error and ends the process with exit_usage.
-  std::function<int(Log& log, const std::atomic<bool>& stop)> run;
+  CommandFunction run;
 };
 
 /// A command of `cohort-whole`.
@@ -31,8 +29,6 @@ inline constexpr InWhole page = {"page", "Write a recording as one HTML file tha
 inline constexpr InWhole film = {"film", "Make a film or pictures of a recording"};
 inline constexpr InWhole completion = {"completion", "Print a shell's completion script"};
 inline constexpr InWhole man_page = {"man-page", "Print the manual page, which contains the help of all commands"};
-inline constexpr InWhole bench = {
-    "bench", "Compare the performance of Cohort with that of other physics engines on the same scenes"};
 }  // namespace in_whole
 
 /// Each function adds its command to `app`. The functions that take `flags` show the message options after their own in

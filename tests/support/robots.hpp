@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/dev/figures/tracked_robot.hpp"
+#include "tests/figures/tracked_robot.hpp"
 
 /// Small worlds, described in code: what the tests of physics, sensing and simulation stand on.
 namespace cohort::test {

@@ -1,4 +1,4 @@
-#include "tools/dev/figures/figures.hpp"
+#include "tests/figures/figures.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <iostream>
 
+#include "tests/figures/figures.hpp"
 #include "tools/cli/common/output_file.hpp"
-#include "tools/dev/figures/figures.hpp"
 
 // Draws how the devices of an s-bot respond, a file for each group of them.
 int main(int argc, char** argv) {

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "server/sensing/readings/take_samples.hpp"
-#include "tools/dev/figures/figures.hpp"
-#include "tools/dev/figures/stand.hpp"
+#include "tests/figures/figures.hpp"
+#include "tests/figures/stand.hpp"
 
 namespace cohort::figures {
 namespace {

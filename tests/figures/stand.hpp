@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "server/simulation/simulation.hpp"
+#include "tests/figures/tracked_robot.hpp"
 #include "tools/common/drawing/chart.hpp"
-#include "tools/dev/figures/tracked_robot.hpp"
 
 namespace cohort::figures {
 

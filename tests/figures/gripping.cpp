@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/dev/figures/figures.hpp"
-#include "tools/dev/figures/stand.hpp"
+#include "tests/figures/figures.hpp"
+#include "tests/figures/stand.hpp"
 
 namespace cohort::figures {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/dev/figures/stand.hpp"
+#include "tests/figures/stand.hpp"
 
 #include <algorithm>
 #include <stdexcept>

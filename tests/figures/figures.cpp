@@ -1,4 +1,4 @@
-#include "tools/dev/figures/figures.hpp"
+#include "tests/figures/figures.hpp"
 
 namespace cohort::figures {
 

@@ -67,9 +67,9 @@ class LargeIslandSolver {
   /// Returns the greatest change of a row's velocity.
   double run_pass(bool forwards, bool with_friction);
   void settle(double settled);
-  /// Damps bodies that move slower than gravity makes a body in one step, if all are rigid bodies that nothing drives
-  /// or carries. A body that is held at two points would otherwise swing about them for ever, and friction that has not
-  /// quite settled would let others rock.
+  /// Damps bodies that are slower than the velocity that gravity adds in one step, if all are single rigid bodies
+  /// without drives, outside of fluids. A body that is held at two points would otherwise swing about them for ever,
+  /// and friction that has not quite settled would let others rock.
   void damp(const Assembly& assembly);
   template <class Work>
   void for_each_share(std::size_t phase, Work&& work);

@@ -33,7 +33,7 @@ struct Solid {
   SolidKindPtr kind;
   BodyId body;  ///< its body; solids of one body do not see each other
   bool moves = false;
-  double radius = 0.0;  ///< copy of the kind's, near the data that is read with it
+  double radius = 0.0;  ///< copy of that of the kind, for locality
   Pose X_WC;
 
   const Shape& shape() const { return kind->shape; }

@@ -34,8 +34,8 @@ struct Surface {
   /// Direction in which `friction` applies, a unit vector in C, or in the frame of `friction_link`; zero for every
   /// direction.
   Eigen::Vector3d friction_direction = Eigen::Vector3d::Zero();
-  /// Index into Model::links of another link, with which the direction turns: that of a mecanum wheel turns with the
-  /// chassis.
+  /// Index into Model::links of another link, with which the direction turns. For example, the direction of a mecanum
+  /// wheel turns with the chassis.
   std::optional<std::size_t> friction_link{};
   double second_friction = 1.0;                                ///< Coulomb coefficient across that direction [1]
   double stiffness = std::numeric_limits<double>::infinity();  ///< for each point of contact [N/m]

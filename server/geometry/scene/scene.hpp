@@ -44,7 +44,7 @@ class Scene {
   /// Excludes a solid from all further queries until `put_back`. Its index is not reused until `renew`.
   void remove(std::uint32_t index);
   void put_back(std::uint32_t index);
-  /// Puts a removed solid back as one of another body of the same model; `build` must follow before the next query.
+  /// Puts a removed solid back as a solid of another body of the same model; `build` must follow before the next query.
   void renew(std::uint32_t index, BodyId body, const Pose& X_WC);
   bool is_removed(std::uint32_t index) const { return is_removed_[index] != 0; }
 

@@ -35,7 +35,7 @@ class SightLines {
   /// Returns whether no solid is on the segment from the source to p_WR, both ends included, and the segment is not
   /// longer than the range. `receiver_body` never blocks the line either. Returns true if both ends are the same point.
   ///
-  /// The result is the same, bit for bit, as no hit of Scene::cast_ray from p_WS along (p_WR - p_WS) / d with range d =
+  /// The result is exactly whether there is no hit of Scene::cast_ray from p_WS along (p_WR - p_WS) / d with range d =
   /// |p_WR - p_WS| among the solids of other bodies. Const, callable from any thread; p_WR must be finite.
   bool is_free(const Eigen::Vector3d& p_WR, BodyId receiver_body = Scene::no_body) const;
 

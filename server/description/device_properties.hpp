@@ -9,17 +9,18 @@
 #include "server/description/emitter.hpp"
 #include "server/description/input_error.hpp"
 
-/// Properties that the stages need of a device of any kind. A kind that has a property derives from it (`TrackPair`,
-/// `Thruster`) or has a member for it: `motors`, `belts`, `emitters`, `held_child`, `not_planar`, `readout`. The
-/// functions at the end of devices.hpp read them from any device. Frames: L a link.
+/// Properties of devices that the stages of the simulation need, for any kind of device. A kind that has a property
+/// derives from it (`TrackPair`, `Thruster`) or has a member for it: `motors`, `belts`, `emitters`, `held_child`,
+/// `not_planar`, `readout`. The functions at the end of devices.hpp read them from any device. Frames: L a link, R a
+/// rotor, E an emitter.
 namespace cohort::description {
 
 /// Limits of a motor on a joint.
 struct MotorLimits {
   std::size_t joint = 0;
-  double max_velocity = 0.0;  ///< infinite for a motor without a limit
-  double max_effort = 0.0;
-  double rotor_inertia = 0.0;
+  double max_velocity = 0.0;   ///< [rad/s] or [m/s]; infinite for a motor without a limit
+  double max_effort = 0.0;     ///< [N m] or [N]
+  double rotor_inertia = 0.0;  ///< rotor inertia reflected to the joint [kg m^2] or [kg]
 };
 
 /// A link whose surface a device drives.

@@ -49,7 +49,7 @@ struct ProximityRing {
   std::size_t count = 0;
   double first_bearing = 0.0;  ///< bearing of sensor 0, from the x axis of S [rad]
   double spacing = 0.0;        ///< between neighbours [rad]
-  double ring_radius = 0.0;    ///< origins of the rays [m]
+  double ring_radius = 0.0;    ///< distance of the ray origins from the centre [m]
   double range = 0.0;          ///< length of the rays [m]
   Readout readout{};
   ProximityTechnique technique = ProximityTechnique::ray;
@@ -280,7 +280,7 @@ struct Device : DeviceKinds {
   ~Device();
 };
 
-/// Returns how the readings of a device are reported; null if it is not a sensor.
+/// Returns the readout of a device; null if it is not a sensor.
 Readout* readout_of(Device& device);
 const Readout* readout_of(const Device& device);
 const std::string& name_of(const Device& device);
@@ -292,12 +292,12 @@ std::vector<MotorLimits> motor_limits(const Device& device);
 std::vector<BeltPlace> belts_of(const Device& device);
 const TrackPair* tracks_of(const Device& device);   ///< null if it has none
 const Thruster* thruster_of(const Device& device);  ///< null if it is none
-/// Returns how many things other than joints the device drives: tracks, belts, a rotor.
+/// Returns the number of outputs that the device drives other than joints: tracks, belts, a rotor.
 std::size_t output_count(const Device& device);
 std::vector<DeviceEmitter> emitters_of(const Device& device);
 std::optional<HeldChild> held_child_of(const Device& device);
-/// Returns why a planar world cannot have the device, as `planar physics does not support rotor 'NAME'`; empty if it
-/// can.
+/// Returns why a planar world cannot have the device, such as `planar physics does not support rotor 'NAME'`; empty if
+/// it can.
 std::string reason_against_planar(const Device& device);
 
 }  // namespace cohort::description

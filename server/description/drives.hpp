@@ -11,8 +11,8 @@
 /// Devices that drive joints, tracks and belts. Frames: L a link.
 namespace cohort::description {
 
-/// Two tracks that share one rigid body ("treels", tracks and wheels of the s-bot): drawn as four ground points, two on
-/// each side. Commands `NAME/left/velocity` and `NAME/right/velocity` [m/s].
+/// Two tracks that share one rigid body ("treels", tracks and wheels of the s-bot), modelled as four ground points, two
+/// on each side. Commands `NAME/left/velocity` and `NAME/right/velocity` [m/s].
 struct TreelDrive : TrackPair {
   std::string name;
 };

@@ -18,7 +18,7 @@ namespace cohort::description {
 /// Adds the object to the world, at its last or initial pose, or removes it.
 struct SetPresence {
   bool present = true;
-  bool once = false;  ///< the first appearance, or permanent removal
+  bool once = false;  ///< the object appears for the first time, or is removed permanently
 };
 /// Moves the object to a pose, at rest, with unchanged joint positions.
 struct PlaceAt {
@@ -75,7 +75,8 @@ struct Reaction {
   std::vector<Event> events;          ///< all at the same time, in this order; their times are not used
 };
 
-/// All of the objects that are in the world, and at least one, have the origins of their root links inside a rectangle.
+/// At least one of the objects is in the world, and the origins of the root links of all that are in the world lie
+/// inside a rectangle.
 struct AllInside {
   Eigen::Vector2d lower = Eigen::Vector2d::Zero();  ///< [m]
   Eigen::Vector2d upper = Eigen::Vector2d::Zero();

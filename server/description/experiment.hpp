@@ -17,6 +17,7 @@
 
 namespace cohort::description {
 
+/// Response to a late answer of a controller (docs/semantics.md).
 enum class OnLate { wait, hold, zero, detach, stop };
 
 /// Returns the value as it is written in experiments.

@@ -24,8 +24,8 @@ struct DriveChannel {
 ///   axis, and that reaches down as far as the others. All axes must be parallel.
 ///
 /// Names have no influence. In the model's frame M, z is up and x is forward; if the axes lie along x, y is forward.
-/// The sides are those of the middle between the outermost wheels, which also have the same speed. A drive without a
-/// limit has 1 m/s and 1 rad/s.
+/// The line midway between the outermost wheels separates the left side from the right. All wheels move at the same
+/// speed over the ground. A drive without a limit gets 1 m/s and 1 rad/s.
 std::vector<DriveChannel> ground_drive(const Model& model);
 
 }  // namespace cohort::description

@@ -8,13 +8,13 @@ namespace cohort::description {
 
 enum class JointType { fixed, revolute, prismatic, ball, universal, screw };
 
-/// The facts about one type of joint that others than the physics need.
+/// Properties of a joint type that are needed outside of the physics.
 struct JointTypeFacts {
   JointType type;
   std::string_view name;  ///< in SDF
   int axes;               ///< axes with a position of their own
   bool slides;            ///< the position is a displacement [m], not an angle [rad]
-  std::string_view flaw;  ///< why nothing can refer to its axis, after "the joint 'name' "; empty if something can
+  std::string_view flaw;  ///< why its axis cannot be referred to, to follow "the joint 'name' "; empty if it can
 };
 
 inline constexpr std::array joint_types = {

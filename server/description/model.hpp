@@ -20,10 +20,10 @@
 namespace cohort::description {
 
 /// Contact properties of a surface. For two surfaces in contact, the smaller friction, the product of restitutions, and
-/// the larger resistances to rolling and spinning apply. A MaterialPair of the world replaces all but the last.
-/// If friction has a direction, that of the surface with the smaller coefficient along it applies, with the smaller
-/// coefficient across it. Stiffnesses combine as springs in series, and dampings add up. The larger of the given bounce
-/// thresholds applies.
+/// the larger resistances to rolling and spinning apply. A MaterialPair of the world replaces all of these except the
+/// resistance to spinning. If both surfaces have a friction direction, that of the surface with the smaller coefficient
+/// `friction` applies. The coefficient across it is the smaller of the two. Stiffnesses combine as springs in series,
+/// and dampings add up. The larger of the given bounce thresholds applies.
 struct Surface {
   double friction = 1.0;             ///< Coulomb coefficient [1]
   double restitution = 0.0;          ///< coefficient of restitution [1]
@@ -34,8 +34,8 @@ struct Surface {
   /// Direction in which `friction` applies, a unit vector in C, or in the frame of `friction_link`; zero for every
   /// direction.
   Eigen::Vector3d friction_direction = Eigen::Vector3d::Zero();
-  /// Index into Model::links of another link, with which the direction turns: that of a mecanum wheel turns with the
-  /// chassis.
+  /// Index into Model::links of another link, with which the direction turns. For example, the direction of a mecanum
+  /// wheel turns with the chassis.
   std::optional<std::size_t> friction_link{};
   double second_friction = 1.0;                                ///< Coulomb coefficient across that direction [1]
   double stiffness = std::numeric_limits<double>::infinity();  ///< for each point of contact [N/m]
@@ -78,7 +78,8 @@ struct Inertial {
   double mass = 1.0;                                      ///< [kg], > 0
   Pose X_LI;                                              ///< I: at the centre of mass, with the axes of `inertia`
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre of mass, in I [kg m^2]
-  /// The inertia of the fluid around the link, about the origin of L, in L [kg m^2], [kg m], [kg]; symmetric.
+  /// The added mass: inertia of the fluid around the link, about the origin of L, in L [kg m^2], [kg m], [kg];
+  /// symmetric.
   std::shared_ptr<const SpatialMatrix> added_mass{};  ///< null if there is none
 };
 

@@ -11,7 +11,7 @@
 namespace cohort::description {
 
 /// The models of a world. The address of a model does not change when models are added. Copies of a list share the
-/// models that neither has edited, so many worlds of one experiment need the memory of one.
+/// models that neither has edited, so that many worlds of one experiment need no more memory for models than one.
 class Models {
  public:
   class Iterator {

@@ -66,7 +66,7 @@ struct Population {
   HeadingKind heading = HeadingKind::random;  ///< for each instance, or for a whole formation
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
   double yaw = 0.0;           ///< added to the heading [rad]
-  double gap = 0.0;           ///< [m]
+  double gap = 0.0;           ///< minimum distance to obstacles and other instances [m]
   double level = 0.0;         ///< static objects up to this height are ground [m]
   Problem place{};            ///< position in the file, without a message
   Problem placement_place{};  ///< position of the placement in the file, without a message

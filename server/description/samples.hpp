@@ -8,8 +8,8 @@
 namespace cohort::description {
 
 /// Readings of a real sensor, sampled for one object at a grid of positions around the robot. They are indexed by the
-/// distance between robot and object, the angle between the front of the robot and the object, and the single sensor
-/// (thesis, section 2.3.2).
+/// distance between robot and object, the angle between the front of the robot and the object, and the individual
+/// sensor (thesis, section 2.3.2).
 struct Samples {
   std::vector<double> distances;   ///< [m], >= 0, ascending
   std::vector<double> angles;      ///< [rad], ascending, over less than a full turn

@@ -4,7 +4,7 @@
 
 namespace cohort::description {
 
-/// Returns a text of a length that people read. A file may contain values of any length.
+/// Returns the text, shortened if it is too long for people to read. A file may contain values of any length.
 std::string shortened(std::string text);
 
 }  // namespace cohort::description

@@ -29,7 +29,7 @@ inline Inertial solid_sphere(double mass, double radius) {
   return inertial;
 }
 
-/// Returns a static model of one link with these collisions; without any, for a model with only emitters.
+/// Returns a static model of one link with these collisions, of which there may be none for a model with only emitters.
 inline Model static_model(std::string name, std::vector<Collision> collisions = {}) {
   Model model;
   model.name = std::move(name);

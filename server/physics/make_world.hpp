@@ -7,10 +7,10 @@
 
 namespace cohort::physics {
 
-/// The world that the fidelity of `description` asks for. Keeps a reference to both. Throws std::invalid_argument for a
-/// model that cannot be simulated. `like`: a world of the same description or a copy of it, with which this one shares
-/// what follows from the models alone; null: none. `X_WM`: of each instance, in place of the description's; empty:
-/// those.
+/// Creates a world with the fidelity of `description`. Keeps references to `description` and `workers`. Throws
+/// std::invalid_argument for a model that cannot be simulated. `like`: a world of the same description, or of a copy of
+/// it, with which the new world shares data that depends only on the models; null: none. `X_WM`: poses of the
+/// instances, in place of those of the description; empty: no replacement.
 std::unique_ptr<World> make_world(const description::World& description, WorkerPool& workers,
                                   const World* like = nullptr, std::span<const Pose> X_WM = {});
 

@@ -24,8 +24,8 @@ class Cells {
   }
   double size() const { return edge_; }  ///< [m]
 
-  /// Returns the index of the column or row that contains a coordinate; of the outermost one for a coordinate beyond it
-  /// or NaN.
+  /// Returns the index of the column or row that contains a coordinate. For a coordinate beyond the outermost column or
+  /// row, or for NaN, returns an outermost index.
   std::int64_t index_of(double coordinate) const { return integer_floor(grid_coordinate(coordinate * inverse_)); }
 
   /// Returns an upper bound on the number of cells that a rectangle touches; NaN if a bound of it is NaN.
@@ -63,7 +63,7 @@ class Cells {
   bool are_more_than(std::size_t items, const Bounds& rectangle) const {
     return !(most_in(rectangle) <= most_cells_of(items));
   }
-  /// Returns the same for the cells along a ray that ends at `end`.
+  /// Returns the same for visiting all cells along a ray that ends at `end`.
   bool along_are_more_than(std::size_t items, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                            double end) const {
     const double across = std::abs(direction.x()) + std::abs(direction.y());

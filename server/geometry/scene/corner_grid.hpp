@@ -10,9 +10,9 @@
 
 namespace cohort::geometry {
 
-/// A uniform grid over the xy plane, hashed and therefore unbounded, for items that are no wider than a cell. Each
-/// item, with its bounds, is only in the cell of the lower corner of its bounds; a query reads a few short ranges of
-/// memory. Built at once; threads may then query it concurrently.
+/// A uniform grid over the xy plane, hashed and therefore unbounded, for items that are no wider than a cell. Each item
+/// is stored with its bounds, only in the cell of their lower corner; a query reads a few short ranges of memory. Built
+/// at once; threads may then query it concurrently.
 class CornerGrid {
  public:
   void set_cell_size(double edge) { cells_.set_size(edge); }

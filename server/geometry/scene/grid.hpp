@@ -76,7 +76,7 @@ class Grid {
   }
 
  private:
-  static constexpr double most_cells_an_item = 256.0;  // more than Scene gives it
+  static constexpr double most_cells_an_item = 256.0;  // Scene never adds an item with so many cells
 
   std::span<const std::uint32_t> bucket(std::int64_t column, std::int64_t row) const {
     const std::size_t index = cells_.bucket_of(column, row);

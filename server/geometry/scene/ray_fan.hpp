@@ -6,8 +6,8 @@
 
 namespace cohort::geometry {
 
-/// Several rays from about one place, such as those of a ring of sensors. Their candidates are searched once, and each
-/// ray tests the nearest first. Valid as long as nothing moves.
+/// Several rays that start near one point, such as those of a ring of sensors. The solids that they may hit are
+/// searched once, and each ray tests the nearest first. Valid as long as nothing moves.
 class RayFan {
  public:
   /// Prepares for rays that stay inside `region` and start near `centre_W`: the nearer, the faster. Solids of

@@ -41,10 +41,10 @@ class Scene {
   void reserve(std::size_t solids);
   /// Chooses the cell size and sorts the static solids. Call it after the last `add`, and again after later ones.
   void build();
-  /// Excludes a solid from all further queries until `put_back`. Its index stays its own until `renew`.
+  /// Excludes a solid from all further queries until `put_back`. Its index is not reused until `renew`.
   void remove(std::uint32_t index);
   void put_back(std::uint32_t index);
-  /// Puts a removed solid back as one of another body of the same model; `build` must follow before the next query.
+  /// Puts a removed solid back as a solid of another body of the same model; `build` must follow before the next query.
   void renew(std::uint32_t index, BodyId body, const Pose& X_WC);
   bool is_removed(std::uint32_t index) const { return is_removed_[index] != 0; }
 
@@ -86,7 +86,7 @@ class Scene {
   Ball ball(std::uint32_t index) const { return {solids_[index].X_WC.position, solids_[index].radius}; }
 
   /// Sets `best` to the hit of this solid if it is nearer along the ray, or equally near with a lower index. Returns
-  /// the greatest distance of a nearer hit.
+  /// the distance beyond which no other hit is nearer [m].
   double improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
                  const Eigen::Vector3d& direction_W, double range) const;
 
@@ -125,8 +125,8 @@ class Scene {
   Grid static_grid_;
   // Moving solids:
   std::vector<std::uint32_t> moving_;        // no wider than a cell, in any orientation
-  std::vector<std::uint32_t> wide_;          // the others, but for
-  std::vector<std::uint32_t> large_moving_;  // those that would fill many cells
+  std::vector<std::uint32_t> wide_;          // wider, but in few cells
+  std::vector<std::uint32_t> large_moving_;  // would fill many cells
   CornerGrid moving_grid_;
   Grid wide_grid_;
 };

@@ -31,9 +31,9 @@ SolidKindPtr make_solid_kind(SolidKind kind);
 /// One collision shape, placed in the world.
 struct Solid {
   SolidKindPtr kind;
-  BodyId body;  ///< its body; solids of one body do not see each other
+  BodyId body;  ///< its body; ray queries can ignore all solids of a body
   bool moves = false;
-  double radius = 0.0;  ///< copy of the kind's, near the data that is read with it
+  double radius = 0.0;  ///< copy of that of the kind, for locality
   Pose X_WC;
 
   const Shape& shape() const { return kind->shape; }

@@ -28,7 +28,7 @@ struct Bounds {
     lower = lower.cwiseMin(other.lower);
     upper = upper.cwiseMax(other.upper);
   }
-  /// Returns an upper bound on the distance of any point within along a ray of unit direction [m].
+  /// Returns an upper bound on the distance, along a ray of unit direction, at which the ray can be inside the box [m].
   double last_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
   Bounds grown_by(double margin) const { return {lower.array() - margin, upper.array() + margin}; }
 };

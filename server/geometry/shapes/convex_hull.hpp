@@ -6,7 +6,7 @@
 
 namespace cohort::geometry {
 
-/// Returns the convex hull of points as a mesh: those of them that are its corners, in their order, and its faces as
+/// Returns the convex hull of points as a mesh: the points that are its corners, in their given order, and its faces as
 /// triangles. The corners may include points on a face, and may omit one that protrudes by less than 1e-11 of the
 /// extent. Equal points give equal bits.
 ///

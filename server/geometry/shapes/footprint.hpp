@@ -11,10 +11,10 @@ namespace cohort::geometry {
 struct Footprint {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Eigen::Vector2d axis = Eigen::Vector2d::UnitX();  ///< unit vector along the rectangle's first edge
-  Eigen::Vector2d half = Eigen::Vector2d::Zero();   ///< half the edges of the rectangle
-  double radius = 0.0;                              ///< distance by which it extends around the rectangle
-  double lowest = 0.0;                              ///< least z of the shape
-  double highest = 0.0;
+  Eigen::Vector2d half = Eigen::Vector2d::Zero();   ///< half the edges of the rectangle [m]
+  double radius = 0.0;                              ///< distance by which the outline extends beyond the rectangle [m]
+  double lowest = 0.0;                              ///< least z of the shape [m]
+  double highest = 0.0;                             ///< greatest z of the shape [m]
 
   /// Returns the distance from a point to the edge; 0 inside.
   double distance(const Eigen::Vector2d& point) const;

@@ -28,8 +28,7 @@ class MeshSurface {
     Eigen::Vector3d normal;  // unit, outward
     double offset;           // position of the plane along the normal
   };
-  /// A box around triangles. For an inner node, those of its two children, of which the first is the next node; for a
-  /// leaf, its own.
+  /// A node of the tree, with a box around its triangles. The first child of an inner node is the next node.
   struct Node {
     Bounds box;
     std::uint32_t first = 0;  // leaf: first entry in `order_`; inner node: second child
@@ -43,7 +42,8 @@ class MeshSurface {
   RayEntry enter_convex(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
   bool is_inside(const Ray& ray) const;
   Crossing cross(const Ray& ray, std::uint32_t triangle) const;
-  /// Calls `visit(triangle)` for all that a ray may hit; `visit` returns the distance at which the search may end.
+  /// Calls `visit(triangle)` for all triangles that a ray may hit; `visit` returns the distance at which the search may
+  /// end.
   template <class Visit>
   void for_each_along(const Ray& ray, double range, Visit&& visit) const;
   Eigen::Vector3d normal_of(std::uint32_t triangle) const;

@@ -21,8 +21,8 @@ Bounds bounds_of_disc(const Pose& X_WS, double radius);
 /// maps.
 double radius_of(const Shape& shape);
 
-/// Returns half the thickness of the shape [m]: a point that moves no further from outside is not beyond its middle.
-/// For a mesh, it is that of its bounds; infinite for planes and height maps.
+/// Returns half the thickness of the shape [m]: a point outside that moves by at most this distance does not pass its
+/// middle. For a mesh, it is that of its bounds; infinite for planes and height maps.
 double half_thickness_of(const Shape& shape);
 
 /// Returns where a ray enters; the ray and the result are in the shape's own frame. An entry beyond `range` may be

@@ -26,9 +26,9 @@ struct Outline {
 };
 
 /// Returns the outline of a solid with its world bounds. It is a circle if the solid is round about an axis that is
-/// upright or tilted by less than 14 degrees, otherwise a rectangle. That of a mesh is along the world's axes. Planes
-/// and other horizontally unbounded solids have none. The outer bounds may be too small by rounding, about 1e-9 of
-/// their size.
+/// upright or tilted by less than 14 degrees, otherwise a rectangle. The rectangle of a mesh is aligned with the
+/// world's axes. Planes and other horizontally unbounded solids have none. The outer bounds may be too small by
+/// rounding, about 1e-9 of their size.
 std::optional<Outline> outline_of(const Solid& solid, const Bounds& bounds);
 
 /// The outlines of all solids of a scene at one tick, made once for all sensors. Const, and callable from any thread.

@@ -18,13 +18,13 @@ namespace cohort::geometry {
 /// exactly, as in Scene::cast_ray, so that the results are the same.
 class SightLines {
  public:
-  /// Builds it, replacing its earlier content. `p_WS`: the source [m]. Nothing is seen beyond `range` [m], which may be
-  /// infinite. The source is a part of `source_body`, which never blocks a line. `outlines` and its scene must outlive
-  /// all queries. Threads may build different objects.
+  /// Builds the sight lines of a source, replacing the earlier content. `p_WS`: the source [m]. Nothing is seen beyond
+  /// `range` [m], which may be infinite. The source is a part of `source_body`, which never blocks a line. `outlines`
+  /// and its scene must outlive all queries. Threads may build different objects.
   void build(const Outlines& outlines, const Eigen::Vector3d& p_WS, double range, BodyId source_body = Scene::no_body) {
     build(outlines, p_WS, range, source_body, {});
   }
-  /// Builds it for receivers that are all within these heights: solids above or below every line are left out.
+  /// The range of heights of all receivers. Solids that are above or below every line to it are left out.
   struct Heights {
     double lowest = -std::numeric_limits<double>::infinity();  ///< z_W [m]
     double highest = std::numeric_limits<double>::infinity();
@@ -35,7 +35,7 @@ class SightLines {
   /// Returns whether no solid is on the segment from the source to p_WR, both ends included, and the segment is not
   /// longer than the range. `receiver_body` never blocks the line either. Returns true if both ends are the same point.
   ///
-  /// The result is the same, bit for bit, as no hit of Scene::cast_ray from p_WS along (p_WR - p_WS) / d with range d =
+  /// The result is exactly whether there is no hit of Scene::cast_ray from p_WS along (p_WR - p_WS) / d with range d =
   /// |p_WR - p_WS| among the solids of other bodies. Const, callable from any thread; p_WR must be finite.
   bool is_free(const Eigen::Vector3d& p_WR, BodyId receiver_body = Scene::no_body) const;
 
@@ -103,7 +103,7 @@ class SightLines {
     BodyId body;
   };
   std::vector<Unbounded> unbounded_;   // solids without an outline
-  std::vector<Candidate> around_;      // those that the source is in, below or above
+  std::vector<Candidate> around_;      // those around, above or below the source
   std::vector<Candidate> candidates_;  // the others
   std::vector<Rectangle> rectangles_;
   std::vector<std::uint32_t> begin_;  // start of each bin in entries_, and one past the last

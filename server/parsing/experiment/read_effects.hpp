@@ -10,8 +10,8 @@
 
 namespace cohort::parsing {
 
-/// Reads the effects of an event of this kind on each of some objects, in their order. Reports and omits impossible
-/// effects.
+/// Reads the effects of an event of the kind `kind` on each of `objects`. Returns pairs of an object and its effect, in
+/// the order of the objects. Reports and omits impossible effects.
 std::vector<std::pair<std::size_t, Effect>> read_effects(std::string_view kind, const ScheduleEntry& entry,
                                                          const World& world, const std::vector<std::size_t>& objects);
 

@@ -21,16 +21,16 @@ Experiment read_experiment(const std::filesystem::path& file, std::optional<std:
                            const std::vector<std::filesystem::path>& last_model_folders = {},
                            Xacro xacro = Xacro::refused);
 
-/// Reads a model by itself as the function above does, with a position motor on each joint (`text_with_joint_motors`).
-/// Any other file is read as above. `xacro` as above.
+/// Reads a file with only a model like `read_experiment`, but with a position motor on each joint
+/// (`text_with_joint_motors`). Reads any other file like `read_experiment`.
 Experiment read_experiment_with_joint_motors(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {},
                                              std::optional<std::chrono::nanoseconds> duration = {},
                                              const std::vector<std::filesystem::path>& last_model_folders = {},
                                              Xacro xacro = Xacro::refused);
 
 /// Reads an experiment from the first of `texts`, and the files to which it refers from the others. The paths of the
-/// texts need not exist; they appear in messages, and relative paths start at their folders. Otherwise like the
-/// function above.
+/// texts need not exist; they appear in messages, and relative paths start at their folders. Otherwise like
+/// `read_experiment`.
 Experiment read_experiment_texts(const std::vector<KeptFile>& texts, std::optional<std::uint64_t> seed = {},
                                  std::optional<std::chrono::nanoseconds> duration = {},
                                  const std::vector<std::filesystem::path>& last_model_folders = {});

@@ -11,7 +11,7 @@
 
 namespace cohort::parsing {
 
-/// Returns the time; nothing if it is less than 0 s or does not fit into nanoseconds.
+/// Converts seconds to a time; returns nothing if it is less than 0 s or does not fit into nanoseconds.
 std::optional<std::chrono::nanoseconds> schedule_time(double seconds);
 
 /// Selects whether an absent key has its fallback as its value.

@@ -22,7 +22,7 @@ std::optional<std::string> why_unreadable(const std::filesystem::path& file);
 /// the same meaning as in the file system.
 std::filesystem::path without_links(const std::filesystem::path& file);
 
-/// The only access to the files of a world: from the disk, where it keeps everything that it reads, or from kept files,
+/// The only access to the files of a world: either from the disk, keeping everything that is read, or from kept files,
 /// without access to the disk. Each file is read once, so all readers see the same content. Paths that differ only in
 /// "." and ".." are one file. From the disk, only files in trusted folders are read: those of `model_path()` and those
 /// that `trust` adds. For use by one thread.
@@ -36,7 +36,7 @@ class InputFiles {
   InputFiles& operator=(const InputFiles&) = delete;
 
   /// Trusts a file that the user has named: the file itself, the folders around it (TrustedFolders::add_around), and
-  /// the folders of Cohort beside its model folders.
+  /// the parent folders of `last_model_folders`.
   void trust(const std::filesystem::path& file, const std::vector<std::filesystem::path>& last_model_folders = {});
 
   /// Uses `bytes` as the content of `file` from now on.
@@ -45,7 +45,7 @@ class InputFiles {
   void add_expanded(const std::filesystem::path& file, std::string bytes);
   bool is_expanded(const std::filesystem::path& file) const { return expanded_.contains(key_of(file)); }
 
-  /// Like the function above.
+  /// Returns why the file cannot be read, such as "there is no such file"; nothing if it can.
   std::optional<std::string> why_unreadable(const std::filesystem::path& file) const;
   /// Returns the content, whose address does not change during the lifetime of this. Throws std::runtime_error with the
   /// reason if it cannot be read.
@@ -56,8 +56,9 @@ class InputFiles {
   std::uintmax_t size(const std::filesystem::path& file) const;
   bool is_file(const std::filesystem::path& file) const;
   bool is_folder(const std::filesystem::path& folder);
-  /// Returns the files of this name in a folder and the folders in it, sorted, but none below a folder that has one.
-  /// Returns nothing for a folder with more than 100,000 files and folders. Links are not followed.
+  /// Returns the files with this name in a folder and its subfolders, sorted. Folders below a folder that has such a
+  /// file are not searched. Returns nothing for a folder with more than 100,000 files and folders. Links are not
+  /// followed.
   std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder, const std::string& name) const;
 
   /// Returns whether files are read from the disk.

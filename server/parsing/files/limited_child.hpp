@@ -62,21 +62,21 @@ struct ChildLimits {
 class LimitedChild {
  public:
   using Work = std::function<void(ChildStream&)>;
-  /// `many`: the child does the work each time that `begin` is called, in a copy of itself with these limits, which a
-  /// time before does not affect. A copy of this process, which may be large, is made only once. If one ends
-  /// otherwise than by finishing the work, the child ends in the same way.
+  /// `many`: at each call of `begin`, the child does the work in a new copy of itself, to which the limits apply again.
+  /// This process, which may be large, is copied only once. If a copy ends without finishing the work, the child ends
+  /// in the same way.
   enum class Times { once, many };
 
   /// Throws std::system_error if no process can be created.
   LimitedChild(const ChildLimits& limits, const Work& work, Times times = Times::once);
   LimitedChild(const LimitedChild&) = delete;
   LimitedChild& operator=(const LimitedChild&) = delete;
-  /// Kills it if it has not ended.
+  /// Kills the child if it has not ended.
   ~LimitedChild();
 
   ChildStream& stream() { return stream_; }
 
-  /// Begins the work once more, if its times are many. Throws ChildStream::Lost.
+  /// Begins the work again, for Times::many. Throws ChildStream::Lost.
   void begin() { stream_.send('b'); }
 
   /// Ends the child, and returns why it had ended, such as "needed more than 1 GiB of memory". Call it at most once,

@@ -21,8 +21,8 @@ inline constexpr double missing_mesh_size = 0.1;
 /// The environment variable for files from the disk: `box`, `skip`, or another value for an error.
 inline constexpr const char* missing_meshes_variable = "COHORT_MISSING_MESHES";
 
-/// Returns what takes the place of the missing mesh that `uri` names in a file in `folder`. Keeps the answer among the
-/// kept files, so that reading them again gives the same answer without the variable.
+/// Returns the replacement of the missing mesh that `uri` names in a file in `folder`. Keeps the answer among the kept
+/// files, so that reading them again gives the same answer without the variable.
 MissingMesh replacement_of_mesh(InputFiles& input, const std::filesystem::path& folder, const std::string& uri);
 
 }  // namespace cohort::parsing

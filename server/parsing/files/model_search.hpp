@@ -22,10 +22,10 @@ struct FoundModel {
 /// - `robots` and `objects` in the folder of the world file and in up to four parents;
 /// - the `last_folders`;
 /// - the folders of Gazebo and ROS;
-/// - those that the user allows, and those above the file that names it.
+/// - the folders that the user allows, and the folders above the file that contains the URI.
 ///
-/// One of these may be NAME itself. Any other URI is a name, or a path to the folder of a model or to an SDF file. An
-/// address of Gazebo Fuel is what Gazebo has downloaded from there.
+/// A searched folder may itself be the folder NAME. Any other URI is a name, or a path to the folder of a model or to
+/// an SDF file. An address of Gazebo Fuel refers to the copy that Gazebo has downloaded.
 class ModelSearch {
  public:
   /// `input` must outlive this.

@@ -7,7 +7,7 @@
 
 namespace cohort::parsing {
 
-/// Returns "1.9" as {1, 9}; {0, 0} for anything else.
+/// Returns a version of SDF such as "1.9" as {1, 9}; {0, 0} for any other text.
 std::pair<int, int> version_of(std::string_view text);
 
 /// The version to which files of other versions are converted.

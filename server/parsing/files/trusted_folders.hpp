@@ -6,9 +6,9 @@
 
 namespace cohort::parsing {
 
-/// Folders below which worlds and models may read files. An untrusted world could name any file of its reader, and
-/// recordings keep the files that were read. So a world may read only its own folders, and those that the user has
-/// named.
+/// Folders below which worlds and models may read files. An untrusted world could refer to any file of the user who
+/// reads it, and recordings keep the files that were read. Therefore a world may read only its own folders, and those
+/// that the user has named.
 class TrustedFolders {
  public:
   /// Adds a folder with everything below it; ignores one that does not exist.
@@ -17,7 +17,7 @@ class TrustedFolders {
   /// - its folder;
   /// - the package, model or repository that contains it: the nearest folder with `package.xml`, `model.config` or
   /// `.git`, below the home folder if there is one;
-  /// - folders such as `robots` and `meshes` (docs/model-files.md) beside it or beside one of the four above.
+  /// - folders such as `robots` and `meshes` (docs/model-files.md) in its folder or in one of the four folders above.
   void add_around(const std::filesystem::path& file);
 
   /// Returns whether the file is below one of them, with symbolic links resolved.

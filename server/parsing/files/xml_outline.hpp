@@ -14,7 +14,7 @@ namespace cohort::parsing {
 /// A file that contains elements.
 struct SourceFile {
   std::filesystem::path path;   ///< absolute
-  std::filesystem::path shown;  ///< as the user calls it
+  std::filesystem::path shown;  ///< path for messages, as the user writes it
   bool is_foreign = false;      ///< from another source: without the prefix of Cohort, or in URDF
 };
 
@@ -26,8 +26,8 @@ struct XmlNode {
   std::vector<std::pair<std::string, std::string>> attributes;
   std::string text;  ///< all text directly inside, without white space at the ends
   std::vector<XmlNode> children;
-  /// The path in the file, of an element that has another name there or has been moved. For a part of a link from a
-  /// URDF it starts below the model; otherwise it starts with the world.
+  /// The path of the element in its source file, if the element was renamed or moved; otherwise empty. For a part of a
+  /// link from a URDF, the path starts below the model; otherwise it starts with the world.
   std::string written = {};
 
   /// Returns the child of this name; nullptr if there is none.

@@ -11,7 +11,7 @@ namespace cohort::parsing {
 
 struct Explanation {
   std::string_view name;
-  std::string_view parent;  ///< as of the Extension; empty for a topic of `cohort help`
+  std::string_view parent;  ///< as in Extension; empty for a topic of `cohort help`
   std::string_view text;
 };
 

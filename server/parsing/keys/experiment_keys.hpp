@@ -9,8 +9,8 @@
 /// manuals and help are made from it.
 namespace cohort::parsing {
 
-/// Returns the maps of which an experiment consists. The whole is `experiment`, whose parent is empty; any other is in
-/// its parent, directly or in a list.
+/// Returns the maps of which an experiment consists. The top-level map is `experiment`, whose parent is empty. Every
+/// other map is in its parent, directly or in a list.
 std::span<const Extension> experiment_parts();
 
 /// Returns the part of this name, which must exist.

@@ -48,7 +48,7 @@ struct Extension {
   bool has_name = false;    ///< carries the attribute `name`
   std::string_view doc;
   std::span<const ExtensionKey> keys;
-  std::string_view topic;                        ///< under which help has it
+  std::string_view topic;                        ///< topic of `cohort help` that lists it
   ExtensionValue value = ExtensionValue::group;  ///< `group` if it has keys; otherwise the kind of its value
 };
 

@@ -25,7 +25,7 @@
 /// value: the file itself (MemberKey), an object that the file names (ReferenceKey), or the readout (NoiseKey). The
 /// type of the member defines how it is read and written. Only checks across keys need code.
 ///
-/// A table may hold keys of several structs, each of which is read and written with its own keys. Every sensor also has
+/// A table may hold keys of several structs; each struct is read and written with its own keys. Every sensor also has
 /// the keys of its Readout and of the Noise in it; a Sound has some of its Emitter.
 namespace cohort::parsing::keys {
 

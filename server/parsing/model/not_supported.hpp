@@ -4,8 +4,8 @@
 
 namespace cohort::parsing {
 
-/// Warns of sensors and plugins below `element` that are not simulated here, and of elements of surfaces that have no
-/// effect beside or without another one. Models are skipped, since each is checked separately.
+/// Warns of sensors and plugins below `element` that are not simulated here, and of surface elements that have no
+/// effect because another element is present or missing. Models are skipped, since each is checked separately.
 void warn_of_unsupported(const Element* element, const SdfReport& report);
 
 }  // namespace cohort::parsing

@@ -23,9 +23,9 @@ struct ModelReading {
   std::vector<std::string>& materials;  ///< materials of the world; new names are added
 };
 
-/// Reads and checks the model to which the frames belong; reports problems, and then the model must not be used. If
-/// joints do not connect all links, each group is a separate body: the models after the first, which are named after
-/// their root links.
+/// Reads and checks the model to which the frames belong. If problems are reported, the result must not be used. If
+/// joints do not connect all links, each connected group of links becomes a separate model. Models after the first are
+/// named after their root links.
 std::vector<Model> read_model(const Frames& frames, const ModelReading& reading);
 
 /// Reads a shape; returns nothing, with a report, if it is invalid.
@@ -46,11 +46,11 @@ void set_friction_frames(const Frames& frames, const ModelReading& reading, Mode
 /// Reads a link with its inertial, visuals and collisions.
 Link read_link(const Element& element, const Frames& frames, const ModelReading& reading);
 
-/// Reads the lights of a link and its `cohort:` emitters, for link 0.
+/// Reads the lights of a link and its `cohort:` emitters; the caller sets their link index.
 std::vector<Emitter> read_emitters(const Element& element, const Frames& frames, const ModelReading& reading);
 Emitter read_light(const Element& element, const Frames& frames, const ModelReading& reading);
 
-/// Reads the `cohort:` elements of a link that are GripRings, Fins or Drags, for link 0.
+/// Reads the `cohort:` elements of a link that are GripRings, Fins or Drags; the caller sets their link index.
 template <class Part>
 std::vector<Part> read_link_parts(const Element& element, const ModelReading& reading);
 

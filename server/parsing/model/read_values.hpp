@@ -11,7 +11,7 @@
 /// Functions that assign the values of an element to members.
 namespace cohort::parsing {
 
-/// Rounds to the nearest nanosecond, and clips at 285 years.
+/// Converts seconds to a time, rounded to the nearest nanosecond and clipped at 285 years.
 std::chrono::nanoseconds to_time(double seconds);
 
 /// Reports a colour that is not red, green and blue from 0 to 1.

@@ -39,12 +39,13 @@ class ShapeFiles {
                                            const MeshPart& which = {});
 
   bool is_missing(const Element* uri) const;  ///< returns whether a mesh has no file
-  /// Returns what takes the place of the mesh that `uri` names, which could not be read; always an error if it exists.
+  /// Returns the replacement of the mesh that `uri` names, which could not be read; MissingMesh::refused if its file
+  /// exists.
   MissingMesh replacement_of(const Element* uri);
   /// Returns the number of meshes with a replacement.
   std::size_t replaced_meshes() const { return replaced_.size(); }
 
-  /// Returns warnings for textures of a mesh from the function above, if it is not a convex hull.
+  /// Returns warnings for the textures of a mesh that `mesh` has returned and that is not a convex hull.
   const std::vector<std::string>& warnings_of(const TriangleMesh& mesh) const;
 
   /// Returns the height map of the image that `uri` names. Throws std::runtime_error with the problem.

@@ -12,7 +12,8 @@
 /// Gazebo plugins that have an equivalent in Cohort, so that models made for Gazebo work unchanged.
 namespace cohort::parsing {
 
-/// An entry of the list of plugins. A plugin without a function needs none, since Cohort always does what it does.
+/// An entry of the list of plugins. A plugin without a function needs no conversion, since Cohort always has its
+/// effect.
 struct PluginKind {
   std::string_view name;  ///< name of its class in Gazebo
   void (*in_model)(ModelPlugin&) = nullptr;
@@ -30,8 +31,8 @@ void warn_of_unknown_plugin(const Element* plugin, const SdfReport& report);
 /// Warns of plugins of a static model that would make it a conveyor.
 void warn_of_static_belts(const Element* model_element, const SdfReport& report);
 
-/// Converts the plugins of a model or a nested model whose links and joints have been read. Objects that `cohort:`
-/// devices of `model_element` drive are not driven by plugins too. Plugins in `elsewhere` belong to another body.
+/// Converts the plugins of a model or a nested model whose links and joints have been read. Plugins do not drive
+/// objects that `cohort:` devices of `model_element` already drive. Plugins in `elsewhere` belong to another body.
 /// `names`: names that the plugins of the whole model have used.
 std::vector<Counterpart> read_model_plugins(const Element* model_element, const std::string& prefix,
                                             const std::set<const Element*>& elsewhere, const Model& model,

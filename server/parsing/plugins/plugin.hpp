@@ -13,7 +13,7 @@
 
 namespace cohort::parsing {
 
-/// Names of a parameter in the generations of a simulator.
+/// The names of one parameter in different versions of a simulator.
 using ParameterNames = std::initializer_list<const char*>;
 
 /// A <plugin> of Gazebo. It records which of its parameters were read.
@@ -59,7 +59,7 @@ std::string text_of_parameter(const Element* parameter);
 struct Counterpart {
   const Extension* extension = nullptr;
   ExtensionValues values;
-  std::string link;  ///< in which the element stands, if not in the model
+  std::string link;  ///< link that contains the element; empty if the model contains it
 };
 
 /// A plugin of a model whose links and joints have been read, during its conversion.
@@ -80,8 +80,8 @@ class ModelPlugin : public Plugin {
     Values& set(std::string_view key, const std::string& text, const Element* where = nullptr);
     Values& set(std::string_view key, double value, const Element* where = nullptr);
     Values& set(std::string_view key, const Pose& X);
-    /// Adds a device of this name, or a similar one if another device of a plugin has it, in `link`, or else in the
-    /// model.
+    /// Adds a device of this name, or of a similar name if another device from a plugin has this one. It is in `link`,
+    /// or in the model if `link` is empty.
     void finish(std::string name, const std::string& link = "");
 
    private:

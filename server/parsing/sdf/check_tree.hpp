@@ -12,7 +12,7 @@ namespace cohort::parsing {
 inline constexpr std::size_t most_problems = 100;
 
 /// Checks a tree of SDF against the rules: unknown and missing elements and attributes, and values. An element whose
-/// value is reported gets the standard value, so that it is not reported again. Reports at most `most_problems`.
+/// value is reported gets its default value, so that it is not reported again. Reports at most `most_problems`.
 std::vector<Problem> check_tree(XmlNode& sdf);
 
 }  // namespace cohort::parsing

@@ -12,9 +12,9 @@
 
 namespace cohort::parsing {
 
-/// An element of SDF: a node of the tree of a file, with its rule and its parent. Where a value is not written or
-/// cannot be read, the standard value of SDF counts. It lives as long as its ElementTree; pointers to elements stay
-/// valid until then.
+/// An element of SDF: a node of the tree of a file, with its rule and its parent. If a value is not written or cannot
+/// be read, the default value of SDF applies. An element lives as long as its ElementTree; pointers to it stay valid
+/// until then.
 class Element {
  public:
   /// `rule` is null for an element that SDF does not know.
@@ -35,12 +35,12 @@ class Element {
   const Element* next_alike() const;
 
   bool has_attribute(std::string_view name) const { return node_.attribute(name) != nullptr; }
-  /// Returns the text of an attribute, or its standard value.
+  /// Returns the text of an attribute, or its default value.
   std::string attribute(std::string_view name) const;
 
   /// Returns whether a value is written.
   bool is_set() const { return !node_.text.empty(); }
-  /// Returns the value as it is written, with single spaces between its words, or the standard value.
+  /// Returns the value as it is written, with single spaces between its words, or the default value.
   std::string text() const;
   double real() const;
   bool flag() const;
@@ -49,7 +49,7 @@ class Element {
   /// Returns red, green, blue and opacity, from 0 to 1, in single precision as in SDF.
   Eigen::Vector4d color() const;
 
-  /// These return the value of the child of this name, also if it is not written.
+  /// These functions return the value of the child of this name, or its default value if it is not written.
   std::string text(std::string_view name) const;
   double real(std::string_view name) const;
   bool flag(std::string_view name) const;
@@ -82,7 +82,7 @@ class ElementTree {
 /// Returns the descendant at this path; nullptr if there is none.
 const Element* find(const Element* element, std::initializer_list<const char*> path);
 
-/// Returns whether there is an element, and it has a value.
+/// Returns whether the element exists and its value is written.
 inline bool is_written(const Element* element) { return element != nullptr && element->is_set(); }
 
 /// Returns the children of this name.

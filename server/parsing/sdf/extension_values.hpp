@@ -20,16 +20,16 @@ struct ForeignValue {
   const Element* where;  ///< position of the value
 };
 
-/// A `cohort:` element with all that its table entry requires. An absent key without a fallback has no value; an
-/// extension without keys has its value under its own name.
+/// The values of a `cohort:` element, complete according to its table entry. An absent key without a fallback has no
+/// value; an extension without keys has its value under its own name.
 class ExtensionValues : public KeyValues {
  public:
   /// Reads an element; returns nothing, with a report, if it is invalid.
   static std::optional<ExtensionValues> read(const Element* element, const Extension& extension,
                                              const SdfReport& report);
 
-  /// Makes the same from an element of another simulator with known `values`. Returns nothing if a required key has no
-  /// value; the caller must have reported it.
+  /// Creates the values from an element of another simulator, whose `values` are known. Returns nothing if a required
+  /// key has no value; the caller must have reported it.
   static std::optional<ExtensionValues> from_foreign(const Element* element, const std::string& name,
                                                      const Extension& extension,
                                                      const std::vector<ForeignValue>& values, const SdfReport& report);

@@ -19,18 +19,18 @@ namespace cohort::parsing {
 /// given in the frame of the world or the model. The elements must outlive this. For use by one thread.
 class Frames {
  public:
-  /// An element with a mistake, and the mistake.
+  /// An invalid element, and a description of the problem.
   using Flaw = std::pair<const Element*, std::string>;
 
   explicit Frames(const Element& owner, const Frames* outer = nullptr);
 
   const Element& owner() const { return owner_; }
 
-  /// Returns what is wrong with the names and references here and in nested models; poses and links can be resolved
-  /// only if it is nothing.
+  /// Returns the problems of names and references here and in nested models. Poses and links can be resolved only if
+  /// there are none.
   std::vector<Flaw> flaws() const;
 
-  /// Returns the frames of the nested model; nullptr if it is none of these.
+  /// Returns the frames of a nested model; nullptr if `model` is not nested in this one.
   const Frames* of(const Element& model) const;
 
   /// Returns the pose of an element that has a frame here, or that is in a link, such as a collision. It is in the
@@ -46,7 +46,7 @@ class Frames {
                                            const std::string& in) const;
 
  private:
-  /// A frame, and the frames to which it belongs. Without an element, it is that of their owner.
+  /// A frame, and the Frames to which it belongs. Without an element, it is the frame of their owner.
   struct Place {
     const Frames* scope;
     const Element* element;

@@ -27,8 +27,9 @@ XmlNode as_included(const XmlNode& model, const XmlNode& include);
 /// Returns the frames of a model, without anything that has mass or shape.
 XmlNode frames_of(const XmlNode& model);
 
-/// Returns the elements that <include merge="true"> adds to a model: all named parts of the other, whose frame becomes
-/// a <frame>. The names are those of libsdformat, which other files may use. `frames` are those of `model`.
+/// Returns the elements that <include merge="true"> adds to a model: all named parts of the included model `model`,
+/// whose own frame becomes a <frame>. Names are as in libsdformat, since other files may refer to them. `frames` are
+/// those of `model`.
 std::vector<XmlNode> merged(const XmlNode& model, const Frames& frames, const XmlNode& include);
 
 }  // namespace cohort::parsing

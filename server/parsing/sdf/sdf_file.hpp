@@ -23,7 +23,7 @@ struct Include {
   std::string name;
   const SdfFile* file = nullptr;
   bool is_static = false;
-  std::size_t place = 0;     ///< models and frames before it in the <world> of the tree
+  std::size_t place = 0;     ///< number of models and frames before it in the <world> of the tree
   std::optional<Pose> X_WM;  ///< if it has no replacement
   bool is_part = false;      ///< then `file` is loaded by SdfFiles::load_part; alike ones share it
 };

@@ -74,13 +74,15 @@ class SdfFiles {
   /// Renames an include in a world from another source if another model has its name.
   void rename_include(XmlNode& include, const std::string& path, const std::set<std::string>& taken, Found& found);
   static void replace_in_model(const XmlNode& include, const Found& found, std::vector<XmlNode>& children);
-  /// Replaces each include of a world that merges a model by the parts of this model. Returns false like `fits`.
+  /// Replaces each include of a world that merges a model by the parts of this model. Returns false if `fits` does.
   bool merge_in_world(XmlNode& world, const std::string& path, SdfFile& file);
-  /// Returns false in the same cases as `fits`.
+  /// Replaces an include of a world. Returns false if `fits` does.
   bool replace_in_world(const XmlNode& include, const std::string& path, const Found& found, const Named& named,
                         std::vector<XmlNode>& children, SdfFile& file);
+  /// Counts the elements of an included file; returns false, with a report, if the including file then has too many.
   bool fits(const XmlNode& include, const std::string& path, const SdfFile& included, SdfFile& file);
-  /// Returns false if other elements refer to the model.
+  /// Moves a model of a world into a separate part of the file. Returns false if it must stay, because other elements
+  /// refer to it or its name or pose is not usual.
   bool set_apart(XmlNode& model, const Named& named, std::size_t place, SdfFile& file);
 
   InputFiles& input_;

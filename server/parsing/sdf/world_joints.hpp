@@ -10,10 +10,10 @@
 
 namespace cohort::parsing {
 
-/// The name of a joint that an <include> adds to its model: one that no file can contain.
+/// The element name of a joint that an <include> adds to its model. No file can contain an element of this name.
 inline constexpr std::string_view added_joint = ":joint";
 
-/// Joints between the world and a model of it, by the name of the model. They are <joint>s for that model.
+/// Joints between the world and one of its models, by the name of the model, as <joint> elements for that model.
 using HoldingJoints = std::multimap<std::string, XmlNode>;
 
 /// Removes the joints of a world. Those between two models become <cohort:breakable_joint>s that do not break, and

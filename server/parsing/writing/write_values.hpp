@@ -48,7 +48,7 @@ inline void add_pose(XmlNode& parent, const Pose& X) {
   add_value(parent, "pose", X).attributes.emplace_back("rotation_format", "quat_xyzw");
 }
 
-/// Removes "::" from names of nested models, since SDF reserves it.
+/// Replaces "::", which SDF reserves, by "." in a name of a nested model.
 std::string without_scope_marks(std::string name);
 
 /// Returns the path to a file from a folder.

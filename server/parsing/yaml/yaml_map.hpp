@@ -28,7 +28,7 @@ class YamlReport {
   std::vector<Problem>& problems_;
 };
 
-/// Reads the values of a YAML map and reports problems. An absent or invalid value is nothing.
+/// Reads the values of a YAML map and reports problems. Returns nothing for an absent or invalid value.
 class YamlMap {
  public:
   /// `path` is the position of the map, such as `teams[0]`; empty at the top of the file. Reports keys other than

@@ -39,7 +39,7 @@ class BulletContact {
 
   /// Saves Bullet's part of the points; `points` holds the rest.
   void save(SnapshotWriter& writer) const;
-  /// Restores them; the shapes must have the poses at which they were saved.
+  /// Restores Bullet's part of the points; the shapes must have the poses at which it was saved.
   void restore(const Pose& X_WA, const Pose& X_WB, SnapshotReader& reader);
 
  private:

@@ -16,14 +16,14 @@ class BulletShape {
   BulletShape(const BulletShape&) = delete;
   BulletShape& operator=(const BulletShape&) = delete;
 
-  /// Returns Bullet's shape. That of a convex mesh is made by the first call: it takes milliseconds for thousands of
-  /// vertices, and most meshes of robots never come near anything that needs it.
+  /// Returns Bullet's shape. The shape of a convex mesh is made by the first call. This takes milliseconds for
+  /// thousands of vertices, and most meshes of robots never need it.
   btCollisionShape* get() const;
   /// Returns the origin of Bullet's frame of the shape in the frame of `geometry::Shape`. Bullet puts the origin of a
   /// height map at the middle of its heights.
   const Eigen::Vector3d& offset() const { return offset_; }
-  /// Returns the distance by which Bullet finds all shapes except spheres nearer than they are [m]. Surface meshes and
-  /// height maps have such a skin; without it, Bullet would find a contact only once the surface is reached.
+  /// Returns the margin by which Bullet underestimates distances to all shapes except spheres [m]. Only surface meshes
+  /// and height maps have one; without it, Bullet would find a contact only once the surface is reached.
   double skin() const { return skin_; }
   /// Returns geometry::half_thickness_of the shape [m].
   double half_thickness() const { return half_thickness_; }

@@ -48,8 +48,8 @@ class Collision {
   /// Sets the displacement over the step [m] that a moving, fast solid would make if nothing stopped it, or zero for
   /// one that is not fast. Call it before `detect`; threads may call it for different solids.
   void set_way(std::uint32_t solid, const Eigen::Vector3d& way_W) { moving_[place_[solid]].way_W = way_W; }
-  /// Sets whether a solid sleeps. A sleeping solid keeps its pairs unchanged and reports none with awake solids. Not
-  /// while another thread is in `detect`.
+  /// Sets whether a solid sleeps. A sleeping solid keeps its pairs unchanged and reports none with awake solids. Must
+  /// not be called while another thread is in `detect`.
   void set_asleep(std::uint32_t solid, bool asleep) { moving_[place_[solid]].is_asleep = asleep; }
   /// Returns the bounds of all positions of the solid in the step, extended by `margin`.
   geometry::Bounds region_of(std::uint32_t solid) const { return region_along(solid, way_of(solid)); }
@@ -61,13 +61,14 @@ class Collision {
   void detect(std::uint32_t solid, std::span<const std::uint32_t> near);
   /// Points nearer than this are passed to the solver, which lets the bodies close the gap within the step [m].
   static constexpr double margin = 0.005;
-  /// Returns the share of its displacement that a solid may make if the solver has made it faster than predicted: up to
-  /// the first static obstacle. The solid must still be at its old pose. Threads may call it for different solids.
+  /// Returns the fraction of the displacement `way_W` that a solid can make up to the first static obstacle, for a
+  /// solid that the solver has made faster than predicted. The solid must still be at its old pose. Threads may call it
+  /// for different solids.
   double free_share(std::uint32_t solid, const Eigen::Vector3d& way_W) const;
 
-  /// Saves all points and the state that decides the next ones.
+  /// Saves all points, and the state on which the next points depend.
   void save(SnapshotWriter& writer) const;
-  /// Restores them; the solids must have the poses at which they were saved.
+  /// Restores what `save` wrote; the solids must have the poses at which they were saved.
   void restore(SnapshotReader& reader);
 
   /// Returns the pairs that a moving solid reports.

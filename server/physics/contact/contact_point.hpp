@@ -31,7 +31,8 @@ struct ContactPoint {
   }
 };
 
-/// The contact points of one pair of solids. Four support a box; a body with more corners rolls over all of them.
+/// The contact points of one pair of solids. Four are enough for a box; a body with more corners needs more to roll
+/// over all of them.
 struct ContactPoints {
   static constexpr int most = 8;
 

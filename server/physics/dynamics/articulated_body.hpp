@@ -8,9 +8,9 @@
 namespace cohort::physics {
 
 /// The equations (M + D + h K) x = b of one body, solved in a time proportional to its degrees of freedom. Here, x is a
-/// change of the velocities. M is the mass matrix and D the added inertia by dof. K x is the growth of the bias forces
-/// by x. With h = 0, this is the articulated-body algorithm (Featherstone, "Rigid body dynamics algorithms", 2008,
-/// chapter 7).
+/// change of the velocities. M is the mass matrix and D the added inertia by dof. K is the derivative of the bias
+/// forces with respect to the velocities. With h = 0, this is the articulated-body algorithm (Featherstone, "Rigid body
+/// dynamics algorithms", 2008, chapter 7).
 ///
 /// With K, the algorithm needs two motions: x changes the velocity of a segment by dv, and its acceleration at zero
 /// joint acceleration by dc. Both follow from those of the parent and from x of the joint, and the force on the segment
@@ -19,7 +19,7 @@ namespace cohort::physics {
 /// its part of x, which leaves the force in terms of the parent's dv and dc. From the root to the leaves, x follows.
 ///
 /// Spatial vectors are in world axes about the joint of their segment, or about the reference point of a free root.
-/// About one point for all, the moments of the distant segments of a long chain would lose digits.
+/// About one common point, the moments of distant segments of a long chain would lose digits.
 ///
 /// One object serves many bodies one after the other and reuses its memory.
 class ArticulatedBody {

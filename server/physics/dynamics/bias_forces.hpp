@@ -17,7 +17,7 @@ class BiasForces {
   /// The inertia of one segment about the reference point.
   struct SpatialInertia {
     Eigen::Matrix3d inertia;  ///< [kg m^2]
-    Eigen::Vector3d moment;   ///< mass times the centre's offset from the reference [kg m]
+    Eigen::Vector3d moment;   ///< first moment of mass: mass times the offset of the centre [kg m]
     double mass = 0.0;        ///< [kg]
   };
 
@@ -25,7 +25,7 @@ class BiasForces {
   /// object.
   void set_up(const BodyMotion& body, const std::vector<Spatial>& axes);
   const std::vector<SpatialInertia>& inertias() const { return inertias_; }  ///< by segment
-  /// Returns, by segment, the inertia of the fluid around it, about the reference point; empty if there is none.
+  /// Returns the added mass of each segment about the reference point; empty if no segment has any.
   const std::vector<SpatialMatrix>& added_masses() const { return added_masses_; }
 
   /// Computes the generalised bias force by dof [N] or [N m] for these velocities under `gravity` [m/s^2]. The

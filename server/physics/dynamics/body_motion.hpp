@@ -35,7 +35,7 @@ class BodyMotion {
   /// origin of a root that is anchored to the world.
   Eigen::Vector3d reference() const { return state_.reference(); }
 
-  /// Returns X_WM as the model was placed: joints to the world are anchored there.
+  /// Returns the X_WM at which the model was placed; joints to the world are anchored there.
   const Pose& model_pose() const { return X_WM_; }
   const std::vector<Pose>& segment_poses() const { return X_WS_; }
   const Pose& segment_pose(int segment) const { return X_WS_[static_cast<std::size_t>(segment)]; }

@@ -10,15 +10,15 @@
 
 namespace cohort::physics {
 
-/// Square of the step times the angular frequency up to which a spring keeps all its energy.
+/// Limit of (step * angular frequency)^2 of a spring. Up to this limit, the spring keeps all its energy.
 inline constexpr double fastest_spring = 64.0;
 
 /// The equations of motion of one body over one step: its velocities without any impulse, and how an impulse changes
 /// them. They use the dynamics that the body has: Bullet's, or Cohort's own. Damping and springs of joints are
-/// integrated implicitly: they are part of the inertia, and so stable at any stiffness. The rotor inertia of geared
-/// motors is part of it too (Featherstone, "Rigid body dynamics algorithms", 2008, chapter 9.6). Bias forces are taken
-/// at the beginning of the step. If a part spins fast, they are taken at its middle instead (linearly implicit midpoint
-/// rule).
+/// integrated implicitly: they add to the inertia, and are therefore stable at any stiffness. The rotor inertia of
+/// geared motors is added too (Featherstone, "Rigid body dynamics algorithms", 2008, chapter 9.6). Bias forces are
+/// taken at the beginning of the step. If a part spins fast, they are taken at its middle instead (linearly implicit
+/// midpoint rule).
 ///
 /// Small bodies are solved by their mass matrix. Bodies that spin fast and bodies with many degrees of freedom are
 /// solved by recursion (ArticulatedBody).

@@ -7,12 +7,12 @@
 
 namespace cohort::physics {
 
-/// Returns the factorised mass matrix of a body.
+/// A function that returns the factorised mass matrix of a body.
 using FactorisedMass = std::function<const MassMatrix&()>;
 
 /// Returns whether a part of a body spins so fast while it is turned, or turns so fast on a joint, that explicit
 /// gyroscopic and centrifugal forces would be unstable. Evaluated at the beginning of each `step` [s], they would add
-/// or remove energy without bound. For a body that is held, friction removes more energy than slow rotation adds.
+/// or remove energy without bound. The limit is higher for a body that is held, since friction hides the error there.
 /// `mass` is called only for some bodies that turn fast.
 bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_held, const FactorisedMass& mass);
 

@@ -6,8 +6,8 @@
 
 namespace cohort::physics {
 
-/// Computes, by dof, the velocity that a unit rate gives to everything it carries, about the body's reference point in
-/// world axes.
+/// Computes the motion axis of each dof: the spatial velocity that a unit rate of the dof gives to the segments beyond
+/// it. Axes are about the body's reference point, in world axes.
 void find_joint_axes(const BodyMotion& body, std::vector<Spatial>& axes);
 
 }  // namespace cohort::physics

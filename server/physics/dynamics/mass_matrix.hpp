@@ -24,8 +24,8 @@ class MassMatrix {
 
   /// Factorises the matrix. Call it after all inertia was added and before `solve` and `invert`.
   void factorise();
-  /// Returns the inertia of one dof of the factorised matrix: the dofs before it are held, and all that it carries is
-  /// free to move.
+  /// Returns the articulated inertia of one dof from the factorised matrix: earlier dofs are held, and the segments
+  /// beyond the dof are free to move.
   double articulated_inertia(int dof) const { return 1.0 / matrix_[static_cast<std::size_t>(dof * (stride_ + 1))]; }
   /// Solves matrix * y = x in place.
   void solve(double* x) const;
@@ -46,7 +46,7 @@ class MassMatrix {
   const std::vector<Spatial>* axes_ = nullptr;  // by dof
   int size_ = 0;
   std::ptrdiff_t stride_ = 0;
-  std::vector<SpatialInertia> composite_;  // by segment, with everything it carries
+  std::vector<SpatialInertia> composite_;  // by segment, including all segments beyond it
   std::vector<SpatialMatrix> added_mass_;  // likewise; empty if there is none
   std::vector<double> matrix_;             // size_ x stride_, lower triangle: the mass matrix, then its factors
 };

@@ -4,11 +4,11 @@
 
 namespace cohort::physics {
 
-/// The part of a solid below a level surface, and the section that it cuts out of that surface.
+/// The part of a solid below a level surface, and its waterplane, the section of the solid at that surface.
 struct SubmergedPart {
   double volume = 0.0;  ///< [m^3]
   Eigen::Vector3d centre_W = Eigen::Vector3d::Zero();
-  // The section at the surface:
+  // The waterplane:
   double area = 0.0;  ///< [m^2]
   Eigen::Vector3d area_centre_W = Eigen::Vector3d::Zero();
   Eigen::Matrix2d second_moment_W = Eigen::Matrix2d::Zero();  ///< ∫ r r^T dA in x and y, about its centre [m^4]
@@ -18,9 +18,10 @@ struct SubmergedPart {
 };
 
 /// A solid that may float. Immutable. Spheres and ellipsoids are computed in closed form, as images of a cap of the
-/// unit ball. Boxes and convex meshes are exact: polyhedra of which each triangle is cut by the surface (Catto, "Exact
-/// buoyancy for polyhedra", in: Game programming gems 6, 2006). Cylinders and capsules are polyhedra of 64 sides with
-/// the same volume; their submerged part differs from that of the round shape by at most 0.2 % of the volume.
+/// unit ball. Boxes and convex meshes are exact: they are polyhedra, and the surface cuts each of their triangles
+/// (Catto, "Exact buoyancy for polyhedra", in: Game programming gems 6, 2006). Cylinders and capsules are polyhedra of
+/// 64 sides with the same volume; their submerged part differs from that of the round shape by at most 0.2 % of the
+/// volume.
 class FloatingShape {
  public:
   /// Throws std::invalid_argument if a mesh spans no volume.

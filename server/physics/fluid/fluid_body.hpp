@@ -13,8 +13,8 @@ namespace cohort::physics {
 ///
 /// Buoyancy and thrust depend on the pose of the body and the speed of its rotors, and act first. Forces that depend on
 /// the velocity follow, one direction after the other. Each is evaluated at the velocity that results from it (implicit
-/// Euler), without contacts and joint motors, and is therefore stable at any step. Buoyancy is stable too: its change
-/// over the step, given by the section at the surface and the metacentric height, is a damper of this kind.
+/// Euler), without contacts and joint motors, and is therefore stable at any step size. Buoyancy is stable too: its
+/// change over the step, given by the waterplane area and the metacentric height, acts as such a damper.
 class FluidBody {
  public:
   explicit FluidBody(std::shared_ptr<const FluidModel> model);

@@ -13,8 +13,7 @@ namespace cohort::physics {
 Eigen::Vector2d fin_force(const description::Fin& fin, double density, const Eigen::Vector3d& v_F);
 
 /// Returns the impulse of a force -(linear + quadratic |v|) v over a step, at the velocity v that results from it
-/// (implicit Euler). The impulse therefore never more than stops the motion. `response`: the change of v by a unit
-/// impulse.
+/// (implicit Euler). The impulse therefore never reverses the motion. `response`: the change of v by a unit impulse.
 double damping_impulse(double v, double linear, double quadratic, double response, double step);
 
 }  // namespace cohort::physics

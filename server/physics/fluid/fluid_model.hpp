@@ -30,7 +30,7 @@ struct FluidModel {
   };
   struct FinPlace : Place {
     const description::Fin* fin = nullptr;
-    double no_lift = 0.0;  // upward velocity per forward velocity at zero lift
+    double no_lift = 0.0;  // ratio of upward to forward velocity at zero lift
   };
   struct DragPlace : Place {
     const description::Drag* drag = nullptr;

@@ -44,7 +44,7 @@ struct Member {
   bool is_active = true;
   std::uint32_t still_steps = 0;  ///< consecutive, at most as many as it takes to fall asleep
   bool is_asleep = false;
-  std::uint32_t next_asleep = 0;          ///< ring through all members that fell asleep together
+  std::uint32_t next_asleep = 0;          ///< index of the next member in the ring of all that fell asleep together
   bool is_finite = true;                  ///< its velocities were finite in the last step
   bool is_inside = true;                  ///< it was inside the world after the last step
   std::unique_ptr<ForceRecord> record{};  ///< null: not requested
@@ -114,7 +114,7 @@ struct Assembly {
   Pose pose_of(const Connection::End& end) const {
     return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->motion().segment_pose(end.segment);
   }
-  /// Returns the same after a step with the present velocities.
+  /// Returns the X_WS of that segment after a step with the present velocities.
   Pose pose_ahead_of(const Connection::End& end) const {
     return end.member == Anchors::nobody ? Pose{}
                                          : pose_ahead(members[end.member].multibody->motion(), end.segment, step);

@@ -12,10 +12,10 @@ namespace cohort::physics {
 /// also of links that are welded into one segment (recursive Newton-Euler; Featherstone, "Rigid body dynamics
 /// algorithms", 2008, chapter 5).
 ///
-/// It uses the accelerations of the step at the pose and velocities of its beginning, or at the velocities of its
-/// middle if the equations do (Equations::is_symmetric). These are the equations that the solver solved. The component
-/// along a joint's axis is therefore what its motor, friction, damping, spring and limits gave, to the last digits.
-/// Kept only for bodies for which it was requested, and not part of the state.
+/// It uses the accelerations over the step, at the poses and velocities at its beginning. If the equations use the
+/// velocities at the middle of the step (Equations::is_symmetric), so does this. These are the equations that the
+/// solver solved. The component along a joint's axis is therefore the sum of its motor, friction, damping, spring and
+/// limit efforts, except for rounding. Kept only for bodies for which it was requested, and not part of the state.
 class ForceRecord {
  public:
   /// `links_of_solids`: the link of each of the body's solids, starting with solid `first_solid`.

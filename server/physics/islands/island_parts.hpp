@@ -7,8 +7,8 @@
 
 namespace cohort::physics {
 
-/// Cuts a large island into connected parts that can be solved separately. The parts depend only on the links and their
-/// order.
+/// A partition of a large island into connected parts that can be solved separately. The parts depend only on the links
+/// and their order.
 class IslandParts {
  public:
   /// Starts again with the bodies [0, count).

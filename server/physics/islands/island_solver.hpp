@@ -18,8 +18,9 @@ class IslandSolver {
   /// Returns the outcome if the convex solver has solved rows.
   std::optional<Convergence::Outcome> solve(Assembly& assembly, std::span<const std::uint32_t> members);
 
-  /// Solves a large island that is nearly at rest as one problem. Returns nothing, without moving any body, if it is
-  /// not at rest, if the world has another solver, if that would cost too much, or if a velocity is invalid.
+  /// Solves a large island that is nearly at rest as one problem. Returns nothing, without moving any body, if the
+  /// bodies are not calm (`are_calm`) or the world has another solver. It does the same if the solution would cost too
+  /// much, or if a velocity is invalid.
   std::optional<Convergence::Outcome> solve_if_calm(Assembly& assembly, std::span<const std::uint32_t> members);
 
  private:
@@ -48,7 +49,7 @@ Passes passes_of(std::span<const std::uint32_t> members, Assembly& assembly);
 /// Returns whether an island of this many bodies is solved by Dantzig's algorithm.
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies);
 
-/// Returns whether bodies without connections move so slowly, on average, that they will soon rest.
+/// Returns whether the members have no connections and move, on average, so slowly that they will soon be at rest.
 bool are_calm(std::span<const std::uint32_t> members, Assembly& assembly);
 
 /// Assigns to each member its index in `bodies`.

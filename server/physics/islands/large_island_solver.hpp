@@ -17,8 +17,8 @@ namespace cohort::physics {
 /// The island is cut into parts. Rows within a part belong to that part. Rows between parts are sorted by the set of
 /// parts that they couple, one seam for each set; seams that share a part get different colours. A pass of the solver
 /// goes over all parts at once, then over all seams of the first colour at once, and so on. Every second pass runs in
-/// reverse order. Two workers therefore never change the same body. The result depends on neither their number nor
-/// their speed: it is that of sequential impulses with another order of the rows.
+/// reverse order. Two workers therefore never change the same body. The result depends neither on the number of workers
+/// nor on their speed: it is that of sequential impulses with another order of the rows.
 class LargeIslandSolver {
  public:
   /// Islands of at least this size use this solver with any number of workers, because the order of the rows affects
@@ -67,9 +67,9 @@ class LargeIslandSolver {
   /// Returns the greatest change of a row's velocity.
   double run_pass(bool forwards, bool with_friction);
   void settle(double settled);
-  /// Damps bodies that move slower than gravity makes a body in one step, if all are rigid bodies that nothing drives
-  /// or carries. A body that is held at two points would otherwise swing about them for ever, and friction that has not
-  /// quite settled would let others rock.
+  /// Damps bodies that are slower than the velocity that gravity adds in one step, if all are single rigid bodies
+  /// without drives, outside of fluids. A body that is held at two points would otherwise swing about them for ever,
+  /// and friction that has not quite settled would let others rock.
   void damp(const Assembly& assembly);
   template <class Work>
   void for_each_share(std::size_t phase, Work&& work);

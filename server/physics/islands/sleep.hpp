@@ -25,7 +25,8 @@ class Sleep {
   void fall_asleep(const Islands& islands);
   /// Returns the members that fell asleep together with this sleeping one.
   std::vector<std::uint32_t> group_of(std::uint32_t index) const;
-  /// Wakes them. For a member that is already awake, restarts the count of still steps.
+  /// Wakes a member and all that fell asleep together with it. For a member that is already awake, restarts the count
+  /// of still steps.
   void wake(std::uint32_t index);
   /// Wakes the bodies at both ends of a connection, if it exists.
   void wake_ends(std::uint32_t number);

@@ -7,7 +7,8 @@
 
 namespace cohort::physics {
 
-/// The state of a body: its pose and velocities. The numbers are kept in memory of its own or in a body of Bullet.
+/// The state of a body: its pose and velocities. The object stores the numbers itself, or points to those of a body of
+/// Bullet.
 class BodyState {
  public:
   /// Pointers to a state that is kept elsewhere.

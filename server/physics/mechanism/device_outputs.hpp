@@ -12,8 +12,8 @@ namespace cohort::physics {
 
 enum class Side : std::uint8_t { left = 0, right = 1 };
 
-/// The outputs of a model's devices other than joints: each device has a list. A new kind of output is one more
-/// alternative of `Output`; the compiler then requires its `set_target` and its `state`.
+/// The outputs of a model's devices: what they drive other than joints, as one list for each device. A new kind of
+/// output is one more alternative of `Output`; the compiler then requires its `set_target` and its `state`.
 struct DeviceOutputs {
   /// One track of a pair that stands on the ground without wheels (treels).
   struct Track {

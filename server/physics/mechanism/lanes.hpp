@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-/// Arithmetic on vectors whose length is a multiple of `lanes`, always in that many partial sums. The result has the
-/// same bits with any vector width of the instructions that a compiler generates.
+/// Arithmetic on vectors whose length is a multiple of `lanes`, always with `lanes` partial sums. The result has the
+/// same bits for any SIMD width that the compiler chooses.
 namespace cohort::physics {
 
 inline constexpr std::ptrdiff_t lanes = 4;

@@ -9,7 +9,7 @@
 namespace cohort::physics {
 
 /// The motion of a segment relative to its parent. `free`: six dofs; `anchored`: fixed to the world. Only the functions
-/// of this header, and the set-up of Bullet's bodies, know what a motion is.
+/// of this header, and the set-up of Bullet's bodies, depend on the kind of motion.
 enum class Motion { free, anchored, revolute, prismatic, ball };
 
 /// Links that are welded together and move as one. Frame S has its origin at the joint above, or at the root link, and
@@ -36,7 +36,7 @@ int dofs_of(Motion motion);
 /// Returns the coordinates of a joint at zero: none, an angle, a displacement, or a quaternion x y z w.
 std::span<const double> zero_coordinates_of(Motion motion);
 
-/// Returns how many of the dofs turn the segment. They come first; the others move it along.
+/// Returns the number of rotational dofs. They come before the translational ones.
 int turning_dofs_of(Motion motion);
 
 /// Returns the pose of a segment that a joint holds; `X_WS` is its pose with `coordinates` at zero.
@@ -59,8 +59,9 @@ inline Spatial axis_of_joint(const Segment& segment, const Eigen::Matrix3d& R_WS
   return axis;
 }
 
-/// Returns the rate of change of a motion relative to the parent at the rates `v` of the segment's dofs, such as their
-/// velocities, about the point of `axis_of_joint`. `R_WS` is a matrix or a quaternion.
+/// Returns the spatial velocity relative to the parent for the velocities `v` of the segment's dofs, about the point of
+/// `axis_of_joint`. For other rates of the dofs, such as velocity changes, it returns the corresponding spatial vector.
+/// `R_WS` is a matrix or a quaternion.
 template <class Rotation>
 Spatial motion_at_joint(const Segment& segment, const Rotation& R_WS, const double* v) {
   Spatial motion{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};

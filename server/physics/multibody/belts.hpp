@@ -20,7 +20,7 @@ class Belts {
     return std::exchange(belts_[belt].velocity, velocity) != velocity;
   }
   OutputState state(std::size_t belt) const { return {0.0, belts_[belt].velocity, belts_[belt].force}; }
-  /// Returns the motion of the surface of a link, whose segment is at `X_WS`.
+  /// Returns the surface velocity of a link. `X_WS`: poses of the segments.
   RunningSurface of_link(std::size_t link, const std::vector<Pose>& X_WS) const;
 
   bool is_empty() const { return belts_.empty(); }

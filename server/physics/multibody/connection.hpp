@@ -31,7 +31,8 @@ class Connection {
   void set_give(const ConnectionGive& give);
   bool holds() const { return holds_; }
   void release();
-  /// Releases it because of its load in the last step, which `wrench` returns until the end of the next step.
+  /// Releases a connection that its load in the last step has broken. The wrench of that step remains available until
+  /// the end of the next step.
   void break_now();
 
   /// Poses X_WS of the segments of both ends.
@@ -44,10 +45,11 @@ class Connection {
   void add_rows(Problem& problem, const Anchors& anchors, const Ends& X_WS, const Ends& ahead, double step);
   /// Returns whether `settle` must be called after each step.
   bool may_slip() const { return yields_; }
-  /// Takes over the impulses of the step and, if it slipped, its new rest pose.
+  /// Stores the impulses of the step and, if the connection slipped, its new rest pose.
   void settle(const Pose& X_WSa, const Pose& X_WSb, double step);
 
-  /// Impulses on a by b over the last step, in world axes, at `point`. For a solver with its own rows.
+  /// Returns the impulses on a by b over the last step, in world axes, at `point`. Mutable for a solver with its own
+  /// rows.
   Impulses& impulses() { return impulses_; }
   const Impulses& impulses() const { return impulses_; }
   /// Returns the point of the last step's rows, halfway between the two ends.
@@ -83,7 +85,7 @@ class Connection {
     bool is_free() const { return limit == 0.0 || (stiffness == 0.0 && damping == 0.0); }
   };
   Spring spring(int axis) const;
-  /// The displacement from frame P as b carries it to P as a carries it, along the axes of the rows.
+  /// The displacement from frame P as fixed to b to P as fixed to a, along the axes of the rows.
   struct Errors {
     Eigen::Vector3d gap;
     Eigen::Vector3d twist;  ///< rotation vector

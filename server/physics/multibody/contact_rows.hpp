@@ -27,8 +27,9 @@ struct RunningSurfaces {
   }
 };
 
-/// The impulses with which friction starts. `last`: those of the last step at each point, for a solver that solves all
-/// rows. `shared`: at static bodies, their sum shared by load; zero between two moving bodies.
+/// The warm start of friction. `last`: the impulses of the last step at each point, for a solver that converges.
+/// `shared`: their sum over the points of a contact with a static body, distributed in proportion to load; zero between
+/// two moving bodies.
 enum class FrictionStart : std::uint8_t { last, shared };
 
 /// Adds the rows of the points between `a`, a body, and `b`. Each point has one row along the normal, which is soft if

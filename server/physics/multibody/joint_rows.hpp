@@ -25,7 +25,7 @@ class JointRows {
   /// moves to a position.
   void add_motor(int dof, double max_effort, double max_velocity);
   bool has_motor(int dof) const { return motor_of_[static_cast<std::size_t>(dof)] >= 0; }
-  /// Returns whether the command changed.
+  /// Sets the command of a motor; returns whether it changed.
   bool set_target(int dof, Control control, double target) {
     Motor& told = motor(dof);
     const bool is_new = told.control != control || told.target != target;

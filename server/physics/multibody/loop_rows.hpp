@@ -10,14 +10,14 @@ namespace cohort::physics {
 class BodyMotion;
 class Problem;
 
-/// The joints of one body that close kinematic loops: rows between two of its segments, for joints that a tree cannot
-/// have. Each step corrects the position error of the step before.
+/// The joints of one body that close kinematic loops, as rows between two of its segments or between a segment and the
+/// world. Each step corrects the position error of the previous step.
 class LoopRows {
  public:
   explicit LoopRows(const Mechanism& mechanism);
 
   void add_rows(Problem& problem, int index, const BodyMotion& body, double step);
-  /// Returns whether one of them is attached to the world.
+  /// Returns whether one of these joints is attached to the world.
   bool reach_the_world() const;
   /// Returns whether one of these joints connects the two segments.
   bool connect(int segment, int other) const;

@@ -20,7 +20,7 @@ struct Row {
   enum class Limits : std::uint8_t { fixed, friction, cone, coned, soft };
 
   double target = 0.0;   ///< [m/s] or [rad/s]
-  double inverse = 0.0;  ///< 1 / velocity change by a unit impulse; 0: none
+  double inverse = 0.0;  ///< effective mass: 1 / velocity change by a unit impulse; 0: none
   double lower = -unlimited;
   double upper = unlimited;
   double impulse = 0.0;  ///< [N s] or [N m s]
@@ -50,8 +50,8 @@ struct Row {
     lower = least;
     upper = most;
   }
-  /// Returns whether bodies rebound at this contact. `before`: their velocity before the step, with which they must
-  /// approach each other. `after`: that after it without the contact, with which they must close their gap.
+  /// Returns whether bodies rebound at this contact. `before`: velocity along the row before the step; the bodies must
+  /// approach each other. `after`: velocity after the step without the contact; it must close the gap within the step.
   bool is_impact(double before, double after) const {
     return restitution > 0.0 && -before > least_approach && -after > closing;
   }
@@ -105,7 +105,7 @@ class Problem {
   Row& add_torque_row(Anchor a, Anchor b, const Eigen::Vector3d& direction_W, double* kept);
   /// Adds the row of the force or torque along one dof of a joint.
   Row& add_dof_row(int body, int dof, double* kept);
-  /// Adds such a row along one dof and, scaled by `share`, along another dof of the same body.
+  /// Adds the row of a force or torque along one dof and, scaled by `share`, along another dof of the same body.
   Row& add_dofs_row(int body, int dof, int other, double share, double* kept);
 
   /// Joins the last two rows, whose directions must be perpendicular, to a friction cone.
@@ -115,8 +115,9 @@ class Problem {
   double velocity(const Row& row) const;
   /// Returns the velocity along the row at the velocities before this step.
   double velocity_before(const Row& row) const;
-  /// Returns the velocity at which the error `off` [m] or [rad] along a row grows only because the bodies turn. `ahead`
-  /// is the error after a step with the present velocities. On a circle of radius r, the velocity is h v^2 / 2r.
+  /// Returns the rate at which the error along a row grows because the bodies turn, in addition to the velocity along
+  /// the row [m/s] or [rad/s]. `off`: the present error [m] or [rad]; `ahead`: the error after a step with the present
+  /// velocities. At speed v on a circle of radius r, the rate is h v^2 / 2r, where h is the step.
   double velocity_by_turning(const Row& row, double off, double ahead, double step) const {
     return (ahead - off) / step - velocity_before(row);
   }

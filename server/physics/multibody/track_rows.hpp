@@ -32,7 +32,8 @@ class TrackRows {
   /// Finds the ground under each ground point. `candidates`: the solids of other bodies in the ground region.
   void find_ground(const geometry::Scene& scene, const SurfacePairs& surfaces, const Pose& X_WS,
                    std::span<const std::uint32_t> candidates);
-  /// Stores the surface velocity of the ground: `velocity_of(ground)` is relative to its body [m/s].
+  /// Stores the surface velocity of the ground, which is zero except on belts. `velocity_of(ground)`: relative to the
+  /// body of the ground [m/s].
   template <class VelocityOf>
   void find_belts(const VelocityOf& velocity_of) {
     for (Point& point : points_)
@@ -47,8 +48,8 @@ class TrackRows {
 
   /// Returns the link that carries the tracks.
   std::size_t link() const { return drive_->link; }
-  /// Calls `visit(solid, point_W, impulse_W)` for the impulse of each solid under the tracks on the link in the last
-  /// step.
+  /// Calls `visit(solid, point_W, impulse_W)` for each impulse on the link in the last step by a solid under the tracks
+  /// [N s].
   template <class Visit>
   void for_each_impulse(Visit&& visit) const;
 

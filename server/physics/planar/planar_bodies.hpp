@@ -15,7 +15,7 @@ namespace cohort::physics {
 struct PlanarPlace {
   double x = 0.0;
   double y = 0.0;
-  double turn_w = 1.0;  ///< cosine and sine of half its rotation since then
+  double turn_w = 1.0;  ///< cosine and sine of half its rotation since it was placed
   double turn_z = 0.0;
   double cosine = 1.0;  ///< cosine and sine of the rotation, computed from the half
   double sine = 0.0;

@@ -35,14 +35,14 @@ class PlanarCollision {
   }
   /// Throws std::invalid_argument for a static solid that is neither flat ground nor an upright wall.
   static void check_static(const description::Shape& shape, const Pose& X_WC);
-  /// Adds the next solid of the scene, a static one: a wall, or one that no body can hit. Throws as `check_static`.
+  /// Adds the next solid of the scene, a static one: a wall, or one that no body can hit. Throws like `check_static`.
   void add_static();
   /// Adds the next moving body; its solids follow. `is_fixed`: its root is fixed to the world, and at most its segments
   /// move.
   void add_member(bool is_fixed);
   /// Adds the next solid of the scene to the last member.
   void add_moving();
-  /// Updates a static solid that was placed elsewhere. Throws as `add_static`.
+  /// Updates a static solid that was placed elsewhere. Throws like `add_static`.
   void place_static(std::uint32_t solid) { outlines_[solid] = outline_of_static(solid); }
   /// Forgets a member that is no longer in the scene.
   void remove(std::uint32_t member);
@@ -57,10 +57,11 @@ class PlanarCollision {
     outline.centre = centre_W;
     outline.axis = axis_W;
   }
-  /// Sets the outline of a solid: its pose, shape and heights; threads may call it as `move`.
+  /// Sets the outline of a solid: its pose, shape and heights; threads may call it like `move`.
   void set_outline(std::uint32_t solid, const geometry::Footprint& outline_W) { outlines_[solid] = outline_W; }
-  /// Moves a member; its solids lie within `radius` of this point and between two heights.
+  /// Moves the centre of the circle that bounds a member's solids.
   void move_member(std::uint32_t member, const Eigen::Vector2d& centre_W) { places_[member].centre_W = centre_W; }
+  /// Sets the radius of that circle, and the least and greatest z of the member's solids [m].
   void set_extent(std::uint32_t member, double radius, double lowest, double highest) {
     places_[member] = {places_[member].centre_W, radius, lowest, highest};
   }

@@ -14,7 +14,7 @@ struct PlanarPoint {
 
   // Impulses that the solver keeps between steps for warm starting [N s].
   double normal_impulse = 0.0;
-  double friction_impulse = 0.0;  ///< on a, along the normal turned left
+  double friction_impulse = 0.0;  ///< on a, along the normal rotated 90 degrees to the left
 
   /// Calls `visit` for each number, always in the same order.
   template <class Self, class Visit>

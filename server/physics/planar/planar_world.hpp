@@ -26,10 +26,10 @@ namespace cohort::physics {
 /// - Bodies collide with each other and with walls if their heights overlap. Outlines are those of the collisions
 ///   seen from above (geometry::footprint_of). A shape that is not an upright prism, such as an ellipsoid or a mesh,
 ///   has the outline of geometry::Footprint. Links of one body do not collide with each other.
-/// - The ground is the solid under the centre of mass when the body was placed, and never changes. It gives friction
-///   under half the weight to each track. A body without a drive has it under the whole weight at its lowest
-///   collision. The ground reports no contact. Nothing falls, tips or climbs. A ball slides and does not roll.
-///   Rolling resistance has no effect.
+/// - The ground is the solid under the centre of mass when the body was placed, and never changes. Each track has
+///   friction under half the weight. A body without a drive has friction under the whole weight, at its lowest
+///   collision. The ground reports no contact. Nothing falls, tips or climbs. A ball slides and does not roll. Rolling
+///   resistance has no effect.
 /// - Connections hold in the plane. Their wrench is a force in x and y and a torque about z. They are rigid, with or
 ///   without a ConnectionGive.
 /// - Joints and motors report no effort. A motor with an effort command does not move.
@@ -37,10 +37,9 @@ namespace cohort::physics {
 /// - The solver is always the iterative one.
 class PlanarWorld final : public World, private WorldConnections {
  public:
-  /// Throws std::invalid_argument for a world or a model that cannot be planar. A world cannot if it has gravity not
-  /// along -z, water, ground that is not level, or a body without ground. A model cannot if it has a joint to the world
-  /// that moves, a belt, a rotor, a fin, drag, or a link that feels wind. A robot cannot lean by more than a
-  /// milliradian. `like` and `X_WM`: as in make_world.
+  /// Throws std::invalid_argument for a world with water, gravity that is not along -z, ground that is not level, or a
+  /// body without ground. Also throws for a model with a joint to the world that moves, a belt, a rotor, a fin, drag,
+  /// or a link that feels wind. A robot must not lean by more than a milliradian. `like` and `X_WM`: as in make_world.
   PlanarWorld(const description::World& description, WorkerPool& workers, const PlanarWorld* like = nullptr,
               std::span<const Pose> X_WM = {});
 

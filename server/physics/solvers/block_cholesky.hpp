@@ -10,12 +10,12 @@ namespace cohort::physics {
 /// or a tree. Source: George and Liu, "Computer solution of large sparse positive definite systems", 1981, chapter 5.
 ///
 /// A block has the size of its bodies' degrees of freedom; its rows are padded with zeros to a multiple of `lanes`.
-/// Vectors have the same padding, body after body. Reuses its memory.
+/// Vectors hold the entries of one body after the other, with the same padding. Reuses its memory.
 class BlockCholesky {
  public:
   /// Starts a matrix. `sizes`: degrees of freedom by body.
   void reset(const std::vector<int>& sizes);
-  /// Makes room for the block of two different bodies.
+  /// Adds the off-diagonal block that couples two different bodies.
   void couple(int a, int b);
   /// Finds the order of elimination and sets all blocks to zero. Call it after the last `couple`. Returns false if a
   /// factorisation would take more than `most_work` multiplications.
@@ -25,7 +25,8 @@ class BlockCholesky {
   std::size_t offset(int body) const { return offsets_[static_cast<std::size_t>(body)]; }
   std::size_t length() const { return offsets_.back(); }  ///< length of a vector
 
-  /// The block of two coupled bodies, or the lower triangle of that of one body. The rows belong to `row`.
+  /// The off-diagonal block of two coupled bodies, or the lower triangle of the diagonal block of one body. Its rows
+  /// belong to the body `row`, its columns to `column`.
   struct Block {
     std::size_t begin = 0;
     int row = 0;     ///< body
@@ -58,7 +59,7 @@ class BlockCholesky {
   std::vector<int> rank_;                     // by body
   std::vector<int> merged_;                   // scratch
   std::vector<double> values_;
-  std::vector<double> inverse_;  // diagonal of the factors, inverted; a vector
+  std::vector<double> inverse_;  // reciprocals of the diagonal of the factors; a vector
 };
 
 }  // namespace cohort::physics

@@ -7,11 +7,12 @@
 
 namespace cohort::physics {
 
-/// Limits of friction follow from the loads of the last solution, again and again. If they have not settled soon, they
-/// move by this share of the way: with the whole way, limits that alternate would do so for long.
+/// Relaxation factor of friction limits. A solver with constant friction limits updates them from the loads of its last
+/// solution and solves again. Without relaxation, limits may alternate for many solutions.
 inline constexpr double share_of_limits = 0.6;
 
-/// Returns the load on a row of friction, if `impulse_of(i)` is the impulse of row i.
+/// Returns the load on a friction row, the sum of the impulses of its normal rows [N s]. `impulse_of(i)`: impulse of
+/// row i.
 template <class ImpulseOf>
 double load_on(const Row& row, ImpulseOf&& impulse_of) {
   double load = 0.0;
@@ -19,7 +20,7 @@ double load_on(const Row& row, ImpulseOf&& impulse_of) {
   return load;
 }
 
-/// Returns the limit of a row of friction under a load.
+/// Returns the greatest impulse of a friction row under a load [N s].
 inline double limit_of_friction(const Row& row, double load) {
   return std::max(0.0, std::min(row.cap, row.friction * load));
 }

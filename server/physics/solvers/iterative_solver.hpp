@@ -18,7 +18,7 @@ class SequentialImpulses {
   void start(double share);
   /// Makes one pass over the rows, forwards or backwards. Returns the greatest change of a row's velocity.
   double pass(bool forwards);
-  /// The same for the rows that are not friction.
+  /// Makes one pass over the rows that are not friction, and returns the same.
   double pass_without_friction(bool forwards);
 
  private:
@@ -39,8 +39,8 @@ class SequentialImpulses {
 /// gain energy without bound.
 inline constexpr double start_of_connected = 0.9;
 
-/// How long to solve: `least` passes, unless nothing changes any more. Up to `most_times` as many are made while one
-/// still changes the velocity of a row by more than `settled` [m/s or rad/s].
+/// The number of passes: `least`, unless nothing changes any more. More passes follow, up to `most_times` times `least`
+/// in total, as long as a pass changes the velocity of a row by more than `settled` [m/s or rad/s].
 struct Passes {
   std::uint32_t least = 0;
   std::uint32_t most_times = 1;

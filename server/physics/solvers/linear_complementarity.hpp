@@ -6,11 +6,12 @@
 
 namespace cohort::physics {
 
-/// Finds x between `lower` and `upper` by Dantzig's algorithm. Each row of A x - b is zero if its x is between the
-/// limits, not negative at the lower limit, and not positive at the upper one. Source: Baraff, "Fast contact force
-/// computation for nonpenetrating rigid bodies", SIGGRAPH 1994. The rows are driven one after the other until they
-/// satisfy their condition, and those before stay satisfied. The free rows are kept in factorised form (Cholesky) as
-/// rows join and leave. The cost grows with the third power of the number of rows.
+/// A solver of linear complementarity problems with bounds (Dantzig's algorithm). It finds x between `lower` and
+/// `upper`. A row of A x - b is zero if its x is between the limits, not negative at the lower limit, and not positive
+/// at the upper one. Source: Baraff, "Fast contact force computation for nonpenetrating rigid bodies", SIGGRAPH 1994.
+/// Rows are driven one after the other until they satisfy their conditions, while earlier rows stay satisfied. The
+/// Cholesky factors of the free rows are updated as rows join and leave. The cost grows with the third power of the
+/// number of rows.
 ///
 /// Reuses its memory. Nothing is shared between objects.
 class LinearComplementarity {
@@ -23,9 +24,9 @@ class LinearComplementarity {
  private:
   enum class Place : unsigned char { later, between, lower, upper };
 
-  /// The first row that must change its place while x of another row moves.
+  /// The first row that reaches or leaves a limit while x of the driven row changes.
   struct Change {
-    double way = 0.0;  ///< displacement of that x until then
+    double way = 0.0;  ///< change of x of the driven row until then
     std::size_t row = 0;
     Place becomes = Place::between;
   };

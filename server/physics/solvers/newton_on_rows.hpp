@@ -7,29 +7,30 @@
 
 namespace cohort::physics {
 
-/// The steps of Newton's method to the velocities that the impulses of rows give to the bodies, where these impulses
-/// are functions of the same velocities. The matrix of the equations of a step is the mass matrix plus the stiffness of
-/// the rows.
+/// Newton's method for the velocities of the bodies of an island, where the impulses of the rows are functions of these
+/// velocities. The matrix of a step is the mass matrix plus the stiffness of the rows.
 ///
 /// Reuses its memory.
 class NewtonOnRows {
  protected:
   /// Starts with the bodies of a problem, which must outlive this.
   void take_bodies(Problem& problem);
-  /// Takes the couplings and the inertia of the bodies. Returns false if a factorisation would cost too much.
+  /// Sets up the matrix from the couplings and the inertia of the bodies. Returns false if a factorisation would cost
+  /// too much.
   bool take_inertia();
   /// Starts from the velocities with the present impulses of the terms.
   void start_with_impulses();
 
-  /// Computes all impulses. Returns whether the present factors belong to their derivatives.
+  /// Computes all impulses and their stiffnesses. Returns whether the present factors belong to these stiffnesses.
   bool evaluate();
   void factorise();
-  /// Computes the step that would satisfy the equations if they were linear.
+  /// Computes the Newton step, which would satisfy the equations if they were linear.
   void find_step();
-  /// Finds the share of the step at which the function whose derivatives the impulses are is least. `first_slope`: its
-  /// derivative along the step at the start.
+  /// Returns the fraction of the step that minimises the convex function (exact line search). `first_slope`: derivative
+  /// of the function along the step at the start.
   double find_share(double first_slope);
-  /// Computes the derivative of the function along the step at a share of it, and its derivative.
+  /// Returns the derivative of the function along the step, at the fraction `share` of the step. Writes the second
+  /// derivative to `curvature`.
   double slope(double share, double* curvature);
   void add_step(double share);
   /// Writes impulses and velocities to the problem.
@@ -37,7 +38,8 @@ class NewtonOnRows {
 
   void multiply_by_inertia(const std::vector<double>& velocities, std::vector<double>& momenta) const;
   double along(const Row& row, const std::vector<double>& velocities) const;
-  /// Calls `visit(offset, jacobian, stride)` for each body of a row; the response stands `stride` behind the Jacobian.
+  /// Calls `visit(offset, jacobian, stride)` for each body of a row; the response is `stride` elements after the
+  /// Jacobian.
   template <class Visit>
   void for_each_body(const Row& row, Visit&& visit) const;
   std::ptrdiff_t length() const { return static_cast<std::ptrdiff_t>(matrix_.length()); }
@@ -49,9 +51,9 @@ class NewtonOnRows {
   std::vector<int> sizes_;          // by body
   std::vector<double> inertia_;     // mass matrices
   std::vector<std::size_t> begin_;  // start of each body's mass matrix
-  std::vector<double> velocity_;    // vectors as in the matrix
-  std::vector<double> momentum_;    // that the impulses have added
-  std::vector<double> missing_;     // momentum that the impulses should add, less that
+  std::vector<double> velocity_;    // vectors in the layout of matrix_
+  std::vector<double> momentum_;    // momentum added by impulses so far
+  std::vector<double> missing_;     // impulses of the rows as momentum, minus momentum_
   std::vector<double> step_;        // step of the velocity
   std::vector<double> step_momentum_;
   bool is_factorised_ = false;

@@ -7,10 +7,10 @@
 
 namespace cohort::physics {
 
-/// How well the convex solver has solved the joints and contacts of islands, groups of bodies that touch or are
-/// connected. The error of an island is the step to velocities that would fit all rows better, as a share of what
-/// forces and impulses change in the step. Both are measured by the mass matrix. So it depends on neither units, masses
-/// nor sizes.
+/// Statistics of how well the convex solver has solved the joints and contacts of islands, groups of bodies that touch
+/// or are connected. The error of an island is the residual velocity change of its last solution, relative to the
+/// velocity change by forces and impulses in the step. Both are in the norm of the mass matrix, so that the error does
+/// not depend on units, masses or sizes.
 struct Convergence {
   /// Islands with a greater error have not converged.
   static constexpr double bound = 1e-6;

@@ -6,7 +6,7 @@
 namespace cohort::physics {
 
 /// Returns the mechanical power that the devices of a body, an instance of `model`, delivered over the last step [W].
-/// It sums joints and all outputs, each at its velocity at the end of the step; one that brakes counts as 0.
+/// It is the sum of effort times velocity at the end of the step over all motors and outputs, without those that brake.
 double driven_power(const World& world, BodyId body, const description::Model& model);
 
 }  // namespace cohort::physics

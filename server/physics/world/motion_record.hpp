@@ -38,7 +38,7 @@ class MotionRecord {
     keep(after_, body);
     is_whole_ = true;
   }
-  /// Forgets the last step: the body was placed elsewhere or did not take part in it.
+  /// Forgets the last step. Called if the body was placed elsewhere or did not take part in the step.
   void forget() { is_whole_ = false; }
   bool is_whole() const { return is_whole_; }
 
@@ -51,8 +51,8 @@ class MotionRecord {
   ///
   /// It is the sum of relative, Coriolis and centripetal accelerations over the joints from the root to the link
   /// (Craig, "Introduction to robotics", section 6.5). Poses and velocities are those at the end of the step. Only the
-  /// rates of change of relative velocities, in the axes of the parent, are means over the step. A mean of the
-  /// velocity of the point itself would have the direction of half a step ago.
+  /// rates of change of relative velocities, in the axes of the parent, are means over the step. A mean rate of change
+  /// of the point's own velocity would have the direction of half a step ago.
   Eigen::Vector3d acceleration(std::size_t link, const Eigen::Vector3d& p_LP, double step) const {
     Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
     if (!is_whole_) return sum_W;

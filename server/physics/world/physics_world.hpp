@@ -52,12 +52,12 @@ struct JointState {
 struct JointTarget {
   enum class Kind : std::uint8_t {
     velocity,
-    position,  ///< moves there and stays, within the joint's limits and the motor's greatest velocity. It brakes in
-               ///< time with the effort that gravity leaves to the motor. Not for a ball joint
+    position,  ///< the joint moves to a position and stays there, within its limits and the motor's greatest velocity.
+               ///< The motor brakes in time, with the effort that remains after gravity. Not for a ball joint
     effort,    ///< a force or torque, at most the motor's greatest effort; a planar joint does not move
   };
   Kind kind = Kind::velocity;
-  double value = 0.0;
+  double value = 0.0;  ///< [rad/s], [rad] or [N m]; for a prismatic joint [m/s], [m] or [N]
 
   static JointTarget velocity(double value) { return {Kind::velocity, value}; }
   static JointTarget position(double value) { return {Kind::position, value}; }
@@ -109,21 +109,21 @@ class World : public WorldState, public WorldRecords {
   /// `restore` must follow at once and sets its pose.
   virtual BodyId add_body(std::size_t model, const Pose& X_WM,
                           std::optional<std::uint32_t> saved_slot = std::nullopt) = 0;
-  /// Removes a body from the world, also a static one: it touches nothing, is invisible and does not move, and its
-  /// connections are released. Or puts a removed or quarantined body back as it was, at rest if it was quarantined.
-  /// Called between steps, like the next two.
+  /// Removes a body, which may be static, from the world, or puts a removed or quarantined body back as it was. A
+  /// removed body touches nothing, is invisible and does not move; its connections are released. A quarantined body is
+  /// put back at rest. Called between steps.
   virtual void set_present(BodyId body, bool is_present) = 0;
-  /// Frees the memory of a removed body, which cannot be put back then: its slot serves the next body of the same
+  /// Frees the memory of a removed body, which can then not be put back. Its slot serves the next body of the same
   /// model. Its root link keeps its pose. Called between steps.
   virtual void release_body(BodyId body) = 0;
-  /// Returns the index of the memory that a body occupies; `released` for a body without any. Parts of a simulation
-  /// that keep data of bodies in arrays use it, so that they do not grow either.
+  /// Returns the slot of a body, the index of its memory; `released` for a released body. Other parts of a simulation
+  /// index their arrays by slot, so that these do not grow while objects come and go.
   static constexpr std::uint32_t released = 0xffffffffu;
   virtual std::uint32_t slot_of(BodyId body) const = 0;
   /// Places the whole model of a body at X_WM, at rest, with its joints unchanged; its connections are released. Throws
-  /// std::invalid_argument if a planar body has no ground there; its pose is then unchanged.
+  /// std::invalid_argument if a planar body has no ground there; its pose is then unchanged. Called between steps.
   virtual void place_body(BodyId body, const Pose& X_WM) = 0;
-  /// Applies a force at the centre of mass of a link, and a torque, during the next step, in addition to others.
+  /// Applies a force at the centre of mass of a link, and a torque, during the next step. Several pushes add up.
   virtual void push_body(BodyId body, LinkId link, const Wrench& wrench) = 0;
 
   virtual const geometry::Scene& scene() const = 0;
@@ -155,8 +155,8 @@ class World : public WorldState, public WorldRecords {
   virtual void set_joint_state(BodyId body, JointId joint, std::span<const double> coordinates,
                                std::span<const double> velocities) = 0;
 
-  /// Returns the contacts: those between sleeping bodies first, each in the order of the bodies' solids. The order does
-  /// not depend on the number of workers.
+  /// Returns the contacts of the last step: first those between sleeping bodies, then the others, both in the order of
+  /// the bodies' solids. The order does not depend on the number of workers.
   virtual std::span<const Contact> contacts() const = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace cohort::physics {
 
-/// The member or the solids of a body.
+/// The memory of a body: its member if it moves, or its solids if it is static.
 struct BodyMemory {
   std::uint32_t member = Anchors::nobody;  ///< `nobody`: static
   std::uint32_t first_solid = 0;           ///< for a static body
@@ -26,7 +26,7 @@ struct PlacedBody : BodyMemory {
   bool is_out = false;           ///< a static body was removed
 };
 
-/// Hashes these changes; adds nothing for a body without any.
+/// Hashes the changes of a body from outside; adds nothing if there are none.
 inline void hash_changes(const PlacedBody& body, StateHash& hash) {
   if (body.is_placed_again) visit_pose(body.X_WM, StateHasher{hash});
   if (body.is_out) StateHasher{hash}(body.is_out);
@@ -42,8 +42,8 @@ inline void save_changes(const std::vector<PlacedBody>& bodies, SnapshotWriter& 
   }
 }
 
-/// Repeats the changes on the bodies of `engine`. Afterwards all bodies are in the world except static ones that were
-/// removed.
+/// Restores saved changes by repeating them on the bodies of `engine`, a world. Afterwards all bodies are in the world
+/// except static ones that were removed.
 template <class Engine>
 void restore_changes(SnapshotReader& reader, Engine& engine) {
   const StateRestorer restore{reader};

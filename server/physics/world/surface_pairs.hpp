@@ -36,8 +36,8 @@ class SurfacePairs {
   std::vector<std::optional<description::MaterialPair>> pairs_;  // materials_ x materials_
 };
 
-/// Returns the surface of tracks: that of the first wheel that they replace or, if they name none, that of their link,
-/// given by the link's first collision.
+/// Returns the surface of tracks: the friction of the drive, and the material of the first wheel that they replace or,
+/// without wheels, of their link. The first collision of a link gives its material.
 description::Surface surface_of_tracks(const description::Model& model, const description::TrackPair& drive);
 
 }  // namespace cohort::physics

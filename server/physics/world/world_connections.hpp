@@ -58,9 +58,9 @@ class WorldConnections {
   /// Returns the number of connections ever made.
   virtual std::uint32_t made() const = 0;
   virtual bool holds(ConnectionId connection) const = 0;
-  /// Returns the wrench of the last step on one end's link by the other's, about the origin of P as that link carries
-  /// it. If the connection broke in the last step, this is the wrench that broke it; it is zero if the connection was
-  /// released earlier.
+  /// Returns the mean wrench over the last step on the link of `end` by the other link, about the origin of P as fixed
+  /// to the link of `end`. If the connection broke in the last step, this is the wrench that broke it; it is zero if
+  /// the connection was released earlier.
   virtual Wrench wrench(ConnectionId connection, ConnectionEnd end = ConnectionEnd::a) const = 0;
   /// Returns the connections that broke in the last step, ascending.
   virtual std::span<const ConnectionId> broken() const = 0;

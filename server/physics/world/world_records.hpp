@@ -18,8 +18,8 @@ class WorldRecords {
   /// total of motor, friction, damping, spring, limits and constraint forces, also for a fixed joint. Zero for a planar
   /// body.
   ///
-  /// The solver finds it for the poses at the beginning of the step. The result has turned with the child since then.
-  /// Thus, in the axes of the child, it is the same at the beginning and at the end of the step.
+  /// The solver finds it for the poses at the beginning of the step, and it is returned as if it had turned with the
+  /// child. In the axes of the child, it is therefore the same at the beginning and at the end of the step.
   virtual Wrench joint_wrench(BodyId body, JointId joint) const = 0;
   /// Returns the wrench on the joint's parent by its child, like `joint_wrench`, but it has turned with the parent: it
   /// is the same in the axes of the parent. The two are opposite, except for the rotation of the joint in the step.

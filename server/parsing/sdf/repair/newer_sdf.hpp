@@ -8,9 +8,9 @@
 
 namespace cohort::parsing {
 
-/// Replaces elements that SDF has had since 1.10 by what is read, in files of every version. Inertia by density, joints
-/// that follow others and joints in a world become `cohort:` elements. Wrong values are reported as problems, and what
-/// is changed or ignored as warnings.
+/// Replaces elements that SDF 1.10 or later introduced by equivalents that the reader supports, in files of any
+/// version. Inertia from density and joints that follow others become `cohort:` elements, and a cone becomes a
+/// cylinder. Wrong values are reported as problems, and what is changed or ignored as warnings.
 void take_newer(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& problems,
                 std::vector<Problem>& warnings);
 

@@ -4,8 +4,8 @@
 
 namespace cohort::parsing {
 
-/// Converts an <sdf> element of SDF 1.2 to 1.8 to `converted_version`: replaces older spellings by newer ones. In files
-/// with an older version, it only changes the version and the frames of includes.
+/// Converts an <sdf> element with a version from 1.2 to 1.8 into one with `converted_version`: replaces older spellings
+/// by newer ones. In files with an older version, it only changes the version and the frames of includes.
 void convert_older(XmlNode& sdf);
 
 }  // namespace cohort::parsing

@@ -6,7 +6,7 @@
 
 namespace cohort::parsing {
 
-/// The version that writes most values as elements.
+/// The first version that writes most values as elements.
 inline constexpr std::string_view first_with_elements = "1.2";
 
 /// Converts a tree of SDF 1.0 to that of SDF 1.2, in which most values are elements instead of attributes. Returns

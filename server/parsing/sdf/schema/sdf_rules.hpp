@@ -16,18 +16,18 @@ enum class Presence { once, at_most_once, any, at_least_once, deprecated };
 
 struct ValueRule {
   ValueType type = ValueType::none;
-  std::string standard;  ///< text that counts if there is none
+  std::string standard;  ///< default text
   double least = -std::numeric_limits<double>::infinity();
   double greatest = std::numeric_limits<double>::infinity();
 };
 
-/// The effect of an element or an attribute that is not at its standard value.
+/// The effect of an element or an attribute that does not have its default value.
 enum class Effect {
   full,        ///< as SDF defines it
   appearance,  ///< on appearance or names in other simulators, none on what is simulated
   none,        ///< on how other simulators compute or look, none here
   missing,     ///< on motion or measurements in other simulators, none here
-  told         ///< none; the reader of its parent tells of it
+  told         ///< none; the reader of its parent warns of it
 };
 
 struct AttributeRule {

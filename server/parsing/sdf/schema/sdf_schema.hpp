@@ -10,8 +10,8 @@
 
 namespace cohort::parsing {
 
-/// The allowed content of an element, from the rules of SDF or the table of extensions. A value; cheap to copy.
-/// For elements that neither knows (below <plugin>, or with the prefix of another simulator) it is `free`: anything is
+/// The allowed content of an element, from the rules of SDF or the table of extensions. A value; cheap to copy. For
+/// elements that neither defines (below <plugin>, or with the prefix of another simulator) it is `free`: anything is
 /// allowed.
 class ElementSchema {
  public:

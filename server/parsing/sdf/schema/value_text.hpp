@@ -8,8 +8,8 @@
 #include "server/parsing/files/xml_outline.hpp"
 #include "server/parsing/sdf/schema/sdf_rules.hpp"
 
-/// Values of SDF in texts. A number counts up to its first other character, as in other programs: "3 m" is 3. The
-/// rest is checked where it matters (check_numbers).
+/// Values of SDF in texts. A number ends at the first character that cannot belong to it, as in other programs: "3 m"
+/// is 3. check_numbers reports the rest of the text.
 namespace cohort::parsing {
 
 /// Returns the number with which a word begins; nothing if there is none.
@@ -24,7 +24,7 @@ bool is_true(std::string_view text);
 /// Returns whether SDF allows this text as a value of the rule. For a pose, use `written_pose`.
 bool allows(const ValueRule& rule, std::string_view text);
 
-/// Returns whether a text means the same as the standard value of the rule.
+/// Returns whether a text means the same as the default value of the rule.
 bool is_standard(const ValueRule& rule, std::string_view text);
 
 /// Returns the pose that a <pose> contains, by its attributes `degrees` and `rotation_format`; the identity if it has
@@ -35,7 +35,7 @@ std::optional<Pose> written_pose(const XmlNode& pose);
 /// Returns the rotation by roll, pitch and yaw [rad].
 Eigen::Quaterniond rotation_of(double roll, double pitch, double yaw);
 
-/// Returns whether this is the square of 1, except for rounding.
+/// Returns whether a squared norm is 1, except for rounding.
 bool is_unit(double squared_norm);
 
 }  // namespace cohort::parsing

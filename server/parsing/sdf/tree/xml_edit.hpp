@@ -55,7 +55,7 @@ inline std::string path_below(const std::string& path, const XmlNode& child) {
   return (link == std::string::npos ? "" : path.substr(0, link)) + child.written;
 }
 
-/// Adds the content of a model except its name and pose.
+/// Appends the content of a model to `content` as text, without its name and the numbers of its pose.
 inline void add_content(const XmlNode& node, std::string& content, bool is_top = true) {
   content += '<' + node.name;
   for (const auto& [name, value] : node.attributes)

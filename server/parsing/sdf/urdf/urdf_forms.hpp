@@ -30,7 +30,7 @@ const std::vector<UrdfForm>& urdf_forms();
 /// Returns the form of an element in its parent; nullptr if it is unknown there.
 const UrdfForm* form_of(std::string_view parent, std::string_view name);
 
-/// Returns the problem of the value of an attribute, or nothing.
+/// Returns the problem of an attribute's value; nothing if it is valid.
 std::optional<std::string> what_is_wrong(const std::string& value, const UrdfAttribute& attribute);
 
 }  // namespace cohort::parsing

@@ -44,8 +44,9 @@ struct Survey {
 Survey survey(std::uint32_t domain, const std::string& address, const std::optional<Identity>& identity,
               std::chrono::milliseconds patience);
 
-/// Return the version of Cyclone DDS that this was built with, and the library in use.
+/// Returns the version of Cyclone DDS that this program was built with.
 std::string dds_version();
+/// Returns the path of the library of Cyclone DDS that is in use.
 std::filesystem::path dds_library();
 
 }  // namespace cohort::wire

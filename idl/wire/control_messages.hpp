@@ -8,7 +8,8 @@
 #include "idl/wire/operations.hpp"
 
 /// The messages of cohort.idl that control a run, as C++ values: docs/protocol.md, "Control". Names, states and results
-/// are those of ROS 2's simulation_interfaces where it has them; additional ones start at 100.
+/// are those of ROS 2's simulation_interfaces where that package defines them; the numbers of Cohort's own operations
+/// start at 100.
 namespace cohort::wire {
 
 enum class ResultCode : std::uint32_t {

@@ -30,7 +30,7 @@ class StaticRoom {
   friend class Room;
   const Occupancy& fixed_;
   Extent extent_;
-  double clearance_;  // from the origin of an instance to all that is in its way [m]
+  double clearance_;  // minimum distance from the origin of an instance to any obstacle [m]
   double level_;
   Cells cells_;
   ThingsInCells things_;

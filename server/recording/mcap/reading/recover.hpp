@@ -21,7 +21,7 @@ struct Recovery {
 /// metadata. The file is written beside `target` and replaces it when it is complete. `target` may be `source`; then a
 /// complete file is not changed. Throws FileError if a file cannot be opened or written, or is being recorded. Throws
 /// McapError, and keeps `target` unchanged, if `source` is not an MCAP file, or is damaged and has no readable message.
-/// To a different file it also writes attachments and metadata without messages.
+/// If `target` is a different file, attachments or metadata without messages are enough.
 Recovery recover(const std::filesystem::path& source, const std::filesystem::path& target,
                  const ReadLimits& limits = {});
 

@@ -14,7 +14,7 @@ namespace cohort::session {
 /// the server's lock.
 class ClientNames {
  public:
-  // Each client has three writers here, with their topics; DDS cannot create more at about 10,000 clients.
+  // The server has three writers for each client; DDS cannot create more of them at about 10,000 clients.
   static constexpr std::size_t most_clients = 2048;
   static constexpr std::size_t most_of_one_identity = 1024;
 

@@ -20,13 +20,13 @@ namespace cohort::session {
 /// that is transferred in parts. All of it is bounded. Pure logic, no network. Not thread-safe.
 class RequestLedger {
  public:
-  /// Returns true if the client's id belongs to this participant, `who`, since its first request. A participant has one
+  /// Returns true if the first request with this client id came from the participant `who`. A participant has only one
   /// id.
   bool is_in_own_name(std::uint64_t client, std::uint64_t who);
 
   enum class Receipt {
     fresh,      ///< to be carried out; `keep` ends it
-    under_way,  ///< in progress, or waiting for that
+    under_way,  ///< in progress, or waiting to be carried out
     answered,   ///< `remembered` is its reply
     forgotten,  ///< older than the remembered replies
     too_many,   ///< the client has reached its limit of requests in progress

@@ -193,7 +193,7 @@ struct Scene {
   std::vector<SceneEmitter> tones;
   std::vector<SceneEmitter> leds;
   std::string end{};       ///< end of the run as in recordings, such as `finished`; empty while it runs
-  std::string end_text{};  ///< reason, for people; may be empty
+  std::string end_text{};  ///< human-readable reason; may be empty
   std::vector<SceneTexture> textures{};
   std::vector<SceneMeshTexture> mesh_textures{};
   std::vector<SceneShapeTexture> shape_textures{};

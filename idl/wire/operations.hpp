@@ -83,7 +83,7 @@ struct EntityState {
 };
 
 struct ControllerStatus {
-  std::string label{};  ///< controller, process and host, for people
+  std::string label{};  ///< human-readable: controller, process and host
   std::uint64_t client = 0;
   std::vector<std::uint32_t> robots{};  ///< ids
   bool alive = false;
@@ -282,7 +282,7 @@ struct LoadSnapshot {
 struct StartRecording {
   static constexpr auto code = OperationCode::start_recording;
   using Returned = std::monostate;
-  std::string recorded{};  ///< YAML as in an experiment's `record`; if empty, that of the experiment
+  std::string recorded{};  ///< YAML as in an experiment's `record`; if empty, the `record` of the experiment
   bool operator==(const StartRecording&) const = default;
 };
 

@@ -22,8 +22,8 @@ Extent extent_of(const Model& model);
 /// The part of a search for positions of one population that does not depend on the seed: everything static.
 class StaticRoom {
  public:
-  /// `fixed`, which must outlive this, has the objects with a pose in the file; `moving` is the approximate number of
-  /// other objects.
+  /// `fixed`, which must outlive this object, has the objects with a pose in the file; `moving` is the approximate
+  /// number of other objects.
   StaticRoom(const Population& population, const Extent& extent, const Occupancy& fixed, std::size_t moving);
 
  private:
@@ -39,8 +39,8 @@ class StaticRoom {
 /// A search for positions of one population: the obstacles to an instance, and the ground under it.
 class Room {
  public:
-  /// `room` and `earlier`, which has the instances of earlier populations, must outlive this; at most `count` instances
-  /// are added.
+  /// `room` and `earlier`, which has the instances of earlier populations, must outlive this object; at most `count`
+  /// instances are added.
   Room(const StaticRoom& room, const Occupancy& earlier, std::size_t count);
 
   /// Returns the height of the ground under an instance at a point; nothing if there is no room for it.

@@ -13,7 +13,8 @@ namespace cohort::placement {
 /// any thread.
 Experiment with_seed(const Experiment& experiment, std::uint64_t seed);
 
-/// Does the same with a placer that was made of the world of the experiment, for programs that need many seeds.
+/// Acts like the function above, with a placer that was made from the world of the experiment, for programs that need
+/// many seeds.
 Experiment with_seed(const Experiment& experiment, const Placer& placer, std::uint64_t seed);
 
 }  // namespace cohort::placement

@@ -49,7 +49,8 @@ class Recorder {
   /// Passes all recorded data to the operating system. Returns when this is done, or `error` says why not.
   void flush() { file_.flush(); }
 
-  /// Closes the file, and returns when it is closed. `end`: how the run ended, in a word; `reason`: why.
+  /// Closes the file, and returns when it is closed. `end`: how the run ended, as a keyword such as `finished`;
+  /// `reason`: a human-readable reason.
   void finish(std::string_view end, std::string_view reason);
   /// Starts `finish` without waiting for it. The world may be destroyed afterwards.
   void begin_finishing(std::string_view end, std::string_view reason);

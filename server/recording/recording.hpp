@@ -51,7 +51,7 @@ class Recording {
   const std::string& damage() const { return reader_.damage(); }
   /// Returns the facts that `facts_of` wrote.
   const StringMap& facts() const { return facts_; }
-  /// Returns how the run ended, in a word; empty if unknown.
+  /// Returns how the run ended, as a keyword such as `finished`; empty if unknown.
   std::string end() const;
 
   /// The start of a world.

@@ -101,7 +101,7 @@ Commands decode_commands(ByteView bytes);
 /// An action on the world from outside, at a boundary.
 struct ActionTaken {
   std::uint64_t tick = 0;
-  std::string text;                  ///< for people
+  std::string text;                  ///< human-readable description
   std::vector<std::uint8_t> action;  ///< encoded by cohort::to_bytes
   static constexpr const char* topic = "/cohort/action";
   static constexpr const char* type = "cohort_msgs/msg/ActionTaken";
@@ -111,7 +111,7 @@ struct ActionTaken {
 
 struct RecordedEvent {
   std::uint64_t tick = 0;
-  std::string kind;  ///< a word
+  std::string kind;  ///< a keyword
   std::string text;
   std::uint64_t count = 1;
   static constexpr const char* topic = "/cohort/event";

@@ -49,7 +49,7 @@ struct RunOptions {
 struct ControlEvent {
   std::uint64_t tick = 0;
   std::string operation;          ///< its name, such as `SpawnEntity`
-  std::string text;               ///< a sentence for people: what was done, and who requested it
+  std::string text;               ///< a human-readable sentence: what was done, and who requested it
   std::vector<std::byte> action;  ///< for an action on the world: the bytes for Simulation::act
 };
 

@@ -103,7 +103,7 @@ class RunMonitor {
   bool stopped_ = false;
   bool has_noted_convergence_ = false;
   std::optional<std::string> unrecorded_;       // reason
-  std::optional<std::uint64_t> last_boundary_;  // the last one that the listener was told of
+  std::optional<std::uint64_t> last_boundary_;  // the last one that was reported to the listener
   Clock::time_point start_;
   // Reference point of the pace.
   Clock::time_point pace_start_;

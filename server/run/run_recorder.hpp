@@ -11,7 +11,7 @@ namespace cohort::session {
 /// simulation. The vector must outlive the run.
 void add_recorders(RunListener& listener, const std::vector<recording::Recorder*>& recorders);
 
-/// Returns how a run ended, in a word.
+/// Returns how a run ended, as a keyword such as `finished`.
 const char* word_of(RunResult::End end);
 
 }  // namespace cohort::session

@@ -46,7 +46,7 @@ std::vector<std::byte> to_bytes(const SessionSnapshot& snapshot);
 /// version of Cohort that `versions_of_snapshots` does not list.
 SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes);
 
-/// Returns the states in the snapshot of those of `robots` that have one.
+/// Returns the states in the snapshot of all `robots` whose state is known.
 std::vector<RobotState> states_of(const SessionSnapshot& snapshot, std::span<const std::uint32_t> robots);
 
 /// Returns a sentence for each team with robots whose state is not in the snapshot. Returns none at the very beginning

@@ -26,7 +26,7 @@ struct AttachedClient {
   wire::Join join;
   std::uint64_t place;
   const std::optional<wire::Identity>& identity;  // authenticated by DDS, not claimed by the client
-  std::string label;                              // for people: controller, process and host
+  std::string label;                              // human-readable: controller, process and host
   wire::Writer<wire::Admit> admit;
   wire::Writer<wire::Observation> observation;
   wire::Writer<wire::Report> report;

@@ -19,7 +19,7 @@ class ClientNames {
   static constexpr std::size_t most_of_one_identity = 1024;
 
   /// Registers a Join under this id from `sender`, which has authenticated as `identity` if security is enabled.
-  /// Returns an empty text if the client may be attached; otherwise the reason, which starts with a word of
+  /// Returns an empty text if the client may be attached; otherwise the reason, which starts with a keyword of
   /// docs/protocol.md. A participant has at most one client that is not gone.
   std::string enter(std::uint64_t client, const wire::Sender& sender,
                     const std::optional<wire::Identity>& identity = {});

@@ -18,7 +18,7 @@ namespace cohort::session {
 /// comment says that they require the lock.
 class Clients {
  public:
-  /// `mutex`: the server's lock, which must outlive this.
+  /// `mutex`: the server's lock, which must outlive this object.
   explicit Clients(std::mutex& mutex) : mutex_(mutex) {}
 
   /// Starts a run: clients that drove robots or waited claim their requested robots again, in order of arrival.

@@ -33,7 +33,7 @@ class Inbox {
   static constexpr std::size_t most_request_bytes = std::size_t{64} << 20;
   static constexpr std::size_t largest_request = std::size_t{4} << 20;
 
-  // Limits of texts for people [bytes].
+  // Limits of human-readable texts [bytes].
   static constexpr std::size_t longest_label = 100;
   static constexpr std::size_t longest_text = 4096;
 

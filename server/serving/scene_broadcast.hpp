@@ -27,7 +27,7 @@ class SceneBroadcast {
   };
   /// Publishes a boundary whose frames were sent.
   void publish(const Shown& shown, When when);
-  /// Publishes the end of the last run: a word, and an optional sentence.
+  /// Publishes the end of the last run: a keyword such as `finished`, and an optional sentence.
   void end(const std::string& how, const std::string& why);
 
  private:

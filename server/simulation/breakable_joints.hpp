@@ -25,7 +25,7 @@ class BreakableJoints {
   /// Returns the wrench on the first link over the last step, about the joint's position on that link. It is zero once
   /// the joint no longer holds, except for the step that broke the joint.
   physics::Wrench wrench_on_first(std::size_t joint) const;
-  /// Returns the wrench on the second link likewise.
+  /// Returns the wrench on the second link, in the same way.
   physics::Wrench wrench_on_second(std::size_t joint) const;
   /// Returns a sentence for each joint that the last step broke.
   std::vector<std::string> broken() const;

@@ -24,8 +24,8 @@ class Schedule {
   Schedule(const description::Experiment& experiment, physics::World& world, Objects& objects,
            emission::Emitters& emitters, const actuation::UserActions& actions, Spawn spawn);
 
-  /// Carries out the events of a boundary: those of its time, then those of starting actions. Returns a sentence for
-  /// each. Throws std::runtime_error if one cannot be carried out.
+  /// Carries out the events of a boundary: first those that are due at its time, then those that the start of an action
+  /// triggers. Returns a sentence for each. Throws std::runtime_error if one cannot be carried out.
   std::vector<std::string> begin_tick(std::uint64_t tick);
   /// Carries out an event that was requested from outside, at the boundary of `tick`. Returns a sentence. Throws
   /// std::invalid_argument, without any change, if it cannot be done.
@@ -35,7 +35,7 @@ class Schedule {
   /// Checks the stop conditions, once at each boundary, until one is met.
   void check_stops();
 
-  /// Returns the stop condition that is met, in words.
+  /// Returns a human-readable description of the stop condition that is met; nothing if none is.
   const std::optional<std::string>& stop_reason() const { return stop_reason_; }
 
   void hash(StateHash& hash) const;

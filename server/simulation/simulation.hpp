@@ -102,7 +102,7 @@ class Simulation {
   bool set_command(std::uint32_t robot, std::span<const double> values) {
     return note_if(robots_.set_command(robot, values));
   }
-  /// Sets every channel to its neutral value, likewise.
+  /// Sets every channel to its neutral value. Returns true if the bits of the command changed.
   bool set_neutral_command(std::uint32_t robot) { return note_if(robots_.set_neutral_command(robot)); }
   /// Returns the command that acts in the next step, unless the robot is disabled by then, for example by an empty
   /// battery.
@@ -115,7 +115,7 @@ class Simulation {
   void step();
   /// Returns a sentence for each event of this boundary: broken joints, then actions with a handler, then events.
   const std::vector<std::string>& happened() const { return happened_; }
-  /// Returns the first stop condition of the experiment that is met.
+  /// Returns a description of the first stop condition of the experiment that is met; nothing if none is.
   const std::optional<std::string>& stop_reason() const { return schedule_.stop_reason(); }
 
   /// Carries out an action from outside, between steps. The action follows the events and the check of the stop

@@ -70,7 +70,7 @@ class Control {
 
  private:
   struct Requester {
-    std::string label;    // for people
+    std::string label;    // human-readable
     std::string account;  // account that its requests are charged to
     std::uint64_t writer = 0;
     wire::Writer<wire::Reply> replies;

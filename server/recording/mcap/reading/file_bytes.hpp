@@ -20,7 +20,7 @@ class FileBytes {
   Place at(std::uint64_t offset) const { return {&path_, offset, {}}; }
   /// Fills `to` with the bytes from `offset` on. Throws McapError if the file ends too early, or cannot be read.
   void read(std::uint64_t offset, std::span<std::byte> to) const;
-  /// Does the same, but checks the size before it allocates memory.
+  /// Returns `size` bytes from `offset` on. Checks the size before it allocates memory. Throws McapError likewise.
   Bytes read(std::uint64_t offset, std::uint64_t size) const;
   /// Returns the CRC of the bytes in [`from`, `to`), which must be in the file.
   std::uint32_t crc(std::uint64_t from, std::uint64_t to) const;

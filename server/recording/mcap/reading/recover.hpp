@@ -13,7 +13,7 @@ struct Recovery {
   std::uint64_t lost_bytes = 0;
 
   bool was_whole() const { return damages.empty(); }
-  /// Returns a text for people: a line on the kept data, one on the lost data, and one for each damage, at most 20.
+  /// Returns a human-readable text: a line on the kept data, one on the lost data, and one for each damage, at most 20.
   std::string text() const;
 };
 

@@ -28,7 +28,7 @@ class RequestBudget {
   /// Notes that a request of the account has ended the run to start another one. The account is charged for the time up
   /// to the first boundary of the new run.
   void begin_restart(const std::string& account, Time now);
-  /// Notes that the run is at a boundary; `has_stepped`: after a step of its own.
+  /// Notes that the run is at a boundary; `has_stepped`: the run has made at least one step.
   void note_boundary(bool has_stepped, Time now);
   /// Returns true if the account may restart the run now: the run that it started last must have made a step.
   bool allows_restart(const std::string& account, Time now);

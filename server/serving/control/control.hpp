@@ -43,9 +43,9 @@ class Control {
 
   /// Notes that the run has reached a boundary, where requested steps may be complete.
   void reach_boundary();
+  enum class Moment { boundary, midst };
   /// Carries out waiting requests. Within a tick these are only requests that end the run, after which nothing else has
   /// an effect. Returns false if the run has to end; see `ending`.
-  enum class Moment { boundary, midst };
   bool perform(Moment moment);
   struct Ending {
     RunResult::End how = RunResult::End::shut_down;

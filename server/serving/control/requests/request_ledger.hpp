@@ -43,11 +43,11 @@ class RequestLedger {
 
   /// Offers data that the client fetches in parts, in place of earlier data.
   void offer(std::uint64_t client, std::shared_ptr<const std::vector<std::byte>> data, KeptForClient::Time now);
-  /// Returns the part from `offset` on, empty after the end; nothing if there is no data for the client.
   struct Part {
     std::uint64_t size = 0;  ///< size of the whole data
     std::span<const std::byte> bytes{};
   };
+  /// Returns the part from `offset` on, empty after the end; nothing if there is no data for the client.
   std::optional<Part> part(std::uint64_t client, std::uint64_t offset) const;
 
   /// Takes a part of an upload. Parts arrive in order from offset 0 on; repeated parts are allowed. Returns the fault,

@@ -15,8 +15,8 @@ struct CohortStart {
   const cohort::Start& start;
   CohortStartInfo info;
   // These two are mutable because C callbacks get a const handle.
-  mutable std::optional<std::string> mistake;  ///< the first one
-  mutable std::deque<std::string> texts;       ///< returned texts
+  mutable std::optional<std::string> mistake;  ///< the first error
+  mutable std::deque<std::string> texts;       ///< storage of the strings that C functions return
 };
 
 struct CohortObservation {
@@ -33,7 +33,7 @@ struct CohortStateWriter {
 
 struct CohortStateReader {
   cohort::StateReader& reader;
-  std::optional<std::string> mistake{};  ///< the first one
+  std::optional<std::string> mistake{};  ///< the first error
 };
 
 namespace cohort {

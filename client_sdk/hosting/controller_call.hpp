@@ -23,8 +23,8 @@ class Callee {
   std::string text_;
 };
 
-/// A call of a controller's code, active during the lifetime of this object. Only one per process is tracked; it costs
-/// five stores.
+/// A call of a controller's code, active during the lifetime of this object. Only one call per process is tracked;
+/// tracking costs five stores.
 class ControllerCall {
  public:
   /// `what` is the called function, such as `step`; it must live as long as the program.
@@ -41,7 +41,7 @@ struct CallUnderWay {
   std::uint64_t tick = 0;
   bool is_on_this_thread = false;
 };
-/// Returns the active call. May be used in signal handlers. On another thread than that of the call, its callee may be
+/// Returns the active call. May be used in signal handlers. If the call is on another thread, its callee may be
 /// destroyed at any time.
 CallUnderWay call_under_way() noexcept;
 

@@ -20,7 +20,7 @@ using OwnedController = std::unique_ptr<Controller, void (*)(Controller*)>;
 struct ControllerKind {
   std::string name;  ///< name in messages
   std::function<OwnedController()> create;
-  bool has_state = true;  ///< they have `save` and `load`; false for plugins of older interfaces
+  bool has_state = true;  ///< controllers have `save` and `load`; false for plugins of older interfaces
   /// Creates one object that drives all robots of a process, instead of `create`. Empty: each robot has a controller.
   std::function<std::unique_ptr<FrameHandler>()> create_for_all{};
 };
@@ -28,13 +28,13 @@ ControllerKind kind_of(const Plugin& plugin);
 /// Creates the handler that drives the robots of a process with controllers of this kind.
 std::unique_ptr<FrameHandler> make_handler(const ControllerKind& kind);
 
-/// Returns the start of a controller of `robot`, which is in `admit`. Throws ControllerFailure if `admit` or
-/// `descriptions` lack something that it refers to.
+/// Returns the Start for the controller of `robot`, one of the robots in `admit`. Throws ControllerFailure if
+/// `descriptions` lacks the description of this robot, or `admit` its team.
 Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
                std::span<const wire::RobotDescription> descriptions);
 
-/// The controllers of some robots in this process, which turn frames into answers. It is independent of the network: a
-/// separate process and a run in the server's process use the same code. For one thread at a time.
+/// The controllers of robots in this process, which compute the answer to each frame. Independent of the network:
+/// client processes and in-process runs use the same code. For one thread at a time.
 class ControllerHost final : public FrameHandler {
  public:
   explicit ControllerHost(ControllerKind kind);

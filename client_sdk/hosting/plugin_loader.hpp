@@ -17,11 +17,12 @@ std::filesystem::path find_plugin(const std::string& name_or_path,
 /// Returns true for the path of a controller, a plugin (`….so`) or a Python file (`….py`), and false for a name.
 bool is_controller_path(const std::string& name_or_path);
 
-/// Checks that a controller exists, and that its plugin can be loaded; that of a Python file is the plugin `python`.
+/// Checks that a controller exists, and that its plugin can be loaded. For a Python file, this is the plugin `python`.
 /// Does not run any of its code. Throws std::runtime_error with the reason.
 void check_controller(const std::string& name_or_path, const std::vector<std::filesystem::path>& directories);
 
-/// A controller plugin, loaded during the lifetime of this object. Destroy the objects that it made before.
+/// A controller plugin, loaded during the lifetime of this object. It must outlive all objects that the plugin has
+/// created.
 class LoadedPlugin {
  public:
   /// Finds the plugin as `find_plugin` does; for a path that ends with `.py`, the plugin `python`. Throws

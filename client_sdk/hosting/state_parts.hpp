@@ -42,7 +42,7 @@ class StateParts {
   Time interval_{0};
 };
 
-/// Returns the part of `bytes` from `offset` on that fits into one message; the caller fills in its head.
+/// Returns a message with as many of `bytes` from `offset` on as fit into it; the caller fills in the other members.
 wire::ControllerState part_of(std::span<const std::byte> bytes, std::uint64_t offset);
 
 /// A copy of a received ControllerState.

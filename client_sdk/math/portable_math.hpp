@@ -12,8 +12,9 @@
 /// to them. Every controller contains them, program or plugin, so that its answers are the same on every machine.
 namespace cohort {
 
-/// Returns the functions that the libraries of this code do not take from portable_math.cpp. Empty in our own programs,
-/// and after `bind_library_calls` (library_calls.hpp). Otherwise, runs are not portable between CPUs.
+/// Returns the names of the functions that this code or its libraries still call in the C library instead of
+/// portable_math.cpp. If there are any, runs are not portable between CPUs. Empty in our own programs, and after
+/// `bind_library_calls` (library_calls.hpp).
 std::vector<std::string> functions_not_portable();
 
 }  // namespace cohort

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Powers, and logarithms to bases other than e, for portable_math.cpp. They are computed with twice the digits of a
-/// double and rounded once, so that exact results, such as 10^3, are exact.
+/// Powers, and logarithms to bases other than e, for portable_math.cpp. They are computed in double-double arithmetic
+/// and rounded once, so that exact results, such as 10^3, are exact.
 namespace cohort {
 
 double portable_pow(double x, double y);

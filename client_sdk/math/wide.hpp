@@ -2,8 +2,9 @@
 
 namespace cohort {
 
-/// A number of about 106 bits: the sum of both members. `low` is at most half a unit in the last place of `high`. Sums
-/// and products follow T. J. Dekker, A floating-point technique for extending the available precision, 1971.
+/// A double-double number with about 106 significant bits: the sum of both members. `low` is at most half a unit in the
+/// last place of `high`. Sums and products follow T. J. Dekker, A floating-point technique for extending the available
+/// precision, 1971.
 struct Wide {
   double high;
   double low;

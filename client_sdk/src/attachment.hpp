@@ -11,10 +11,10 @@
 namespace cohort {
 
 /// Attaches to a server, drives robots with `handler` until the run ends, and returns the reason. Logs every reason
-/// other than `finished`. The server shows `name` if the options have none. Waits for a server that is not there yet.
-/// Blocks; the handler runs on the calling thread, unless `inline_step` is set. A signal handler may set `stop`.
-/// `watch` is notified when the run is over, or null. `claims` can replace the selectors of the options, or is null.
-/// Throws wire::WireError if the server's address or the identity cannot be used.
+/// other than `finished`. The server shows `name` if the options have none. Waits until there is a server. Blocks; the
+/// handler runs on the calling thread, unless `inline_step` is set. A signal handler may set `stop`. `watch` is
+/// notified when the run is over, and `claims` can replace the selectors of the options; both may be null. Throws
+/// wire::WireError if the server's address or the identity cannot be used.
 ClientEnd run_client(FrameHandler& handler, const std::string& name, const ClientOptions& options,
                      const std::atomic<bool>& stop, RunWatch* watch, Claims* claims = nullptr);
 

@@ -13,7 +13,7 @@ struct CohortRunEvent {
 
 namespace cohort {
 
-/// Returns the C options, which override those of the environment.
+/// Converts the options of C, which override those of the environment.
 template <class Options>
 Options options_in_c(const CohortOptions* given, const std::string& label) {
   Options options;

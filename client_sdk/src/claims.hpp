@@ -17,14 +17,14 @@ class Claims {
     has_news_ = true;
     if (wake_) wake_();
   }
-  /// Replaces `selectors` if others were set since the last call. Returns whether there were any.
+  /// Replaces `selectors` if others were set since the last call. Returns true if this is so.
   bool take(std::vector<std::string>& selectors) {
     const std::lock_guard lock(mutex_);
     if (!std::exchange(has_news_, false)) return false;
     selectors = selectors_;
     return true;
   }
-  /// Calls `wake` when selectors are set; if it is empty, no longer.
+  /// Calls `wake` each time selectors are set from now on; an empty `wake` cancels this.
   void on_set(std::function<void()> wake) {
     const std::lock_guard lock(mutex_);
     wake_ = std::move(wake);

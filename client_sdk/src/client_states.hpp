@@ -21,10 +21,11 @@ class ClientStates {
   /// Calls `wake` on DDS threads when there is something to do.
   ClientStates(wire::Participant& participant, std::uint64_t client, std::function<void()> wake);
 
-  /// Returns false if the identity was made without the right to it; the client then works without.
+  /// Returns false if the permissions of the identity do not cover the topic; the client then works without saved
+  /// states.
   bool are_possible() const { return writer_.has_value(); }
 
-  /// Starts a lease, whose controllers have been started.
+  /// Begins a lease, after its controllers have been started.
   void begin(const wire::Admit& admit);
   /// Returns true if frames must wait until the controllers have their state.
   bool are_awaited() const { return fetched_.has_value(); }

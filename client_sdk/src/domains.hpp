@@ -10,7 +10,7 @@ namespace cohort {
 /// std::invalid_argument with the expected format.
 std::vector<std::uint32_t> parse_domains(std::string_view text);
 
-/// Returns the domain of a server for this process, so that processes are distributed over the domains.
+/// Returns one of `domains` for this process, chosen by its id, so that processes are distributed over the domains.
 std::uint32_t domain_of_this_process(const std::vector<std::uint32_t>& domains);
 
 }  // namespace cohort

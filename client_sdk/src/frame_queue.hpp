@@ -13,14 +13,14 @@ namespace cohort {
 
 /// The frames of one client between arrival and answer (docs/protocol.md, "Frames and answers"). Answers each frame of
 /// a lease once, in tick order, and keeps the latest answers for frames that the server sends again. If all robots of a
-/// lease are free, it answers only the newest frame. Pure logic without threads or clocks; allocates nothing once the
-/// frames have their size.
+/// lease are free, it answers only the newest frame. Pure logic without threads or clocks; allocates no memory once its
+/// buffers have grown to the size of the frames.
 class FrameQueue {
  public:
   /// Starts a lease: discards the answers, and the frames of earlier leases.
   void begin(const wire::Admit& admit);
 
-  /// Continues a lease that has more robots, under a new epoch: keeps the answers.
+  /// Continues a lease that now has more robots and a new epoch: keeps the answers.
   void extend(const wire::Admit& admit);
 
   /// Adds a frame. A frame that was answered is scheduled for a repeat. A frame that waits or is being answered is

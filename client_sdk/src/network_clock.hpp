@@ -5,8 +5,8 @@
 
 namespace cohort {
 
-/// The machine's clock, for the network, also in a program whose clocks `cohort exec` replaces by those of the
-/// simulation. In other programs it is std::chrono::steady_clock.
+/// The machine's monotonic clock, for network time-outs. It measures real time even in a program whose clocks `cohort
+/// exec` replaces with simulated time. In other programs it is std::chrono::steady_clock.
 struct NetworkClock {
   // NOLINTBEGIN(readability-identifier-naming): as std::chrono has them.
   using duration = std::chrono::nanoseconds;
@@ -19,7 +19,7 @@ struct NetworkClock {
   static time_point now() noexcept;
 };
 
-/// Makes the calling thread wait by the machine's clock during the lifetime of this object.
+/// Makes waits of the calling thread use the machine's clock during the lifetime of this object.
 class WaitsByNetworkClock {
  public:
   WaitsByNetworkClock() noexcept;

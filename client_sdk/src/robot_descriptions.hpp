@@ -7,11 +7,11 @@
 
 namespace cohort {
 
-/// Robot descriptions received from servers. A server that replaces another is another DDS participant, and may use the
-/// same number for another description.
+/// Robot descriptions received from servers. A server that replaces another one is a different DDS participant, and may
+/// reuse a number for another description.
 class RobotDescriptions {
  public:
-  /// Adds a description; replaces an earlier one of the server with this number.
+  /// Adds a description; replaces an earlier one with the same number from the same server.
   void add(const wire::RobotDescription& description, std::uint64_t server);
 
   /// Returns true if the server has described all robots that it admits.

@@ -9,14 +9,14 @@ namespace cohort {
 /// recording, would receive its output. Called first in `main`.
 void open_standard_streams();
 
-/// Lets the program continue when a pipe that it writes to has lost its reader, so that it writes its files. Does not
-/// affect programs that it starts.
+/// Handles SIGPIPE, so that the program continues, and still writes its files, when the reader of a pipe has exited.
+/// Does not affect programs that it starts.
 void outlive_readers();
 
-/// Writes to standard output, and stores the first error.
+/// Writes to standard output, and stores the first error for `flush_output`.
 void write_output(std::string_view text);
 
-/// Prints a line on standard error, without control sequences for terminals, and not longer than people read.
+/// Prints a message and a newline on standard error, with control characters replaced, and at most 16 KiB of it.
 void print_message(std::string_view text);
 
 /// Flushes standard output. Returns the errno value of the first write that failed since the start, or 0.

@@ -292,7 +292,7 @@ struct OperationField {
   }
 };
 
-/// The result of the operation of a Reply, whose number is read before.
+/// The result of the operation in a Reply. The number of the operation must be read first.
 struct ReturnedField {
   using Sample = cohort_v1_Reply;
   static_assert(lists_all_members_of_each(std::type_identity<Returned>{}));

@@ -10,7 +10,7 @@
 #include "idl/dds/identity.hpp"
 #include "idl/dds/wire_error.hpp"
 
-/// Shared by the files of idl/, and not for others: the only header that includes Cyclone DDS.
+/// Internal to idl/: the only header that includes Cyclone DDS.
 namespace cohort::wire {
 
 /// Returns `result` if it is a handle or a count. Otherwise throws WireError with the attempted operation and the error
@@ -45,7 +45,7 @@ struct ParticipantState {
 
 using Qos = std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)>;
 
-/// Creates a participant in a domain with this configuration of Cyclone and these policies. Other participants of this
+/// Creates a participant in a domain with this configuration of Cyclone DDS and this QoS. Other participants of this
 /// process may have other configurations. Throws WireError.
 std::unique_ptr<ParticipantState> join_domain(std::uint32_t domain, const std::string& configuration,
                                               const dds_qos_t* qos);
@@ -53,10 +53,11 @@ std::unique_ptr<ParticipantState> join_domain(std::uint32_t domain, const std::s
 /// Creates a QoS without policies.
 Qos make_qos();
 
-/// Gives a participant this identity. Throws WireError if the plugins of DDS Security are not installed.
+/// Adds the identity to the QoS of a participant. Throws WireError if the plugins of DDS Security are not installed.
 void secure(dds_qos_t* qos, const Identity& identity);
 
-/// Returns the text for people if a log message of Cyclone reports a refused handshake for the first time.
+/// Returns a human-readable text if a log message of Cyclone DDS reports a refused handshake that has not been reported
+/// before.
 std::optional<std::string> refusal_told_first(std::string_view message);
 
 }  // namespace cohort::wire

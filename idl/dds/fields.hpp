@@ -13,13 +13,13 @@
 
 #include "idl/dds/loans.hpp"
 
-/// One list of fields for each message. It is used to lend the message to a sample, the
-/// struct that idlc generates from cohort.idl, and to read it from one. It also checks that no field of either is
-/// missing.
+/// The list of fields of each message. It serves to convert messages to and from samples, the structs that idlc
+/// generates from cohort.idl. To lend a message means that its sample points to the data of the message. At compile
+/// time, the list is checked to contain every field of both.
 namespace cohort::wire {
 
-/// The fields of a message or a part of one. Specializations in message_fields.hpp and control_fields.hpp use `Between`
-/// and define `fields`, a tuple of results of `field` and similar functions, and for messages `topic`.
+/// The fields of a message, or of a struct in a message. Specializations in message_fields.hpp and control_fields.hpp
+/// use `Between` and define `fields`, a tuple of results of `field` and similar functions, and for messages `topic`.
 template <class Message>
 struct OnWire {
   static constexpr std::tuple<> fields{};
@@ -255,7 +255,7 @@ struct OptionalField {
   constexpr auto samples() const { return std::tuple(is_set, sampled); }
 };
 
-/// A member that may be absent, with a field of the sample that says so.
+/// An optional member, with a flag in the sample that says whether it is set.
 template <class Message, class Value, class Sample, class Sampled>
 constexpr OptionalField<Message, Value, Sample, Sampled> optional_field(std::optional<Value> Message::*member,
                                                                         bool Sample::*is_set,

@@ -33,9 +33,9 @@ inline constexpr std::string_view key_file = "key.pem";
 inline constexpr std::string_view governance_file = "governance.p7s";
 inline constexpr std::string_view permissions_file = "permissions.p7s";
 
-/// The participant of observers, the only one where WorldState is written.
+/// The participant of observers, the only one that writes WorldState.
 inline constexpr std::uint32_t observers_participant = 0;
-/// Participants with a higher index would have the ports of the next domain.
+/// The greatest index of a participant: a greater one would use the ports of the next domain.
 inline constexpr std::uint32_t last_participant = 119;
 
 /// Returns true if the name is valid for an identity.

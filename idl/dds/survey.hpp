@@ -14,7 +14,8 @@
 /// Information about a domain, for diagnosis.
 namespace cohort::wire {
 
-/// Returns the major version of the protocol of a topic: 2 for `cohort/v2/join`. None if it is not a Cohort topic.
+/// Returns the major version of the protocol of a topic: 2 for `cohort/v2/join`. Returns nothing if this is not a topic
+/// of Cohort.
 std::optional<std::uint32_t> major_version_of(std::string_view topic);
 
 /// Reports endpoints of other major versions, which never match ours. Calls `callback` with the version, on a DDS
@@ -44,8 +45,9 @@ struct Survey {
 Survey survey(std::uint32_t domain, const std::string& address, const std::optional<Identity>& identity,
               std::chrono::milliseconds patience);
 
-/// Return the version of Cyclone DDS that this was built with, and the library in use.
+/// Returns the version of Cyclone DDS that this program was built with.
 std::string dds_version();
+/// Returns the path of the library of Cyclone DDS that is in use.
 std::filesystem::path dds_library();
 
 }  // namespace cohort::wire

@@ -27,7 +27,7 @@ class Writer {
   /// Writes a message. Returns false if DDS did not accept it in time (100 ms): the message counts as lost. Throws
   /// WireError for other errors.
   bool write(const Message& message);
-  /// Waits until every matched reader has received everything; returns false if that took too long.
+  /// Waits until every matched reader has received everything. Returns false if this takes longer than `at_most`.
   bool wait_until_received(std::chrono::milliseconds at_most);
   /// Returns the number of matched readers.
   std::uint32_t matched() const;
@@ -41,13 +41,13 @@ class Writer {
 struct Sender {
   std::uint64_t writer = 0;  ///< identifies the DDS writer within this process
   std::uint64_t participant =
-      0;  ///< identifies its participant likewise: DDS determines it, the sender cannot choose it
+      0;  ///< identifies the participant of the writer, likewise; set by DDS, so that the sender cannot forge it
 };
 
 /// Reads messages of one type. All callbacks run on a DDS thread, one at a time for each reader, and possibly before
-/// the constructor returns. They must not throw, block for long, or create or destroy entities. They are set at
-/// construction, so nothing is missed. The destructor waits until none runs, so do not call it with a lock that a
-/// callback takes.
+/// the constructor returns. They must not throw, block for long, or create or destroy DDS entities. They are set at
+/// construction, so nothing is missed. The destructor waits until no callback is running, so do not call it while
+/// holding a mutex that a callback locks.
 template <class Message>
 class Reader {
  public:

@@ -10,7 +10,7 @@ class WireError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Error: another process uses the port of the server's domain.
+/// The error thrown if another process uses the port of the server's domain.
 class DomainTaken : public WireError {
  public:
   using WireError::WireError;

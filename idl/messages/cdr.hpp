@@ -15,21 +15,21 @@
 #include <utility>
 #include <vector>
 
-/// CDR, little-endian, as in ROS 2: the encapsulation 00 01 00 00, then the fields. Each number is at a multiple of its
-/// size from the first byte after the encapsulation (OMG DDSI-RTPS 2.5, 10; CORBA 3.4 part 2, 9.3).
+/// Little-endian CDR, as in ROS 2: the encapsulation header 00 01 00 00, then the fields. Each number is aligned to its
+/// size, counted from the first byte after the header (OMG DDSI-RTPS 2.5, 10; CORBA 3.4 part 2, 9.3).
 namespace cohort::messages {
 
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<const std::byte>;
 
-/// Error: a message ends too early or is not little-endian CDR.
+/// The error thrown if a message ends too early or is not little-endian CDR.
 class CdrError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A field of a message: its name in ROS, its member, and the maximum length of its text or list in ROS (0: no limit).
-/// Created by `field`.
+/// A field of a message: its name in ROS, its member, and the maximum length of the string or sequence in ROS (0: no
+/// limit). Created by `field`.
 template <class Message, class Value>
 struct Field {
   const char* name;
@@ -59,8 +59,8 @@ concept RosMessage = requires {
   T::fields;
 };
 
-/// A message to which later versions have added fields at its end: `least_fields` is the number of fields in the first
-/// version. A message without the others is decoded with their default values. Only for a message that is not nested.
+/// A message that later versions have extended with fields at its end. `least_fields` is the number of fields in the
+/// first version; further fields that are missing keep their default values. Not for nested messages.
 template <class T>
 concept GrownMessage = RosMessage<T> && requires {
   T::least_fields;
@@ -68,11 +68,11 @@ concept GrownMessage = RosMessage<T> && requires {
 
 static_assert(std::endian::native == std::endian::little);
 
-/// ROS gives a message without fields one byte, because IDL has no empty structs.
+/// True for a message without fields. ROS encodes it as one byte, because IDL has no empty structs.
 template <RosMessage Message>
 inline constexpr bool has_no_fields = std::tuple_size_v<decltype(Message::fields)> == 0;
 
-/// Values with the same bytes in CDR and in memory.
+/// True for types whose values have the same bytes in CDR and in memory.
 template <class Value>
 inline constexpr bool is_plain =
     (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) || std::is_same_v<Value, std::byte>;
@@ -171,7 +171,8 @@ class CdrWriter {
   Bytes bytes_;
 };
 
-/// Reads the output of a CdrWriter, or of ROS. Throws CdrError; limits memory to the size of the message.
+/// A reader of messages from a CdrWriter or from ROS. Throws CdrError. The length of a sequence is checked against the
+/// size of the message before memory is allocated.
 class CdrReader {
  public:
   explicit CdrReader(ByteView message) {
@@ -231,7 +232,7 @@ class CdrReader {
     at_ += skipped + size;
     return bytes_.data() + (at_ - size);
   }
-  // Reads a number of elements with at least `bytes_each` each.
+  // Reads the number of elements, each of which takes at least `bytes_each` bytes.
   std::size_t read_count(std::size_t bytes_each) {
     const auto count = get<std::uint32_t>();
     if (count > left() / std::max<std::size_t>(1, bytes_each))

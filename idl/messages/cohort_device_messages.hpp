@@ -2,8 +2,8 @@
 
 #include "idl/messages/ros_geometry_messages.hpp"
 
-/// Messages of the ROS 2 package cohort_msgs (idl/cohort_msgs), for devices without a message in ROS. Angles are in the
-/// frame of the header, counter-clockwise from its x axis; elevations are above its xy plane.
+/// Messages of the ROS 2 package cohort_msgs (idl/cohort_msgs), for devices that have no standard ROS message. Angles
+/// are in the frame of the header, counter-clockwise from its x axis; elevations are above its xy plane.
 namespace cohort::messages::cohort_msgs {
 
 using ros::ColorRGBA;
@@ -12,13 +12,13 @@ using ros::Point;
 using ros::Pose;
 using ros::Vector3;
 
-/// Readings of light sensors on a ring, or of proximity sensors with a table. The bearing of sensor I is
-/// `first_bearing` + I `bearing_increment`.
+/// Readings of a ring of light sensors, or of proximity sensors with a sample file. The bearing of sensor i is
+/// `first_bearing` + i * `bearing_increment`.
 struct RingReadings {
   Header header{};
   double first_bearing = 0;        ///< [rad]
   double bearing_increment = 0;    ///< [rad]
-  std::vector<double> readings{};  ///< from 0 to 1, or in the unit of the table
+  std::vector<double> readings{};  ///< from 0 to 1, or in the unit of the sample file
   static constexpr const char* type = "cohort_msgs/msg/RingReadings";
   static constexpr auto fields = std::tuple(
       field("header", &RingReadings::header), field("first_bearing", &RingReadings::first_bearing),
@@ -87,9 +87,9 @@ struct Spots {
 
 struct GripperState {
   Header header{};
-  double opening = 0;      ///< from 0, closed, to 1
+  double opening = 0;      ///< from 0 (closed) to 1 (open)
   bool gripping = false;   ///< true if it holds something
-  bool grippable = false;  ///< true if there is something between its sides
+  bool grippable = false;  ///< true if there is something between the jaws
   double force = 0;        ///< force on the held object [N]
   static constexpr const char* type = "cohort_msgs/msg/GripperState";
   static constexpr auto fields =
@@ -110,7 +110,7 @@ struct Inclination {
   bool operator==(const Inclination&) const = default;
 };
 
-/// Force of a joint's child on its parent, in the xy plane of the parent.
+/// Force that the child link of a joint exerts on the parent link, in the xy plane of the parent.
 struct Traction {
   Header header{};
   double direction = 0;  ///< [rad]
@@ -138,7 +138,7 @@ struct TrackEncoders {
   bool operator==(const TrackEncoders&) const = default;
 };
 
-/// A contact of a collision.
+/// The state of a contact sensor on a collision.
 struct Contact {
   Header header{};
   bool touching = false;
@@ -149,7 +149,7 @@ struct Contact {
   bool operator==(const Contact&) const = default;
 };
 
-/// Effort and velocity of a joint's motor.
+/// Effort of a joint's motor.
 struct Effort {
   Header header{};
   std::string joint{};
@@ -180,7 +180,8 @@ struct Altitude {
   bool operator==(const Altitude&) const = default;
 };
 
-/// Fix of a satellite receiver in a world without a place on the earth: east, north and up of the world's origin.
+/// Position fix of a satellite navigation receiver in a world without geographic coordinates: east, north and up from
+/// the world's origin.
 struct LocalFix {
   Header header{};
   Point position{};    ///< [m]
@@ -193,7 +194,7 @@ struct LocalFix {
 
 /// An object that a logical camera sees.
 struct VisibleObject {
-  std::uint32_t object = 0;  ///< its number in the world
+  std::uint32_t object = 0;  ///< number of the object in the world
   Pose pose{};               ///< [m]
   static constexpr const char* type = "cohort_msgs/msg/VisibleObject";
   static constexpr auto fields =

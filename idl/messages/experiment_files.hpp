@@ -6,7 +6,8 @@
 
 #include "idl/messages/cdr.hpp"
 
-/// The files of a run's experiment, for clients that read it too: docs/protocol.md, "Control", GetExperiment.
+/// The files of a run's experiment, for clients that read the experiment themselves: docs/protocol.md, "Control",
+/// GetExperiment.
 namespace cohort::messages {
 
 struct ExperimentFile {

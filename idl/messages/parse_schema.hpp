@@ -7,7 +7,7 @@
 
 namespace cohort::messages {
 
-/// Error: a text is not a message schema in the format of rosbag2.
+/// The error thrown if a text is not a message schema in the format of rosbag2.
 class SchemaError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -6,8 +6,8 @@
 /// endpoints.
 namespace cohort::messages::ros {
 
-/// Identifies a participant or an endpoint. It has 16 bytes from the release Iron on. In Humble it has 24, of which the
-/// last 8 are 0 (a `char[24]` there, with the same bytes).
+/// The GUID of a participant or an endpoint. It has 16 bytes since the release Iron. In Humble, it is a `char[24]`,
+/// whose last 8 bytes are 0.
 template <std::size_t size>
 struct GidOf {
   std::array<std::uint8_t, size> data{};

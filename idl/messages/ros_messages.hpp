@@ -22,7 +22,8 @@ struct TFMessage {
   bool operator==(const TFMessage&) const = default;
 };
 
-/// Converts a time to seconds and nanoseconds. Times after 2038 become the last one that the message can represent.
+/// Converts a time to seconds and nanoseconds. Times after 2038 are clamped to the last time that the message can
+/// represent.
 Time time(std::chrono::nanoseconds since_epoch);
 std::chrono::nanoseconds nanoseconds(const Time& time);
 

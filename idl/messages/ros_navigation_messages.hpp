@@ -18,8 +18,8 @@ struct Odometry {
   bool operator==(const Odometry&) const = default;
 };
 
-/// A point of a trajectory, in the order of its joints: position [rad] or [m], its first and second derivatives per s
-/// and s^2, and effort [N m] or [N]. Each list is as long as the list of joints, or empty.
+/// A point of a trajectory: positions [rad] or [m], velocities [rad/s] or [m/s], accelerations [rad/s^2] or [m/s^2] and
+/// efforts [N m] or [N]. Each list is in the order of the joint names, or empty.
 struct JointTrajectoryPoint {
   std::vector<double> positions{};
   std::vector<double> velocities{};

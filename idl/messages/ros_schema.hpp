@@ -2,7 +2,7 @@
 
 #include "idl/messages/cdr.hpp"
 
-/// Descriptions of messages for rosbag2, Foxglove and the graph of ROS 2.
+/// Descriptions of messages for rosbag2, Foxglove and the ROS 2 graph.
 namespace cohort::messages {
 
 /// The type of a field, as in type_description_interfaces/msg/FieldType of ROS 2.
@@ -25,7 +25,7 @@ struct RosFieldType {
     string = 17,
     bounded_string = 21
   };
-  // Added to the type for several values.
+  // Added to the type of one value, for arrays and sequences.
   static constexpr int array = 48;
   static constexpr int bounded_sequence = 96;
   static constexpr int unbounded_sequence = 144;
@@ -41,8 +41,8 @@ struct RosField {
   RosFieldType type;
 };
 
-/// The definition of a message: `package/Name`, its lines `type name`, and the messages nested in it. For its hash, it
-/// also has `package/msg/Name` and its fields.
+/// The definition of a message: `name` is `package/Name`, `text` has a line `type name` for each field, and `parts` are
+/// the nested messages. The type hash is computed from `type`, which is `package/msg/Name`, and `fields`.
 struct RosDefinition {
   std::string name;
   std::string text;

@@ -27,7 +27,7 @@ struct LaserScan {
   bool operator==(const LaserScan&) const = default;
 };
 
-/// A number of each point: `count` values of type `datatype`, `offset` bytes from the point's start.
+/// A field of each point: `count` values of type `datatype`, `offset` bytes from the point's start.
 struct PointField {
   std::string name{};
   std::uint32_t offset = 0;
@@ -59,7 +59,7 @@ struct PointCloud2 {
       field("point_step", &PointCloud2::point_step), field("row_step", &PointCloud2::row_step),
       field("data", &PointCloud2::data), field("is_dense", &PointCloud2::is_dense));
   bool operator==(const PointCloud2&) const = default;
-  /// One row of points x, y, z [m], three numbers each.
+  /// Sets one row of points; `coordinates` has x, y and z of each point [m].
   void set_points(const std::vector<float>& coordinates);
 };
 
@@ -144,8 +144,8 @@ struct JointState {
   bool operator==(const JointState&) const = default;
 };
 
-/// Distances [m], `field_of_view` [rad], variance [m^2]; 0: unknown. In Humble the message has no variance; its readers
-/// ignore these last bytes.
+/// Distances [m], `field_of_view` [rad], variance [m^2]; 0: unknown. In Humble the message has no variance, and readers
+/// ignore the additional bytes.
 struct Range {
   Header header{};
   std::uint8_t radiation_type = 0;

@@ -6,7 +6,7 @@
 
 #include "idl/messages/cdr.hpp"
 
-/// The events of a run, and how far back it can go: docs/protocol.md, "Control", GetHistory.
+/// The events of a run, and the snapshots to which it can return: docs/protocol.md, "Control", GetHistory.
 namespace cohort::messages {
 
 /// An event that happened once or several times.

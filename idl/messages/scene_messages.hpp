@@ -7,7 +7,7 @@
 
 #include "idl/messages/cdr.hpp"
 
-/// Descriptions of a world for viewers, as messages of a ROS 2 package `cohort_msgs` would be. SI units, radians;
+/// Descriptions of a world for viewers, in the form of messages of a ROS 2 package `cohort_msgs`. SI units, radians;
 /// frames as in description/model.hpp. A pose is x y z and a quaternion qx qy qz qw. Numbers that are only displayed
 /// are float32.
 namespace cohort::messages {
@@ -50,7 +50,7 @@ struct SceneShape {
 };
 
 struct SceneMesh {
-  std::vector<float> vertices;           ///< x y z of each
+  std::vector<float> vertices;           ///< x y z of each vertex [m]
   std::vector<std::uint32_t> triangles;  ///< three vertices each, counter-clockwise seen from outside
   std::vector<std::uint8_t> colors{};    ///< red, green, blue of each triangle; empty if there are no colours
   static constexpr const char* type = "cohort_msgs/msg/SceneMesh";
@@ -76,7 +76,7 @@ struct SceneSensor {
   std::vector<float> origins;     ///< x y z of each ray's origin in its link
   std::vector<float> directions;  ///< x y z of each ray's unit direction in its link
   float range = 0.0f;             ///< [m]
-  float cone = 0.0f;              ///< full angle of the cone that a ray represents; 0: a ray
+  float cone = 0.0f;              ///< full angle of the cone that a ray represents [rad]; 0: no cone
   std::string channel;            ///< channel of the first ray's reading; the others follow it in the observation
   static constexpr const char* type = "cohort_msgs/msg/SceneSensor";
   static constexpr auto fields = std::tuple(
@@ -180,10 +180,10 @@ struct SceneDrive {
                                             field("ahead", &SceneDrive::ahead), field("turn", &SceneDrive::turn));
 };
 
-/// The contents of a world. A new one is sent for each world, when objects are added, and at the end of the last run;
-/// the last one is empty.
+/// The contents of a world. A new scene is sent for each world, when objects are added, and at the end of the last run;
+/// this last scene is empty.
 struct Scene {
-  std::uint32_t revision = 0;  ///< used by frames; never repeated by a source
+  std::uint32_t revision = 0;  ///< identifies the scene in frames; a source never repeats it
   std::string world;
   std::int64_t step_ns = 0;
   std::vector<SceneMesh> meshes;
@@ -193,13 +193,13 @@ struct Scene {
   std::vector<SceneEmitter> tones;
   std::vector<SceneEmitter> leds;
   std::string end{};       ///< end of the run as in recordings, such as `finished`; empty while it runs
-  std::string end_text{};  ///< reason, for people; may be empty
+  std::string end_text{};  ///< human-readable reason; may be empty
   std::vector<SceneTexture> textures{};
   std::vector<SceneMeshTexture> mesh_textures{};
   std::vector<SceneShapeTexture> shape_textures{};
   std::vector<SceneDrive> drives{};  ///< sorted by model
   static constexpr const char* type = "cohort_msgs/msg/Scene";
-  static constexpr std::size_t least_fields = 11;  ///< those of 0.1, up to `end_text`
+  static constexpr std::size_t least_fields = 11;  ///< fields of version 0.1, up to `end_text`
   static constexpr auto fields =
       std::tuple(field("revision", &Scene::revision), field("world", &Scene::world), field("step_ns", &Scene::step_ns),
                  field("meshes", &Scene::meshes), field("models", &Scene::models), field("entities", &Scene::entities),

@@ -8,7 +8,8 @@
 
 namespace cohort {
 
-/// Returns the number of letters to add, remove or replace to turn one text into the other (Levenshtein).
+/// Returns the number of characters to insert, delete or replace to turn one text into the other (Levenshtein
+/// distance).
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);  // one row of the table
   std::iota(row.begin(), row.end(), std::size_t{0});

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-/// Makes text from outside safe to print. Text passes through here when it is received, and again before it is written
-/// to a terminal.
+/// Makes untrusted text safe to print. Text is cleaned when it is received, and again before it is written to a
+/// terminal.
 namespace cohort {
 
 /// The first character of a UTF-8 text.

@@ -8,7 +8,8 @@
 #include "idl/wire/operations.hpp"
 
 /// The messages of cohort.idl that control a run, as C++ values: docs/protocol.md, "Control". Names, states and results
-/// are those of ROS 2's simulation_interfaces where it has them; additional ones start at 100.
+/// are those of ROS 2's simulation_interfaces where that package defines them; the numbers of Cohort's own operations
+/// start at 100.
 namespace cohort::wire {
 
 enum class ResultCode : std::uint32_t {
@@ -36,7 +37,7 @@ struct Request {
   std::uint64_t client = 0;
   std::uint32_t minor = minor_version;
   std::uint64_t number = 0;  ///< 1, 2, 3 ...; a repeated number requests the reply again
-  std::string label{};       ///< name of the client, for people
+  std::string label{};       ///< human-readable name of the client
   Operation operation{};
   bool operator==(const Request&) const = default;
 
@@ -48,7 +49,7 @@ struct Reply {
   std::uint64_t number = 0;                                         ///< number of the request
   OperationCode operation = OperationCode::get_simulator_features;  ///< operation of the request
   ResultCode result = ResultCode::ok;
-  std::string error_message{};  ///< sentence for people, also after success
+  std::string error_message{};  ///< human-readable sentence, also after success
   SimulationState state{};      ///< current state of the simulation
   std::uint32_t run = 0;
   std::uint64_t tick = 0;

@@ -83,7 +83,7 @@ struct EntityState {
 };
 
 struct ControllerStatus {
-  std::string label{};  ///< controller, process and host, for people
+  std::string label{};  ///< human-readable: controller, process and host
   std::uint64_t client = 0;
   std::vector<std::uint32_t> robots{};  ///< ids
   bool alive = false;
@@ -91,7 +91,7 @@ struct ControllerStatus {
   std::int64_t awaited_ns = 0;  ///< how long the barrier has waited for it
   std::uint64_t due_tick = 0;   ///< tick of its oldest unanswered frame; of the next frame if all are answered
   std::uint64_t answers = 0;
-  std::uint64_t late = 0;  ///< number of misses
+  std::uint64_t late = 0;  ///< number of missed deadlines
   std::uint64_t rejected = 0;
   std::uint64_t resent = 0;        ///< number of frames sent again
   std::int64_t answer_p50_ns = 0;  ///< from the first sending of a frame to its answer
@@ -109,8 +109,8 @@ struct SimulationStatus {
   double real_time_factor = 0.0;
   std::uint64_t state_hash = 0;
   std::uint32_t robots = 0;
-  std::uint32_t awaited_count = 0;     ///< number of robots
-  std::vector<std::string> awaited{};  ///< names of the first of them
+  std::uint32_t awaited_count = 0;     ///< number of robots that the run waits for
+  std::vector<std::string> awaited{};  ///< names of the first of these robots
   std::int64_t waiting_ns = 0;         ///< time since the frames of this tick were sent
   std::vector<ControllerStatus> controllers{};
   bool operator==(const SimulationStatus&) const = default;
@@ -139,7 +139,7 @@ struct GetSimulatorFeatures {
   bool operator==(const GetSimulatorFeatures&) const = default;
 };
 
-/// A query that every Reply answers.
+/// A query without a result of its own: every Reply contains the state.
 struct GetSimulationState {
   static constexpr auto code = OperationCode::get_simulation_state;
   using Returned = std::monostate;
@@ -166,7 +166,7 @@ struct ResetSimulation {
   static constexpr auto code = OperationCode::reset_simulation;
   using Returned = std::monostate;
   std::uint32_t scope = 0;              ///< 0 or 255: all
-  std::optional<std::uint64_t> seed{};  ///< that of the run if absent
+  std::optional<std::uint64_t> seed{};  ///< the run's seed if absent
   bool operator==(const ResetSimulation&) const = default;
 };
 
@@ -190,7 +190,7 @@ struct SetEntityState {
   using Returned = EntityName;
   std::string entity{};
   std::optional<Pose> pose{};    ///< unchanged if absent
-  std::optional<Twist> twist{};  ///< unchanged if absent; one of both must be present
+  std::optional<Twist> twist{};  ///< unchanged if absent; at least one of the two must be present
   bool operator==(const SetEntityState&) const = default;
 };
 
@@ -282,7 +282,7 @@ struct LoadSnapshot {
 struct StartRecording {
   static constexpr auto code = OperationCode::start_recording;
   using Returned = std::monostate;
-  std::string recorded{};  ///< YAML as in an experiment's `record`; if empty, that of the experiment
+  std::string recorded{};  ///< YAML as in an experiment's `record`; if empty, the `record` of the experiment
   bool operator==(const StartRecording&) const = default;
 };
 
@@ -314,12 +314,13 @@ struct GetHistory {
   bool operator==(const GetHistory&) const = default;
 };
 
-/// Holds the run's time: the run leaves a tick only when each client that holds it has requested a later one.
+/// Holds the run's time: the run advances past a tick only when each client that holds the time has requested a later
+/// tick.
 struct AdvanceTime {
   static constexpr auto code = OperationCode::advance_time;
   using Returned = std::monostate;
-  /// Number of ticks after that of the last reply, at most 2^62; the reply is sent when the frames of that tick are
-  /// out. 0 starts the hold, and is answered at once.
+  /// Number of ticks after that of the last reply, at most 2^62; the reply is sent when the frames of that tick have
+  /// been sent. 0 starts the hold, and is answered at once.
   std::uint64_t steps = 0;
   bool release = false;  ///< ends the hold instead
   bool operator==(const AdvanceTime&) const = default;

@@ -21,8 +21,8 @@ class Actuator {
   virtual ~Actuator() = default;
   /// Returns the channels that `apply` reads, in order.
   virtual std::vector<Channel> channels() const = 0;
-  /// Sets the device's targets for the next step from one value for each float64 of the channels, all within range.
-  /// Called in the order of the robots, on one thread.
+  /// Sets the device's targets for the next step. `values` has one value for each float64 of the channels, all within
+  /// range. Called in the order of the robots, on one thread.
   virtual void apply(std::span<const double> values) = 0;
 };
 

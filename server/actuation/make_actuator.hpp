@@ -6,7 +6,7 @@
 
 namespace cohort::actuation {
 
-/// Returns the actuator of the device at `mount`, or null if it is only a sensor.
+/// Returns the actuator of the device at `mount`, or null if the device is only a sensor.
 std::unique_ptr<Actuator> make_actuator(const Mount& mount);
 
 }  // namespace cohort::actuation

@@ -14,7 +14,7 @@
 
 namespace cohort::actuation {
 
-/// An action of one robot.
+/// A user-defined action of one robot.
 struct ActionOfRobot {
   std::string name;
   RobotId robot;
@@ -24,10 +24,11 @@ struct ActionOfRobot {
   bool begins = false;   ///< not done in the previous step
 };
 
-/// The actions of robots that have no joint. Commands come from one thread, between steps.
+/// The user-defined actions of robots, which no joint represents (description::UserAction). Commands come from one
+/// thread, between steps.
 class UserActions {
  public:
-  /// The robot acts above this value [1].
+  /// The robot acts while the commanded value is above this threshold [1].
   static constexpr double threshold = 0.5;
 
   /// The arguments must outlive this object.

@@ -68,14 +68,14 @@ class Batch {
   /// Steps all worlds that are not done by `ticks` ticks, which is at least 1. `only`, if not empty, has a value for
   /// each world; worlds with 0 are not stepped. Throws std::invalid_argument before any world has moved if a command is
   /// invalid, naming world, robot and channel. Throws std::runtime_error after all worlds have moved if an event cannot
-  /// be carried out, or a body breaks in a `strict` world. It names the first such world, and each of them has
-  /// `failed`. Ends early if `stop` becomes true; null: never.
+  /// be carried out, or if the state of a body in a `strict` world is no longer finite. The message names the first
+  /// such world, and each of them is marked `failed`. Ends early if `stop`, which may be null, becomes true.
   void step(std::uint64_t ticks = 1, std::span<const std::uint8_t> only = {}, const std::atomic<bool>* stop = nullptr);
 
   /// Restarts a world with `seed`, as if the experiment had been read with it. Reads no file. Throws
   /// std::invalid_argument, and changes nothing, if there is no such world or the experiment cannot have this seed.
   void reset(std::size_t world, std::uint64_t seed);
-  /// Does the same with each object of the experiment at `X_WM[object]`, instead of the position from the seed.
+  /// Does the same, but places each object of the experiment at `X_WM[object]` instead of the pose from the seed.
   void reset(std::size_t world, std::uint64_t seed, std::span<const Pose> X_WM);
 
   std::uint64_t tick(std::size_t world) const { return worlds_[world]->tick(); }
@@ -99,7 +99,7 @@ class Batch {
   std::uint64_t last_tick_;
   WorkerPool workers_;
   std::vector<std::unique_ptr<Simulation>> worlds_;
-  bool is_on_its_way_back_ = false;  // iterates over the worlds from the last one
+  bool is_on_its_way_back_ = false;  // the step visits the worlds from the last to the first
   std::uint32_t robots_ = 0;
   std::size_t observation_size_ = 0;
   std::size_t command_size_ = 0;

@@ -7,20 +7,22 @@
 
 namespace cohort {
 
-/// The error of a file that cannot be written. The message says what, to which file, why, and what to do.
+/// The error thrown if a file cannot be written. The message says what could not be written, to which file, why, and
+/// what to do.
 class WriteError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Returns the meaning of this errno value for a file that is written, and what to do.
+/// Returns the meaning of an errno value from writing a file, and what to do.
 std::string why_not_written(int error);
 
 /// Throws WriteError with this message if the disk is full or broken. Otherwise throws std::runtime_error, as the user
 /// could name another file.
 [[noreturn]] void refuse_to_write(const std::string& message, int error);
 
-/// Returns when the names in the folder of `file` survive a power failure. Returns 0, or an errno value.
+/// Synchronizes the folder of `file` with the disk, so that the names in it survive a power failure. Returns 0, or an
+/// errno value.
 int sync_folder_of(const std::filesystem::path& file);
 
 /// A file that replaces an existing one as a whole or not at all, even after a crash. It is written beside the target,
@@ -39,7 +41,8 @@ class AtomicFile {
   /// Returns the file to write until `commit`, for libraries that write files themselves.
   const std::filesystem::path& path() const { return path_; }
   void write(std::string_view bytes);
-  /// Returns when the file has its name, even after a power failure. After an exception it may be called again.
+  /// Gives the file its name, and returns when that would survive a power failure. May be called again after an
+  /// exception.
   void commit();
 
  private:

@@ -12,8 +12,8 @@ struct ControlGroup {
   std::filesystem::path folder;
 };
 
-/// Returns the groups of this process that have the controller, such as `cpu`: its own group and the visible parents of
-/// that. `root`: folder with /proc and /sys.
+/// Returns the groups of this process that have the controller, such as `cpu`: its own group and the visible ancestors
+/// of that group. `root`: folder with /proc and /sys.
 std::vector<ControlGroup> control_groups(const std::string& controller, const std::filesystem::path& root = "/");
 
 }  // namespace cohort

@@ -6,7 +6,7 @@
 namespace cohort {
 
 /// Accumulates 64-bit words into a 64-bit hash that depends on their values and order, with the body and finaliser of
-/// MurmurHash3 (Appleby, public domain). Doubles count by their bits, so -0.0 and 0.0 differ.
+/// MurmurHash3 (Appleby, public domain). Doubles are hashed by their bits, so -0.0 and 0.0 differ.
 class StateHash {
  public:
   void add(std::uint64_t word) {

@@ -24,7 +24,7 @@ using BodyId = Id<struct BodyTag>;              ///< a body of a world: an insta
 using LinkId = Id<struct LinkTag>;              ///< a link of a model
 using JointId = Id<struct JointTag>;            ///< a joint of a model
 using DeviceId = Id<struct DeviceTag>;          ///< a device of a model
-using RobotId = Id<struct RobotTag>;            ///< a robot of a world, which differs from its body
+using RobotId = Id<struct RobotTag>;            ///< a robot of a world; its body has another index
 using ConnectionId = Id<struct ConnectionTag>;  ///< a connection that a world made
 
 }  // namespace cohort

@@ -10,13 +10,13 @@
 
 namespace cohort {
 
-/// The error of a snapshot that cannot be read, or does not match.
+/// The error thrown if a snapshot cannot be read, or does not match the simulation.
 class SnapshotError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A writer of consecutive numbers in the memory layout of a little-endian machine.
+/// A writer of consecutive numbers in little-endian format.
 class SnapshotWriter {
  public:
   template <class Number>
@@ -74,14 +74,15 @@ class SnapshotReader {
     if (number > 1) throw SnapshotError("snapshot: a flag is neither 0 nor 1");
     flag = number == 1;
   }
-  /// Reads a number of elements that take at least `bytes_each` each.
+  /// Reads the number of elements that follow, each of which takes at least `bytes_each` bytes.
   std::size_t read_count(std::size_t bytes_each) {
     std::uint64_t count = 0;
     read(count);
     if (count > bytes_.size() / bytes_each) throw SnapshotError("the snapshot is incomplete");
     return static_cast<std::size_t>(count);
   }
-  /// Reads a number of `what` and throws SnapshotError unless it is `count`.
+  /// Reads the number of elements, and throws SnapshotError unless it is `count`. `what`: the name of the elements in
+  /// the message.
   void expect_count(std::size_t count, const std::string& what) {
     std::uint64_t saved = 0;
     read(saved);

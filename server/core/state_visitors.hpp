@@ -8,8 +8,8 @@
 #include "server/core/pose.hpp"
 #include "server/core/snapshot.hpp"
 
-/// Visitors that `visit_state` calls for each number of a state, so that hash, snapshot and restoring cover the same
-/// ones. `unusual` is for numbers that count only if they differ from their usual value.
+/// Visitors that `visit_state` calls for each number of a state, so that hash, save and restore cover the same numbers.
+/// `unusual` is for numbers that are hashed only if they differ from their usual value.
 namespace cohort {
 
 /// Adds each number of a state to the hash.
@@ -38,7 +38,7 @@ struct StateSaver {
     writer.add(choice);
   }
 };
-/// Reads each number. Throws SnapshotError for a number that such a state cannot have.
+/// Reads each number. Throws SnapshotError for a number that `numbers` does not allow.
 struct StateRestorer {
   enum class Numbers {
     finite,

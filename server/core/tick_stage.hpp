@@ -46,9 +46,9 @@ class TickStage {
  public:
   /// Returns the name of the stage; null between ticks.
   const char* name() const { return name_.load(std::memory_order_relaxed); }
-  /// Returns how many ticks, or requests between ticks, have begun.
+  /// Returns the number of ticks, and of requests between ticks, that have begun.
   std::uint64_t begun() const { return begun_.load(std::memory_order_relaxed); }
-  /// Measures the stages of all ticks. Call it before the first of them.
+  /// Measures the stages of all ticks. Call it before the first tick.
   void measure(StageTimes* times) { times_ = times; }
 
   /// The stage that this thread marks; null without a watchdog.
@@ -62,8 +62,9 @@ class TickStage {
   std::atomic<std::uint64_t> begun_{0};  // written by one thread
 };
 
-/// Marks the stages of a tick on this thread, until it is destroyed. Costs one look at a thread-local pointer without a
-/// watchdog, and otherwise a store for each stage. Marks may be nested; the outermost ones begin a tick or a request.
+/// Marks the stages of a tick on this thread, until it is destroyed. Without a watchdog, it costs one read of a
+/// thread-local pointer, otherwise one store for each stage. Marks may be nested; the outermost ones begin a tick or a
+/// request.
 class StageMarks {
  public:
   StageMarks() : stage_(TickStage::of_this_thread), before_(stage_ != nullptr ? stage_->name() : nullptr) {

@@ -22,7 +22,7 @@ class WorkerPool {
 
   /// Calls `body(begin, end, worker)` for chunks of at most `grain` indices that cover [0, count), and returns when all
   /// are done. `worker` < threads(), and no two concurrent chunks have the same one. Exceptions are passed on. Only one
-  /// loop may run at a time: not from inside a chunk, nor from two threads.
+  /// loop may run at a time: do not call this inside a chunk, or on two threads at once.
   template <class Body>
   void for_each_chunk(std::size_t count, std::size_t grain, Body&& body) {
     using Plain = std::remove_reference_t<Body>;

@@ -62,15 +62,15 @@ struct Beacon {
 };
 
 /// The emitters of robots and objects, which others perceive from a distance. Actuators change emitters, and sensors
-/// read them; in between `update` takes the poses of a new boundary. Emitters of a body that is not in the world are
-/// off, and those of a released body become those of the next body in its slot. Changes and `update` belong to one
-/// thread; all else may run from any thread in between.
+/// read them; between these, `update` computes the poses at the new boundary. Emitters of a body that is not in the
+/// world are off, and those of a released body become those of the next body in its slot. Changes and `update` are for
+/// one thread; between them, any thread may call the other functions.
 class Emitters {
  public:
   /// Creates the emitters of all instances, from their models and devices. Keeps references to both arguments.
   Emitters(const description::World& description, const physics::World& world);
 
-  /// Adds a new body with one of the description's models. Bodies are added as their world adds them.
+  /// Adds a new body with one of the description's models. Add bodies in the same order as to the world.
   void add_body(BodyId body, const description::Model& model);
   /// Updates the poses and the active emitters at this boundary.
   void update(WorkerPool& workers);
@@ -103,7 +103,7 @@ class Emitters {
     beacon_grid_.for_each_overlap({p_W - reach, p_W + reach}, visit);
   }
 
-  /// The first emitter of each kind of a device; the others follow it.
+  /// The index of the first emitter of each kind of a device; the other emitters follow it.
   struct OfDevice {
     std::uint32_t lamp = 0;
     std::uint32_t tone = 0;
@@ -119,11 +119,11 @@ class Emitters {
   void set_marker(std::uint32_t marker, const Eigen::Vector3d& color) { markers_[marker].color = color; }
   void set_beacon(std::uint32_t beacon, bool is_sending, std::span<const double> message);
 
-  /// Adds all state except poses.
+  /// Adds all state except poses to the hash.
   void hash(StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
-  /// Restores newly constructed emitters, after the world; `update` must follow. Throws SnapshotError if the snapshot
-  /// does not match.
+  /// Restores newly constructed emitters. Restore the world before, and call `update` afterwards. Throws SnapshotError
+  /// if the snapshot does not match.
   void restore(SnapshotReader& reader);
 
  private:

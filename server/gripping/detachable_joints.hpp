@@ -16,7 +16,7 @@ namespace cohort::gripping {
 /// order of the robots; const functions may be called from any thread between steps.
 class DetachableJoints {
  public:
-  /// A joint is to hold above this value [1].
+  /// A command above this threshold attaches the joint [1].
   static constexpr double holding = 0.5;
 
   /// The arguments must outlive this object. A joint to an unknown object never holds.

@@ -26,7 +26,7 @@ struct Target {
 /// order of the robots; const functions may be called from any thread between steps.
 class Grippers {
  public:
-  /// A gripper releases its object from this opening on [1].
+  /// A gripper releases its object when its opening reaches this value [1].
   static constexpr double letting_go = 0.5;
 
   /// The arguments must outlive this object.
@@ -37,9 +37,10 @@ class Grippers {
   /// Returns the index of the gripper that is a device of a robot.
   std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({world_.slot_of(body), device}); }
 
-  /// Moves the opening towards `opening` for one step, then grasps, holds or releases. When it closes beyond half, it
-  /// grasps the nearest object within its acceptance, or the first that arrives there while it is closed. If the held
-  /// object is torn away or leaves the world, the gripper must open before it can grasp again.
+  /// Moves the opening towards `opening` for one step, then grasps, holds or releases. When the opening falls below
+  /// `letting_go`, the gripper grasps the nearest object within its acceptance region, or the first one that enters
+  /// this region while the gripper is closed. If the held object is torn away or leaves the world, the gripper must
+  /// open before it can grasp again.
   void command(std::uint32_t gripper, double opening);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(grippers_.size()); }
@@ -48,12 +49,12 @@ class Grippers {
   }  ///< position of its jaw, p_W
   double opening(std::uint32_t gripper) const { return grippers_[gripper].opening; }
   bool is_gripping(std::uint32_t gripper) const;
-  /// Returns the force at the connection over the last step [N]; 0 if it holds nothing.
+  /// Returns the magnitude of the force at the connection over the last step [N]; 0 if the gripper holds nothing.
   double force(std::uint32_t gripper) const;
   /// Returns the state of the light barrier.
   bool is_something_between(std::uint32_t gripper) const;
-  /// Returns the nearest object within the acceptance; of two at the same distance, the one with the lower body, then
-  /// link.
+  /// Returns the nearest object within the acceptance region. If two are at the same distance, the lower body id
+  /// decides, then the lower link id.
   std::optional<Target> find_target(std::uint32_t gripper) const;
 
   void hash(StateHash& hash) const;

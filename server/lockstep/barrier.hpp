@@ -12,7 +12,7 @@
 
 namespace cohort::lockstep {
 
-/// A time of the caller's clock; only differences count.
+/// A time of the caller's clock; only differences matter.
 using Time = std::chrono::nanoseconds;
 
 /// Decides, tick by tick, which robots' answers the world waits for, and what happens without them. Pure logic: it
@@ -26,12 +26,13 @@ class Barrier {
   /// `command_size`: number of float64 values.
   void add(const description::Policy& policy, std::size_t command_size, std::uint64_t tick);
 
-  /// Sets whether the robot is in the world, from the next opened tick on. A robot that is not receives no frames. At
-  /// first all are present. Pending frames stay as they are.
+  /// Sets whether the robot is in the world, from the next opened tick on. A robot that is absent receives no frames.
+  /// Initially, all robots are present. Pending frames stay as they are.
   void set_present(std::uint32_t robot, bool present) { robots_[robot].present = present; }
 
-  /// Sets whether a client drives the robot, from the next opened tick on. If the robot loses its client, this holds at
-  /// once: the barrier no longer waits for it, and it has its neutral values. At first all are driven.
+  /// Sets whether a client drives the robot, from the next opened tick on. If the robot loses its client, this takes
+  /// effect at once: the barrier no longer waits for the robot, whose values are neutral. Initially, all robots are
+  /// driven.
   void set_driven(std::uint32_t robot, bool driven);
 
   /// Opens tick `tick` at time `now`. The first call has tick 0, or the tick of the restored boundary; each further
@@ -45,8 +46,8 @@ class Barrier {
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
 
   enum class Asked { no, yes, unknown };
-  /// Returns whether the frame of this tick had the robot. It is unknown if the barrier no longer keeps that frame, or
-  /// if the frame was for a previous driver.
+  /// Returns whether the frame of this tick contained the robot. The result is unknown if the barrier no longer keeps
+  /// that frame, or if the frame was sent to a previous client.
   Asked was_asked(std::uint32_t robot, std::uint64_t frame_tick) const;
 
   enum class Verdict {
@@ -57,9 +58,9 @@ class Barrier {
   };
   /// Returns the verdict on an answer to the frame of `frame_tick`.
   Verdict judge(std::uint32_t robot, std::uint64_t frame_tick) const;
-  /// Takes an answer that `judge` accepts. `now` counts for robots in free mode.
+  /// Takes an answer that `judge` accepts. `now` matters only for robots in free mode.
   void answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<const double> values, Time now = Time{0});
-  /// Handles an invalid answer, which is a miss at once. Under the policy `wait` the run must then stop.
+  /// Handles an invalid answer, which counts as a miss immediately. Under the policy `wait` the run must then stop.
   void refuse(std::uint32_t robot, std::uint64_t frame_tick, Time now = Time{0});
 
   bool complete() const { return awaited_count_ == 0; }
@@ -82,10 +83,11 @@ class Barrier {
   };
   /// Returns when `expire` is next due while the tick is not complete; nothing if no awaited robot has a deadline.
   std::optional<Time> next_deadline() const;
-  /// Stops waiting for robots whose deadline has passed, and returns a miss for each. A robot in free mode misses once
-  /// for each silence.
+  /// Stops waiting for robots whose deadline has passed, and returns a miss for each. A robot in free mode has one miss
+  /// for each period of silence.
   std::vector<Miss> expire(Time now);
-  /// Returns the misses by refused answers since the last call; for a robot in free mode, one for each silence.
+  /// Returns the misses caused by refused answers since the last call; for a robot in free mode, one for each period of
+  /// silence.
   std::vector<Miss> take_refused() { return std::exchange(refused_, {}); }
 
   struct Outcome {
@@ -109,7 +111,7 @@ class Barrier {
           visit(id, std::span<const double>(answer.values));
   }
 
-  /// Saves, at a boundary, the answers that do not act yet, and the detached robots. Times are not saved.
+  /// Saves, at a boundary, the answers that have not taken effect yet, and the detached robots. Times are not saved.
   void save(SnapshotWriter& writer) const;
   /// Restores a barrier with the same policies and sizes, before the first `open`. Throws SnapshotError.
   void restore(SnapshotReader& reader);

@@ -21,8 +21,8 @@ class LatencyHistogram {
     max_ = std::max(max_, duration);
   }
 
-  /// Returns the least duration that `share` (0 to 1) of all durations do not exceed, to within a bucket; zero if there
-  /// are none.
+  /// Returns the quantile of the durations for `share` (0 to 1), accurate to the width of a bucket; zero if there are
+  /// none.
   Duration quantile(double share) const {
     if (total_ == 0) return Duration{0};
     const auto rank = static_cast<std::uint64_t>(share * static_cast<double>(total_ - 1));

@@ -49,7 +49,7 @@ class Leases {
 
   struct Granted {
     std::uint64_t client;
-    std::vector<std::uint64_t> superseded;  ///< clients that lose their lease by it
+    std::vector<std::uint64_t> superseded;  ///< clients that lose their lease because of it
     bool again;                             ///< the client held exactly these robots before
   };
   struct Refused {

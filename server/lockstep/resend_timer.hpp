@@ -18,7 +18,7 @@ class RoundTrips {
     values_[next_++ % values_.size()] = duration;
     count_ = std::min(count_ + 1, values_.size());
   }
-  /// Returns zero before the first.
+  /// Returns the median; zero before the first round trip.
   Time median() const {
     if (count_ == 0) return Time{0};
     auto sorted = values_;
@@ -35,7 +35,7 @@ class RoundTrips {
 
 /// The times to resend a client's unanswered frames: after max(2 ms, 3 times its usual round trip), then at intervals
 /// that grow by an eighth each, up to 0.5 s. They grow slowly: at 20 % packet loss, a message of several packets may
-/// need ten tries, while a dead client costs only some 50 of them. DDS's own repair of a lost sample takes 100 ms and
+/// need ten tries, while a dead client costs only about 50 copies. DDS's own repair of a lost sample takes 100 ms and
 /// more, as no later sample follows it in lockstep.
 class ResendTimer {
  public:

@@ -14,7 +14,7 @@ namespace cohort::messages {
 
 /// A ROS 2 message that commands a device of the robots of one model. Motors and drives are not included.
 struct CommandMessage {
-  std::string name;  ///< its topic below the robot's: `gripper/opening`
+  std::string name;  ///< its topic relative to the robot's name, such as `gripper/opening`
   std::string device;
   const char* type = "";            ///< type of the message, such as `std_msgs/msg/Float64`
   RosDefinition definition;         ///< definition of the message
@@ -26,7 +26,7 @@ struct CommandMessage {
 };
 
 /// Returns the messages that a model's devices accept, in the order of the devices. `command` has the channels of its
-/// robots. Throws std::logic_error if they are those of another model.
+/// robots. Throws std::logic_error if these channels belong to another model.
 std::vector<CommandMessage> command_messages(const description::Model& model, std::span<const Channel> command);
 
 }  // namespace cohort::messages

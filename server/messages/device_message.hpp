@@ -20,7 +20,7 @@ namespace cohort::messages {
 /// Returns X_WL of a link of one robot.
 using LinkPoses = std::function<Pose(std::size_t link)>;
 
-/// A fixed pose of a frame S.
+/// A fixed pose of a frame S on a link L.
 struct PlaceOnLink {
   std::size_t link = 0;
   Pose X_LS;
@@ -28,9 +28,9 @@ struct PlaceOnLink {
 
 /// A ROS 2 message with the measurements of a device of the robots of one model.
 struct DeviceMessage {
-  std::string name;  ///< its topic below the robot's: `scan`, or `scan/front` if there are several such devices
-  std::vector<std::string> devices;    ///< names of the devices whose measurements it has
-  std::string frame;                   ///< S, below the robot's: the device's name, or `proximity_3` on a ring;
+  std::string name;  ///< its topic relative to the robot's name: `scan`, or `scan/front` for several such devices
+  std::vector<std::string> devices;    ///< names of the devices whose measurements it contains
+  std::string frame;                   ///< name of S within the robot: the device's, or `proximity_3` on a ring;
                                        ///< `_frame` appended if a link has that name
   const char* type = "";               ///< type of the message, such as `sensor_msgs/msg/LaserScan`
   RosDefinition definition;            ///< definition of the message
@@ -39,7 +39,7 @@ struct DeviceMessage {
   /// Writes the message for a robot's observation, which has the values of all channels.
   std::function<void(CdrWriter&, const ros::Header&, std::span<const double> observation)> add;
 
-  /// Returns X_WS for a robot with these links. Empty if the device has no pose.
+  /// Returns X_WS for a robot with these link poses. Empty if the device has no pose.
   std::function<Pose(const LinkPoses& X_WL)> place;
 
   /// The fixed pose of S on a link. Empty if the device has no pose, or S moves.

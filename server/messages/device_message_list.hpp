@@ -15,7 +15,7 @@ std::size_t offset_of(std::span<const Channel> channels, const std::string& chan
 struct DeviceTopic {
   enum class Naming : std::uint8_t { if_several, always, never };
   std::string group;
-  std::string leaf{};  ///< if empty, the topic ends before it
+  std::string leaf{};  ///< if empty, the topic has no such part
   Naming naming = Naming::if_several;
 };
 

@@ -31,7 +31,7 @@ class Occupancy {
     geometry::Footprint footprint;  // bounding rectangle for a triangle
     Triangle triangle = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // only if `mesh`
     std::uint32_t mesh = 0;  // which mesh the triangle belongs to; 0: none
-    bool is_closed = false;  // the mesh: what it encloses is solid
+    bool is_closed = false;  // the mesh encloses a solid volume
     bool is_static = false;
   };
 
@@ -55,7 +55,7 @@ class Occupancy {
     std::shared_ptr<const HeightGrid> grid;
     Pose X_WC;
     Pose X_CW;
-    double sway = 0.0;  // how far its points may lie beside where they would be if it did not lean [m]
+    double sway = 0.0;  // bound of the horizontal displacement of its points by its tilt [m]
   };
   void add_heights(const std::shared_ptr<const HeightGrid>& grid, const Pose& X_WC);
   void add_mesh(const TriangleMesh& mesh, const Pose& X_WC);
@@ -103,7 +103,7 @@ class Cells {
   std::size_t rows_ = 1;
 };
 
-/// Lists, for each cell, of the objects that can matter there. The objects are not copied and must outlive this.
+/// A list, for each cell, of the objects that can matter there. The objects are not copied, and must outlive the lists.
 class ThingsInCells {
  public:
   explicit ThingsInCells(const Cells& cells) : first_(cells.count(), none) {}
@@ -113,7 +113,7 @@ class ThingsInCells {
       entries_.push_back({&thing, std::exchange(first_[cell], static_cast<std::uint32_t>(entries_.size()))});
     });
   }
-  /// Calls `visit` for the objects of a cell until it returns false. Returns whether it never did.
+  /// Calls `visit` for the objects of a cell until it returns false. Returns true if it never did.
   template <class Visit>
   bool for_each_in(std::size_t cell, Visit&& visit) const {
     for (std::uint32_t entry = first_[cell]; entry != none; entry = entries_[entry].next)
@@ -127,7 +127,7 @@ class ThingsInCells {
     const Occupancy::Thing* thing;
     std::uint32_t next;
   };
-  std::vector<std::uint32_t> first_;  // entry of each cell
+  std::vector<std::uint32_t> first_;  // first entry of each cell
   std::vector<Entry> entries_;
 };
 

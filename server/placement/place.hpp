@@ -11,12 +11,12 @@
 namespace cohort::placement {
 
 /// Places the populations of a world with another seed: sets the instances, robots and warnings that the world has when
-/// it is read with this seed. `placer` must have been made of the world, or of one that differs only in the seed.
-/// Returns whether the instances are the same as before except for their poses; if not, indices of instances or robots
-/// outside of the world are invalid. Adds problems to `problems`; the world is then unusable.
+/// it is read with this seed. `placer` must have been made from this world, or from one that differs only in the seed.
+/// Returns true if the instances are the same as before except for their poses. If not, indices of instances or robots
+/// that are stored elsewhere become invalid. Adds problems to `problems`; the world is then unusable.
 bool place(World& world, const Placer& placer, std::uint64_t seed, std::vector<Problem>& problems);
 
-/// Makes the instances of populations in a world that has only the instances before them. `names` are the names of all
+/// Adds the instances of all populations to a world that has only its other instances. `names` are the names of all
 /// instances.
 void add_populations(World& world, std::uint64_t seed, std::set<std::string>& names, std::vector<Problem>& problems);
 

@@ -18,8 +18,8 @@ struct Placed {
 };
 
 /// Draws positions for the populations of a world, by a seed. Everything that does not depend on the seed is prepared
-/// once. This is the footprints and ground of the objects with a pose in the file, in the cells of a grid, and the size
-/// of each model.
+/// once. These are the footprints and the ground of the objects with a pose in the file, sorted into the cells of a
+/// grid, and the size of each model.
 ///
 /// Instances are upright. The distance between the bounding circle of an instance and every obstacle is at least `gap`.
 /// Obstacles are all solid objects of the file and of earlier populations, and the bounding circles of the other
@@ -45,11 +45,11 @@ class Placer {
 
   /// Returns the index into World::instances of the first instance of a population.
   std::size_t first() const { return first_; }
-  /// Returns the number of instances of all populations in the world of which this was made.
+  /// Returns the number of instances of all populations in the world from which this was made.
   std::size_t count() const { return count_; }
   /// Sets the poses of the `count()` instances from `first()` on. Returns false and leaves the poses unchanged if the
-  /// seed gives instances other than those of that world, which is possible only with a population that may be fewer.
-  /// Throws InputError if there is not enough room for a population.
+  /// seed gives instances other than those of that world, which is possible only if a population may have fewer
+  /// instances (`may_be_fewer`). Throws InputError if there is not enough room for a population.
   bool place(std::uint64_t seed, std::span<Pose> X_WM) const;
 
  private:

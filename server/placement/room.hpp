@@ -22,15 +22,15 @@ Extent extent_of(const Model& model);
 /// The part of a search for positions of one population that does not depend on the seed: everything static.
 class StaticRoom {
  public:
-  /// `fixed`, which must outlive this, has the objects with a pose in the file; `moving` is the approximate number of
-  /// other objects.
+  /// `fixed`, which must outlive this object, has the objects with a pose in the file; `moving` is the approximate
+  /// number of other objects.
   StaticRoom(const Population& population, const Extent& extent, const Occupancy& fixed, std::size_t moving);
 
  private:
   friend class Room;
   const Occupancy& fixed_;
   Extent extent_;
-  double clearance_;  // from the origin of an instance to all that is in its way [m]
+  double clearance_;  // minimum distance from the origin of an instance to any obstacle [m]
   double level_;
   Cells cells_;
   ThingsInCells things_;
@@ -39,8 +39,8 @@ class StaticRoom {
 /// A search for positions of one population: the obstacles to an instance, and the ground under it.
 class Room {
  public:
-  /// `room` and `earlier`, which has the instances of earlier populations, must outlive this; at most `count` instances
-  /// are added.
+  /// `room` and `earlier`, which has the instances of earlier populations, must outlive this object; at most `count`
+  /// instances are added.
   Room(const StaticRoom& room, const Occupancy& earlier, std::size_t count);
 
   /// Returns the height of the ground under an instance at a point; nothing if there is no room for it.

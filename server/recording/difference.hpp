@@ -31,17 +31,17 @@ struct Parting {
 
 struct Comparison {
   std::uint64_t boundaries = 0;      ///< number of identical boundaries
-  std::optional<Parting> parting{};  ///< empty if they do not diverge
-  std::string ends;                  ///< a sentence, if one of them ends before the other
+  std::optional<Parting> parting{};  ///< empty if the runs do not diverge
+  std::string ends;                  ///< a sentence if one run ends before the other; otherwise empty
 };
 
-/// Compares the contents of two recordings. Where they diverge, it replays both to find the differences. Throws the
-/// same as Recording and Replay. `progress` is called at each boundary; if it returns false, the comparison ends.
+/// Compares the contents of two recordings. Where they diverge, it replays both to find the differences. Throws as
+/// Recording and Replay do. `progress` is called at each boundary; if it returns false, the comparison ends.
 Comparison compare(const Recording& first, const Recording& second, unsigned threads,
                    const std::function<bool(std::chrono::nanoseconds)>& progress);
 
-/// Returns the differences of two worlds: for each object, in order, the first that differs of presence, pose,
-/// velocity, joints, commands and observations; then contacts.
+/// Returns the differences of two worlds: for each object, in order, the first quantity that differs among presence,
+/// pose, velocity, joints, commands and observations; then the contacts.
 std::vector<QuantityDifference> differences(const Simulation& first, const Simulation& second);
 
 }  // namespace cohort::recording

@@ -29,12 +29,12 @@ class Recorder {
   /// Creates the file, and writes the input files of `experiment` and the facts of the machine. Throws FileError if the
   /// file cannot be created.
   Recorder(const std::filesystem::path& file, const description::Experiment& experiment);
-  /// Records to a store of the caller, with `recorded` instead of the experiment's settings.
+  /// Records to a store that the caller provides, with `recorded` instead of the experiment's settings.
   Recorder(std::shared_ptr<ByteStore> store, RecordingOptions options, const description::Experiment& experiment,
            description::Recorded recorded);
 
-  /// Starts to record this world, which is at a boundary that no listener has been told of. Both arguments must outlive
-  /// their recording.
+  /// Starts to record this world, at a boundary that has not been reported to any listener yet. Both arguments must
+  /// outlive their recording.
   void begin(const description::Experiment& experiment, const Simulation& simulation, Beginning reason);
 
   /// Records events and actions of the current boundary.
@@ -49,7 +49,8 @@ class Recorder {
   /// Passes all recorded data to the operating system. Returns when this is done, or `error` says why not.
   void flush() { file_.flush(); }
 
-  /// Closes the file, and returns when it is closed. `end`: how the run ended, in a word; `reason`: why.
+  /// Closes the file, and returns when it is closed. `end`: how the run ended, as a keyword such as `finished`;
+  /// `reason`: a human-readable reason.
   void finish(std::string_view end, std::string_view reason);
   /// Starts `finish` without waiting for it. The world may be destroyed afterwards.
   void begin_finishing(std::string_view end, std::string_view reason);
@@ -102,7 +103,7 @@ class Recorder {
   std::uint32_t run_ = 0;
   std::chrono::nanoseconds log_offset_{0};
   std::chrono::nanoseconds last_log_time_{0};
-  // Nothing: never.
+  // Empty: never.
   std::optional<PeriodicTicks> pose_ticks_;
   std::optional<PeriodicTicks> joint_ticks_;
   std::optional<PeriodicTicks> observation_ticks_;

@@ -18,7 +18,7 @@ struct RecordedTick {
   std::chrono::nanoseconds log_time{0};
   std::optional<WorldBegins> begins{};         ///< a world that begins here
   std::optional<RecordedSnapshot> snapshot{};  ///< after the actions
-  std::vector<ActionTaken> actions{};          ///< in their order
+  std::vector<ActionTaken> actions{};          ///< in the order in which they were taken
   std::optional<std::uint64_t> state_hash{};   ///< after the actions; missing if the recording ends within the tick
   Commands commands{};                         ///< for the robots whose commands changed
 };
@@ -47,11 +47,11 @@ class Recording {
 
   const std::filesystem::path& file() const { return file_; }
   const McapReader& reader() const { return reader_; }
-  /// Returns a sentence if parts cannot be read.
+  /// Returns a sentence about the parts that cannot be read; empty if there are none.
   const std::string& damage() const { return reader_.damage(); }
   /// Returns the facts that `facts_of` wrote.
   const StringMap& facts() const { return facts_; }
-  /// Returns how the run ended, in a word; empty if unknown.
+  /// Returns how the run ended, as a keyword such as `finished`; empty if unknown.
   std::string end() const;
 
   /// The start of a world.

@@ -18,16 +18,16 @@ class Replay {
   Replay(const Recording& recording, unsigned threads);
   ~Replay();
 
-  /// Goes to the first boundary that is not before `log_time`. If that is faster, it starts from the last beginning of
-  /// a world or snapshot before it. Returns false if there is no such boundary.
+  /// Goes to the first boundary that is not before `log_time`. Starts from the last snapshot, or the last start of a
+  /// world, before that boundary if this is faster. Returns false if there is no such boundary.
   bool seek(std::chrono::nanoseconds log_time);
 
   /// Goes to the next boundary. Returns false at the end. Throws McapError for a recording that cannot be read or
   /// replayed from here on, and the exceptions of Simulation.
   bool advance();
 
-  /// Returns the recorded data of this boundary, and below the replayed world. Valid only where `seek` or `advance` has
-  /// returned true: after an exception there may be no world, and `seek` restores one.
+  /// Returns the recorded data of this boundary. This and the functions below are valid only where `seek` or `advance`
+  /// has returned true. After an exception there may be no world, and `seek` restores one.
   const RecordedTick& recorded() const { return *recorded_; }
   const Simulation& simulation() const { return *simulation_; }
   const description::Experiment& experiment() const { return *experiment_; }
@@ -50,7 +50,7 @@ class Replay {
 
 /// The result of a replay.
 struct Verification {
-  std::uint64_t boundaries = 0;  ///< compared and identical
+  std::uint64_t boundaries = 0;  ///< number of compared boundaries that are identical
   struct Difference {
     std::uint64_t tick = 0;
     std::chrono::nanoseconds log_time{0};

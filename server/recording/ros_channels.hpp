@@ -17,7 +17,7 @@ SchemaId add_ros_schema(Writer& writer) {
   return writer.add_schema(Message::type, "ros2msg", messages::schema_text(messages::definition<Message>()));
 }
 
-/// Adds a channel of such messages.
+/// Adds a channel for messages with this schema.
 template <class Writer>
 ChannelId add_ros_channel(Writer& writer, std::string topic, SchemaId schema, bool is_latched = false) {
   return writer.add_channel(std::move(topic), schema, "cdr", ros_channel_metadata(is_latched));

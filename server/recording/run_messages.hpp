@@ -17,7 +17,8 @@ enum class Beginning : std::uint8_t {
   attached = 3,  ///< the recording starts during a run, with a snapshot, which follows
 };
 
-/// The start of a world, which the following messages belong to. Its ticks increase without gaps, starting at `tick`.
+/// The start of a world. The messages that follow belong to this world. Its ticks increase without gaps, starting at
+/// `tick`.
 struct WorldBegins {
   std::uint32_t run = 0;    ///< number of the run in this recording, from 0
   std::uint8_t reason = 0;  ///< a value of Beginning
@@ -33,7 +34,7 @@ struct WorldBegins {
                  field("duration_ns", &WorldBegins::duration_ns), field("log_offset_ns", &WorldBegins::log_offset_ns));
 };
 
-/// The definition of a value of a robot.
+/// The definition of a channel of a robot's observation or command.
 struct RecordedChannel {
   std::string name;  ///< `device/index/quantity`
   std::string unit;
@@ -93,13 +94,14 @@ struct Commands {
                                             field("places", &Commands::places), field("values", &Commands::values));
 };
 
-/// Throws messages::CdrError if the three lists differ in length.
+/// Decodes a Commands message. Throws messages::CdrError if the bytes are invalid, or if the three lists differ in
+/// length.
 Commands decode_commands(ByteView bytes);
 
 /// An action on the world from outside, at a boundary.
 struct ActionTaken {
   std::uint64_t tick = 0;
-  std::string text;                  ///< for people
+  std::string text;                  ///< human-readable description
   std::vector<std::uint8_t> action;  ///< encoded by cohort::to_bytes
   static constexpr const char* topic = "/cohort/action";
   static constexpr const char* type = "cohort_msgs/msg/ActionTaken";
@@ -109,7 +111,7 @@ struct ActionTaken {
 
 struct RecordedEvent {
   std::uint64_t tick = 0;
-  std::string kind;  ///< a word
+  std::string kind;  ///< a keyword
   std::string text;
   std::uint64_t count = 1;
   static constexpr const char* topic = "/cohort/event";

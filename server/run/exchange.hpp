@@ -11,8 +11,7 @@
 
 namespace cohort::session {
 
-/// The connection of a simulation and its barrier: it passes observations out and commands in, for any transport. Not
-/// thread-safe.
+/// Connects a simulation with its barrier: passes observations out and commands in, for any transport. Not thread-safe.
 class Exchange {
  public:
   explicit Exchange(Simulation& simulation);
@@ -20,14 +19,14 @@ class Exchange {
   lockstep::Barrier& barrier() { return barrier_; }
   const lockstep::Barrier& barrier() const { return barrier_; }
 
-  /// Adds robots that have joined the simulation since, at this boundary.
+  /// Adds the robots that have joined the simulation since the last call, at this boundary.
   void add_newcomers();
 
   /// Opens the simulation's current tick and keeps the observations of all due robots.
   void open(lockstep::Time now);
 
-  /// The due robots among `robots` at `tick`, with their observations in a row. `tick` is the current one or one within
-  /// the delay before it.
+  /// The due robots among `robots` at `tick`, with their concatenated observations. `tick` is the current one or one
+  /// within the delay before it.
   struct Frame {
     std::vector<std::uint32_t> robots{};
     std::span<const double> values{};  ///< valid until the next step, or the next `fill_frame` of this frame
@@ -36,7 +35,7 @@ class Exchange {
   void fill_frame(Frame& frame, std::span<const std::uint32_t> robots, std::uint64_t tick) const;
 
   struct Rejection {
-    std::string reason;  ///< a word of docs/protocol.md
+    std::string reason;  ///< a keyword of docs/protocol.md
     std::string text;
   };
   struct Taken {
@@ -55,8 +54,8 @@ class Exchange {
 
   /// Saves, at a boundary, the barrier and the observations of frames whose answers have no effect yet.
   void save(SnapshotWriter& writer) const;
-  /// Restores a state of an exchange of the same experiment. Call it right after the construction, with the simulation
-  /// restored. Throws SnapshotError.
+  /// Restores the state of an exchange of the same experiment. Call this right after the construction, when the
+  /// simulation has been restored. Throws SnapshotError.
   void restore(SnapshotReader& reader);
 
  private:
@@ -67,8 +66,8 @@ class Exchange {
 
   Simulation& simulation_;
   lockstep::Barrier barrier_;
-  // By robot: delay + 1 observations, by tick modulo delay + 1. Empty without a delay: then the simulation has the only
-  // one.
+  // By robot: delay + 1 observations, by tick modulo delay + 1. Empty without a delay, because the simulation itself
+  // has the latest observation.
   std::vector<std::vector<double>> history_;
   std::vector<std::uint32_t> changed_;  // robots of the last tick
 };

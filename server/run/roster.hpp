@@ -11,7 +11,7 @@
 /// The description of a simulation's robots in protocol messages.
 namespace cohort::session {
 
-/// Returns one for each kind of robot; RobotDescription::description is its index in Simulation::kinds().
+/// Returns one description for each kind of robot; RobotDescription::description is its index in Simulation::kinds().
 std::vector<wire::RobotDescription> describe_kinds(const Simulation& simulation);
 
 /// Returns a hash of the contents of a description without `description` itself: all servers give equal descriptions

@@ -39,16 +39,17 @@ struct RunOptions {
   /// End the run with an error when its recording fails.
   bool needs_recording = false;
   std::string rewound{};  ///< see NextRun
-  /// Builds the world of a reset or of a snapshot, before this run is ended for it. Its exceptions are the reply to the
-  /// client, and the run continues. Empty: resets and loading of snapshots are not supported.
+  /// Builds the world of a reset or of a snapshot before this run ends. If it throws, the client gets the message as a
+  /// reply, and the run continues. Empty: resets and loading of snapshots are not supported.
   std::function<void(const NextRun&)> prepare{};
 };
 
-/// A client's operation on a running world at a boundary, before its frames were sent: docs/protocol.md, "Control".
+/// A client's operation on a running world at a boundary, before the frames of the tick were sent: docs/protocol.md,
+/// "Control".
 struct ControlEvent {
   std::uint64_t tick = 0;
   std::string operation;          ///< its name, such as `SpawnEntity`
-  std::string text;               ///< a sentence for people: what was done, and who requested it
+  std::string text;               ///< a human-readable sentence: what was done, and who requested it
   std::vector<std::byte> action;  ///< for an action on the world: the bytes for Simulation::act
 };
 
@@ -90,8 +91,9 @@ struct RunListener {
   /// Only for a run in one process: called at each boundary, before its frames are sent. `take` takes a snapshot of the
   /// current run.
   std::function<void(const std::function<SessionSnapshot()>& take)> can_save{};
-  /// Only for a run in one process: called once, before its controllers are called. `fail` ends the run at its current
-  /// state, and makes its result; for a controller that ends the process. It is valid until the run returns.
+  /// Only for a run in one process: called once, before its controllers are called. `fail` ends the run in its current
+  /// state and returns its result, for the case that a controller ends the process. `fail` is valid until the run
+  /// returns.
   std::function<void(std::function<RunResult(const std::string& why)> fail)> can_fail{};
   /// Called when a tick has its answers, with the wall time since its first frame was sent.
   std::function<void(std::chrono::nanoseconds)> barrier{};
@@ -128,7 +130,7 @@ struct RunResult {
   lockstep::LatencyHistogram barrier;   ///< from the first sent frame of a tick to the last required answer
   std::uint64_t late = 0;               ///< answers that missed their deadline
   std::uint64_t resent = 0;             ///< frames that were resent
-  std::uint64_t repeated = 0;           ///< answers to frames that already had one, or that have ended
+  std::uint64_t repeated = 0;           ///< answers to frames that had been answered, or that were no longer pending
   std::vector<Miss> misses;             ///< the first million missed answers, in order
   lockstep::LatencyHistogram lateness;  ///< start of each tick relative to the requested speed; empty without one
   std::uint64_t late_ticks = 0;         ///< ticks that started more than one step late at that speed

@@ -18,18 +18,18 @@ struct RunEvent {
   std::uint64_t last_tick = 0;  ///< tick of the last occurrence, in an EventLog
 };
 
-/// The events of a run. Repetitions, and events beyond a thousand of one kind, are only counted: no stranger can fill
-/// the memory or hide other events.
+/// The events of a run. Repetitions, and events beyond a thousand of one kind, are only counted: an untrusted client
+/// can neither fill the memory nor hide other events.
 class EventLog {
  public:
   /// Adds an event. Returns true if it is the first of its kind and text.
   bool add(std::uint64_t tick, const std::string& kind, const std::string& text, std::uint64_t count = 1);
   std::span<const RunEvent> events() const { return events_; }
 
-  /// Returns the number of additions: the state of the log, for `changed_since`.
+  /// Returns the number of additions so far, for `changed_since`.
   std::uint64_t revision() const { return revision_; }
   /// Returns the events that occurred, or occurred again, since that revision: at most `most`, in order of their last
-  /// change, oldest first. Sets `revision` to that of the last one of them.
+  /// change, oldest first. Sets `revision` to that of the last returned event.
   std::vector<RunEvent> changed_since(std::uint64_t& revision, std::size_t most) const;
 
  private:

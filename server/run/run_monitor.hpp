@@ -13,7 +13,7 @@
 
 namespace cohort::session {
 
-/// A monitor of one run, which makes its result: wall time, pace, progress reports, events. Not thread-safe.
+/// A monitor of one run, which collects its result: wall time, pace, progress reports, events. Not thread-safe.
 class RunMonitor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -46,8 +46,8 @@ class RunMonitor {
     listener_.progress(progress);
   }
   Clock::time_point next_report() const { return last_report_ + report_interval; }
-  /// Returns when the next tick may begin at the requested speed; nothing if there is none. Counted from the start of
-  /// the run or its last change of pace, so that simulated and wall time never drift apart.
+  /// Returns when the next tick may begin at the requested speed; nothing if no speed was requested. The time is
+  /// counted from the start of the run or its last change of pace, so that simulated and wall time never drift apart.
   std::optional<Clock::time_point> due_time() const;
   /// Changes the pace, without a gap if the run kept its pace before.
   void set_speed(double speed);
@@ -63,8 +63,8 @@ class RunMonitor {
     result_.barrier.add(latency);
     if (listener_.barrier) listener_.barrier(latency);
   }
-  /// Notes what a snapshot that is taken or restored lacks of its controllers' state, and that it is from a build with
-  /// other results.
+  /// Adds events for a snapshot that is taken or restored: for each team whose controllers' state is missing, and if
+  /// the snapshot is from a build with other results.
   void note_left_out(const SessionSnapshot& snapshot) {
     if (const std::string why = why_results_differ(snapshot.build); !why.empty())
       add_event("other_build", "the snapshot: " + why);
@@ -103,7 +103,7 @@ class RunMonitor {
   bool stopped_ = false;
   bool has_noted_convergence_ = false;
   std::optional<std::string> unrecorded_;       // reason
-  std::optional<std::uint64_t> last_boundary_;  // the last one that the listener was told of
+  std::optional<std::uint64_t> last_boundary_;  // the last one that was reported to the listener
   Clock::time_point start_;
   // Reference point of the pace.
   Clock::time_point pace_start_;

@@ -7,11 +7,11 @@
 
 namespace cohort::session {
 
-/// Passes all calls of `listener` to the current elements of `recorders` first. These have begun with the run's
+/// Makes `listener` pass its calls to the current elements of `recorders` first. These must have begun with the run's
 /// simulation. The vector must outlive the run.
 void add_recorders(RunListener& listener, const std::vector<recording::Recorder*>& recorders);
 
-/// Returns how a run ended, in a word.
+/// Returns how a run ended, as a keyword such as `finished`.
 const char* word_of(RunResult::End end);
 
 }  // namespace cohort::session

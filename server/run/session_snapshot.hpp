@@ -39,27 +39,27 @@ struct SessionSnapshot {
 SessionSnapshot take_snapshot(const description::Experiment& experiment, const Simulation& simulation,
                               const Exchange& exchange, ControllerStates controllers = {});
 
-/// Returns the bytes for a file: a mark, the versions of the format and of Cohort, its commit and arithmetic, the
-/// members above, and a hash of it all.
+/// Returns the bytes for a file: a magic number, the versions of the format and of Cohort, its commit and arithmetic,
+/// the members above, and a hash of it all.
 std::vector<std::byte> to_bytes(const SessionSnapshot& snapshot);
-/// Throws SnapshotError if the bytes are not a snapshot, from a version of Cohort that
-/// `versions_of_snapshots` does not list, damaged or incomplete.
+/// Parses a snapshot. Throws SnapshotError if the bytes are not a snapshot, are damaged or incomplete, or are from a
+/// version of Cohort that `versions_of_snapshots` does not list.
 SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes);
 
-/// Returns the states in the snapshot of those of `robots` that have one.
+/// Returns the states in the snapshot of all `robots` whose state is known.
 std::vector<RobotState> states_of(const SessionSnapshot& snapshot, std::span<const std::uint32_t> robots);
 
 /// Returns a sentence for each team with robots whose state is not in the snapshot. Returns none at the very beginning
 /// of a run, when controllers have no state.
 std::vector<std::string> what_is_left_out(const SessionSnapshot& snapshot, const description::Experiment& experiment);
 
-/// Throws SnapshotError if it is from another experiment. The seed may differ.
+/// Throws SnapshotError if the snapshot is from another experiment. The seed may differ.
 void expect_same_experiment(const SessionSnapshot& snapshot, const description::Experiment& experiment);
 
 /// Restores a simulation that was built from the same experiment and seed and has not been used. After a SnapshotError
 /// the simulation must not be used.
 void restore(const SessionSnapshot& snapshot, Simulation& simulation);
-/// Restores its exchange, afterwards.
+/// Restores the exchange of a simulation that has been restored.
 void restore(const SessionSnapshot& snapshot, Exchange& exchange);
 
 /// Reads a snapshot from a file. Throws SnapshotError, which names the file.

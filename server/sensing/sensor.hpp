@@ -45,19 +45,20 @@ class Sensor {
   /// the state of the world and of the sensor, and of the tick. May run concurrently with other sensors, on any thread.
   virtual void sense(std::uint64_t tick, std::span<double> values) const = 0;
 
-  /// Returns true if it uses joint_wrench or link_acceleration of its robot's body, which the world then has to record.
+  /// Returns true if the sensor uses joint_wrench or link_acceleration of its robot's body. The world must then record
+  /// these.
   virtual bool needs_record() const { return false; }
 
-  /// For a sensor with a shared view: tells the view that `sense` will need it. Called for sensors that measure at a
-  /// tick, on one thread and in the order of the robots, before the views are updated and any sensor senses there.
+  /// For a sensor with a shared view: tells the view that `sense` will need it. Called for the sensors that measure at
+  /// a tick, on one thread and in the order of the robots, before the views are updated and before any sensor senses.
   virtual bool has_shared_view() const { return false; }
   virtual void ask_shared_view() {}
 
   /// For a sensor with a memory: notes this tick, before it senses and even if the robot is not due. `was_delivered`:
-  /// the robot received the readings of the previous tick. If called again at the same tick after a change from
-  /// outside, it replaces its note.
+  /// the robot received the readings of the previous tick. A second call at the same tick, after a change from outside,
+  /// replaces the first one.
   virtual void remember(std::uint64_t /*tick*/, bool /*was_delivered*/) {}
-  /// Returns true if the robot can only have its neutral command in the next step.
+  /// Returns true if the sensor, such as an empty battery, disables the robot: its command is neutral in the next step.
   virtual bool disables_robot() const { return false; }
   /// Adds its memory to the hash.
   virtual void hash(StateHash& /*hash*/) const {}

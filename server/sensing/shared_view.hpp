@@ -8,13 +8,14 @@
 
 namespace cohort::sensing {
 
-/// A computation that is shared by the sensors of many robots, before any of them senses, as that is faster than
-/// separate ones.
+/// A computation for the sensors of many robots at once, before any of them senses. This is faster than separate
+/// computations.
 class SharedView {
  public:
   virtual ~SharedView() = default;
-  /// Computes for the sensors that requested it since the last update (Sensor::ask_shared_view). Must follow
-  /// `Emitters::update`; the result is valid until the next update. It is the same for any number of threads.
+  /// Computes the results for the sensors that have requested them since the last update (Sensor::ask_shared_view).
+  /// Must follow `Emitters::update`; the result is valid until the next update. It is the same for any number of
+  /// threads.
   virtual void update(WorkerPool& workers) = 0;
 };
 

@@ -26,7 +26,7 @@ struct AttachedClient {
   wire::Join join;
   std::uint64_t place;
   const std::optional<wire::Identity>& identity;  // authenticated by DDS, not claimed by the client
-  std::string label;                              // for people: controller, process and host
+  std::string label;                              // human-readable: controller, process and host
   wire::Writer<wire::Admit> admit;
   wire::Writer<wire::Observation> observation;
   wire::Writer<wire::Report> report;
@@ -41,7 +41,7 @@ struct AttachedClient {
   lockstep::ResendTimer resend{};
   std::uint32_t times_resent = 0;
   Exchange::Frame frame{};                      // the last frame; reused
-  std::uint64_t epoch = 0;                      // the epoch of that lease
+  std::uint64_t epoch = 0;                      // the epoch of its lease
   std::set<std::string> reported_rejections{};  // reasons that were reported to it
   lockstep::AnswerTimes answer_times{};
   std::uint64_t late = 0;  // late answers
@@ -52,8 +52,8 @@ struct AttachedClient {
   std::uint64_t id() const { return join.client; }
   /// Resets the state for a new run, in which nothing is claimed yet.
   void begin_run();
-  /// Sends a message. A message that DDS cannot send is lost: a problem of one client never stops the run, which only
-  /// notes an event. `run`: null between runs.
+  /// Sends a message. If DDS cannot send it, the message is lost and an event is added: a problem of one client never
+  /// stops the run. `run`: null between runs.
   template <class Message>
   void send(wire::Writer<Message>& writer, const Message& message, ServedRun* run) {
     try {

@@ -14,12 +14,12 @@ namespace cohort::session {
 /// the server's lock.
 class ClientNames {
  public:
-  // Each client has three writers here, with their topics; DDS cannot create more at about 10,000 clients.
+  // The server has three writers for each client; DDS cannot create more of them at about 10,000 clients.
   static constexpr std::size_t most_clients = 2048;
   static constexpr std::size_t most_of_one_identity = 1024;
 
   /// Registers a Join under this id from `sender`, which has authenticated as `identity` if security is enabled.
-  /// Returns an empty text if the client may be attached; otherwise the reason, which starts with a word of
+  /// Returns an empty text if the client may be attached; otherwise the reason, which starts with a keyword of
   /// docs/protocol.md. A participant has at most one client that is not gone.
   std::string enter(std::uint64_t client, const wire::Sender& sender,
                     const std::optional<wire::Identity>& identity = {});

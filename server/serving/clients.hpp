@@ -18,7 +18,7 @@ namespace cohort::session {
 /// comment says that they require the lock.
 class Clients {
  public:
-  /// `mutex`: the server's lock, which must outlive this.
+  /// `mutex`: the server's lock, which must outlive this object.
   explicit Clients(std::mutex& mutex) : mutex_(mutex) {}
 
   /// Starts a run: clients that drove robots or waited claim their requested robots again, in order of arrival.
@@ -34,13 +34,13 @@ class Clients {
   void note_liveliness(const Inbox::Liveliness& change);
   void note_process_end(std::uint32_t process);  ///< on this machine
   void note_rejections(const Inbox::Rejected& rejected);
-  /// Refuses a client that reports that its controllers fail in `start`: its robots are free again. Returns false if it
-  /// drives none, has answered in its lease, or reports something else.
+  /// Refuses a client that reports that its controllers fail in `start`: its robots are free again. Returns false if
+  /// the client drives no robots, has already answered in its lease, or reports something else.
   bool refuse_unfit(const wire::Report& report);
 
   /// Decides on claims: at boundaries, and within a tick for a client that takes over a robot that the tick waits for.
-  /// If a claim requires that the run goes back, `ServedRun::rewinds_for` says why, and the claim counts again in the
-  /// next run.
+  /// If a claim requires that the run goes back, this sets `ServedRun::rewinds_for` to the reason, and the claim is
+  /// decided in the next run.
   void decide_claims();
   /// Sends the frames of the current tick.
   void send_frames();
@@ -61,7 +61,7 @@ class Clients {
   /// Handles collected parts, and requests for state from clients that continue from a snapshot.
   void take_states(const Inbox::States& states);
 
-  /// Counts an answer of the client that has missed its deadline.
+  /// Counts an answer of the client as late.
   void note_miss(std::uint64_t client) { ++clients_.at(client).late; }
   /// Tells the client that its policy has ended its lease.
   void tell_detached(std::uint64_t client);

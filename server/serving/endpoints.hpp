@@ -9,8 +9,8 @@
 
 namespace cohort::session {
 
-/// The readers and writers of a server in one DDS domain, or for one identity in it, without the writers for a single
-/// client.
+/// The readers and writers of a server in one DDS domain, or for one identity in it, except the writers for single
+/// clients.
 struct Endpoints {
   /// Called on threads of DDS; see wire::Reader.
   struct Callbacks {

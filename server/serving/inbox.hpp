@@ -33,7 +33,7 @@ class Inbox {
   static constexpr std::size_t most_request_bytes = std::size_t{64} << 20;
   static constexpr std::size_t largest_request = std::size_t{4} << 20;
 
-  // Limits of texts for people [bytes].
+  // Limits of human-readable texts [bytes].
   static constexpr std::size_t longest_label = 100;
   static constexpr std::size_t longest_text = 4096;
 
@@ -50,7 +50,7 @@ class Inbox {
   };
   struct Rejections {
     std::string text;                     ///< text of the first one
-    std::optional<std::uint64_t> tick{};  ///< that the first one answers, if it is an answer
+    std::optional<std::uint64_t> tick{};  ///< tick of the frame that the first one answers, if it is an answer
     std::uint64_t count = 0;
   };
   /// By client or participant, and by reason.
@@ -67,7 +67,7 @@ class Inbox {
     std::vector<wire::Sender> gone_requesters{};
     States states{};
     std::string failure{};                       ///< the first error of another component
-    std::set<std::uint32_t> foreign_versions{};  ///< protocol versions of such clients
+    std::set<std::uint32_t> foreign_versions{};  ///< other major versions of the protocol
     Rejected rejected{};
   };
 
@@ -82,10 +82,10 @@ class Inbox {
   bool add_gone_requester(const wire::Sender& sender);
   bool add_failure(const std::string& error);
   bool add_foreign_version(std::uint32_t major);
-  /// Notes news that the inbox does not hold itself.
+  /// Notes news that is stored elsewhere, so that `has_news` returns true.
   bool note_news() { return has_news_ = true; }
   /// Counts a rejected message, for the next reading of the inbox: a flood must not wake the thread of the run for each
-  /// message. `tick`: of the frame that a rejected answer answers.
+  /// message. `tick`: tick of the frame, if the message is an answer.
   void reject(std::uint64_t who, const char* reason, std::string_view text, std::optional<std::uint64_t> tick = {});
 
   /// Returns true if anything but rejections was added since `take`.

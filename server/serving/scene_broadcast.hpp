@@ -23,11 +23,11 @@ class SceneBroadcast {
   enum class When {
     due,            ///< if the next frame is due
     at_once,        ///< something may have changed that would otherwise not be shown
-    for_newcomers,  ///< if a viewer has connected since the last one, or that was a second ago
+    for_newcomers,  ///< if a viewer has connected since the last frame, or that frame is a second old
   };
   /// Publishes a boundary whose frames were sent.
   void publish(const Shown& shown, When when);
-  /// Publishes the end of the last run: a word, and an optional sentence.
+  /// Publishes the end of the last run: a keyword such as `finished`, and an optional sentence.
   void end(const std::string& how, const std::string& why);
 
  private:

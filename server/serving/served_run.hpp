@@ -27,7 +27,7 @@ struct ServedRun {
   Exchange exchange;
   lockstep::Leases leases;
   std::string error;                        // the first error
-  bool started = false;                     // from the first frame on
+  bool started = false;                     // true from the first frame on
   std::vector<std::uint32_t> undemanding;   // robots that do not require a controller
   std::vector<bool> was_driven;             // by robot: a client drove it in this run
   std::vector<std::uint32_t> descriptions;  // ids on the wire, by kind
@@ -59,7 +59,8 @@ struct ServedRun {
   bool is_out(std::uint64_t tick) const;
   /// Returns the tick of the oldest unanswered frame, or of the next frame.
   std::uint64_t due_tick_of(const std::vector<std::uint32_t>& robots) const;
-  /// Updates, at a boundary, which robots without a required controller have one and receive frames from now on.
+  /// Updates, at a boundary, which of the robots that do not require a controller have one, and so receive frames from
+  /// now on.
   void see_who_drives();
   /// Returns the names of the teams of these robots.
   std::string teams_text(const std::vector<std::uint32_t>& robots) const;

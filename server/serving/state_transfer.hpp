@@ -32,15 +32,15 @@ class StateTransfer {
 
   /// Starts the transfer of the state of at most `robots` robots, at a boundary.
   void begin(std::size_t robots, Time now);
-  void note_answers();  ///< no unanswered frames are left
+  void note_answers();  ///< to be called when no unanswered frames are left
   void give_up() { phase_ = Phase::given_up; }
   /// Notes why its controllers cannot save.
   void note_unsaved(const std::string& why);
   const std::string& why_unsaved() const { return why_unsaved_; }
   void end() { phase_ = Phase::idle; }
-  /// Returns true if it has sent nothing for too long.
+  /// Returns true if the client has sent nothing for too long.
   bool is_silent(Time now) const;
-  /// Returns the request that is due now, if any; the caller fills in its head.
+  /// Returns the request that is due now, if any; the caller fills in the other members.
   std::optional<wire::ControllerState> question(Time now);
   /// Takes a part; throws StateError.
   void take(const KeptStateMessage& part, Time now);

@@ -16,7 +16,7 @@
 /// Names follow simulation_interfaces (ros-simulation).
 namespace cohort {
 
-/// The name of one of the world's models, or a parsed model: a running world reads none.
+/// The name of one of the world's models, or a parsed model. A running world does not parse models itself.
 using ModelChoice = std::variant<std::string, description::ParsedModelPtr>;
 
 /// Adds an object at rest. A robot gets the next id, which is never reused, and joins a team.
@@ -61,8 +61,8 @@ using Action = std::variant<SpawnObject, RemoveObject, SetPose, SetVelocity, Set
 
 /// Returns the bytes for recordings and the wire: little-endian, and the same for equal actions.
 std::vector<std::byte> to_bytes(const Action& action);
-/// Parses an action, and by `read_model` the text of a model in it. Throws std::invalid_argument if `bytes` are not
-/// exactly one action, or the text is not a model. The action's values are validated by `Simulation::act`.
+/// Parses an action. Parses the text of a model in it with `read_model`. Throws std::invalid_argument if `bytes` are
+/// not exactly one action, or the text is not a model. The action's values are validated by `Simulation::act`.
 Action action_from_bytes(std::span<const std::byte> bytes, const description::ModelReader& read_model);
 
 }  // namespace cohort

@@ -22,10 +22,10 @@ class BreakableJoints {
   /// Returns true if the joint has neither broken nor been released. It is released when one of its objects leaves the
   /// world or is moved.
   bool holds(std::size_t joint) const { return world_.connections().holds(joints_[joint].connection); }
-  /// Returns the wrench on the first link over the last step, about the joint's place on that link. It is zero once the
-  /// joint does not hold, except for the step that broke it.
+  /// Returns the wrench on the first link over the last step, about the joint's position on that link. It is zero once
+  /// the joint no longer holds, except for the step that broke the joint.
   physics::Wrench wrench_on_first(std::size_t joint) const;
-  /// Returns the wrench on the second link likewise.
+  /// Returns the wrench on the second link, in the same way.
   physics::Wrench wrench_on_second(std::size_t joint) const;
   /// Returns a sentence for each joint that the last step broke.
   std::vector<std::string> broken() const;

@@ -25,7 +25,8 @@ std::span<const std::string_view> versions_of_snapshots();
 /// Two builds with different hashes produce different results. Takes some milliseconds.
 std::string arithmetic_fingerprint();
 
-/// Returns a sentence if runs of that build are known to have other results than those of this one; otherwise nothing.
+/// Returns a sentence if runs of the other build are known to have different results from runs of this build; otherwise
+/// an empty text.
 std::string why_results_differ(const BuildIdentity& other);
 
 }  // namespace cohort

@@ -27,7 +27,7 @@ struct PastPose {
 class Objects {
  public:
   /// New objects are added to the instances of `experiment`, which must outlive this object. `like`: the objects of
-  /// another world that shares it; null: none.
+  /// another world that shares the experiment, or null.
   Objects(SharedExperiment& experiment, physics::World& world, const Objects* like = nullptr);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(present_.size()); }
@@ -57,14 +57,14 @@ class Objects {
     std::uint32_t slot = 0;  ///< the slot of its body, also if the object is gone
     bool is_gone = false;
   };
-  /// Saves the added objects, before all else of a world.
+  /// Saves the added objects, before the rest of the world.
   void save_added(SnapshotWriter& writer) const;
   std::vector<Added> read_added(SnapshotReader& reader) const;
-  /// Adds one of them again, in their order, right before the world is restored. It is in the world, even if it is
-  /// gone.
+  /// Adds a saved object again. Call this for all of them in order, right before the world is restored. The object is
+  /// in the world until then, even if it is gone in the snapshot.
   void restore_added(const Added& added);
   void save(SnapshotWriter& writer) const;
-  /// Restores the rest, after the world.
+  /// Restores the other state. Call this after the world has been restored.
   void restore(SnapshotReader& reader);
 
  private:

@@ -37,7 +37,7 @@ struct CommandFault {
 };
 
 /// The robots of a world, by id: their sensors and observations, their actuators and commands. Independent of the kinds
-/// of both. For one thread, except `hash`, which any thread may call between changes.
+/// of sensors and actuators. For one thread, except `hash`, which any thread may call between changes.
 class Robots {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -54,11 +54,12 @@ class Robots {
     const Objects& objects;
     WorkerPool& workers;
   };
-  /// Adds the robots of the experiment. `like`: the robots of another world of it, for sharing common data; null: none.
+  /// Adds the robots of the experiment. `like`: the robots of another world of the same experiment, to share common
+  /// data with, or null.
   explicit Robots(const Surroundings& around, const Robots* like = nullptr);
 
-  /// Adds the next robot of the experiment's world. It must already be in the world and in a team, and known to
-  /// everything else that knows its body. It has not received a frame yet.
+  /// Adds the next robot of the experiment's world. It must already be in the world and in a team, and its body must
+  /// have been added to all other `Surroundings`. It has not received a frame yet.
   void add();
   /// Frees the devices of a robot whose body was released.
   void release(std::uint32_t robot);

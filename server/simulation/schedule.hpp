@@ -16,31 +16,31 @@ namespace cohort {
 /// conditions.
 class Schedule {
  public:
-  /// Spawns a new object of a spawner with this name, and returns a sentence. Throws std::invalid_argument, without any
-  /// change, if it cannot be done.
+  /// Spawns a new object of a spawner with this name, and returns a sentence for the log. Throws std::invalid_argument,
+  /// without any change, if it cannot be done.
   using Spawn = std::function<std::string(const description::Spawner& spawner, const std::string& name)>;
 
   /// Throws std::invalid_argument if an event spawns an object before the first step.
   Schedule(const description::Experiment& experiment, physics::World& world, Objects& objects,
            emission::Emitters& emitters, const actuation::UserActions& actions, Spawn spawn);
 
-  /// Carries out the events of a boundary: those of its time, then those of starting actions. Returns a sentence for
-  /// each. Throws std::runtime_error if one cannot be carried out.
+  /// Carries out the events of a boundary: first those that are due at its time, then those that the start of an action
+  /// triggers. Returns a sentence for each. Throws std::runtime_error if one cannot be carried out.
   std::vector<std::string> begin_tick(std::uint64_t tick);
   /// Carries out an event that was requested from outside, at the boundary of `tick`. Returns a sentence. Throws
   /// std::invalid_argument, without any change, if it cannot be done.
   std::string act_from_outside(const description::Event& event, std::uint64_t tick);
-  /// Applies the forces of the step from `tick` on.
+  /// Applies the forces that act during the step that starts at `tick`.
   void push(std::uint64_t tick);
   /// Checks the stop conditions, once at each boundary, until one is met.
   void check_stops();
 
-  /// Returns the stop condition that is met, in words.
+  /// Returns a human-readable description of the stop condition that is met; nothing if none is.
   const std::optional<std::string>& stop_reason() const { return stop_reason_; }
 
   void hash(StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
-  /// The world must be at `tick`.
+  /// Restores the schedule of a world that is at `tick`.
   void restore(SnapshotReader& reader, std::uint64_t tick);
 
  private:
@@ -62,7 +62,7 @@ class Schedule {
   Spawn spawn_;
   std::vector<std::uint64_t> event_ticks_;
   std::size_t next_event_ = 0;
-  std::vector<std::uint64_t> boundaries_held_;  // number of consecutive boundaries, by stop condition
+  std::vector<std::uint64_t> boundaries_held_;  // number of consecutive boundaries at which it held, by stop condition
   std::vector<Stage> stages_;                   // by object
   std::vector<std::uint64_t> force_ends_;  // end of the force of each event of each reaction: it acts before this tick
   std::vector<std::uint64_t> spawned_;     // number of spawned objects, by spawner

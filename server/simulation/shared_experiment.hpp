@@ -8,7 +8,8 @@
 
 namespace cohort {
 
-/// The experiment of a simulation. Simulations that are built like each other share it; then it cannot be changed.
+/// The experiment of a simulation. Simulations that are constructed from another one share its experiment, which then
+/// cannot be changed.
 class SharedExperiment {
  public:
   explicit SharedExperiment(description::Experiment experiment)

@@ -84,7 +84,7 @@ class Simulation {
     return robots_.measurement_at(robot, place, tick());
   }
 
-  /// Returns nothing if `values` are a valid command of `robot`.
+  /// Returns why `values` are not a valid command of `robot`; nothing if they are valid.
   std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const {
     return robots_.check_command(robot, values);
   }
@@ -102,7 +102,7 @@ class Simulation {
   bool set_command(std::uint32_t robot, std::span<const double> values) {
     return note_if(robots_.set_command(robot, values));
   }
-  /// Sets every channel to its neutral value, likewise.
+  /// Sets every channel to its neutral value. Returns true if the bits of the command changed.
   bool set_neutral_command(std::uint32_t robot) { return note_if(robots_.set_neutral_command(robot)); }
   /// Returns the command that acts in the next step, unless the robot is disabled by then, for example by an empty
   /// battery.
@@ -115,11 +115,11 @@ class Simulation {
   void step();
   /// Returns a sentence for each event of this boundary: broken joints, then actions with a handler, then events.
   const std::vector<std::string>& happened() const { return happened_; }
-  /// Returns the first stop condition of the experiment that is met.
+  /// Returns a description of the first stop condition of the experiment that is met; nothing if none is.
   const std::optional<std::string>& stop_reason() const { return schedule_.stop_reason(); }
 
-  /// Carries out an action from outside, between steps. It happens after the events and the check of the stop
-  /// conditions of this boundary, and before any frame. The due robots sense once more, so that they observe the
+  /// Carries out an action from outside, between steps. The action follows the events and the check of the stop
+  /// conditions of this boundary, and precedes all frames. The due robots sense once more, so that they observe the
   /// changed world at this tick; noise and the memory of sensors are as if they had sensed once. Returns a sentence for
   /// the log. Throws std::invalid_argument with the reason, without any change, if it cannot be done. The result is
   /// part of the state, and depends only on the state and the action.
@@ -133,7 +133,7 @@ class Simulation {
   const description::World& description() const { return experiment_->world; }
   /// Returns all objects of the world by their scoped names; an object's index is that of its body in `world()`.
   const Objects& objects() const { return objects_; }
-  /// Returns the pose of its root link, X_WL.
+  /// Returns X_WL, the pose of the object's root link in the world.
   Pose object_pose(std::uint32_t object) const { return world_->link_pose(BodyId{object}, LinkId{0}); }
   /// Returns a sentence for each body that the last step quarantined, with its name.
   const std::vector<std::string>& quarantined() const { return quarantined_; }

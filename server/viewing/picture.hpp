@@ -8,15 +8,15 @@
 
 namespace cohort::viewing {
 
-/// A camera without distortion. It looks from `position_W` at `target_W`, with z up.
+/// A pinhole camera. It looks from `position_W` at `target_W`, with z up.
 struct PictureCamera {
   Eigen::Vector3d position_W;
   Eigen::Vector3d target_W;
   double vertical_field_of_view = 0.8;  ///< [rad]
 };
 
-/// Returns a camera that has all bounded static solids and the described poses of the robots in its picture. It depends
-/// on the description alone, so it is the same in the whole run. `aspect`: width over height.
+/// Returns a camera that shows all bounded static solids, and the robots at the poses of the description. It depends on
+/// the description alone, so it is the same in the whole run. `aspect`: width over height.
 PictureCamera camera_for(const Simulation& simulation, double aspect);
 
 /// Draws the collision shapes of a world with the colours of their links, one ray for each pixel, without shadows.

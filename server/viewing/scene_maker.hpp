@@ -8,8 +8,8 @@
 
 namespace cohort::viewing {
 
-/// Describes a simulation to viewers. It only reads, so the run's hash does not depend on it. Use it between steps, on
-/// the thread that steps.
+/// Describes a simulation to viewers. It changes nothing, so the run's hash does not depend on it. Use it between
+/// steps, on the thread that steps.
 class SceneMaker {
  public:
   /// `simulation` must outlive this object. `revision`: unique among the makers of a source.

@@ -171,7 +171,7 @@ class Client {
   void fail(const std::string& why);
 
   /// Returns true if the answer to the current event is no longer needed: the server has ended the run or the lease, or
-  /// has been away for too long. Poll this while your program waits for hardware before it answers.
+  /// has been unreachable for too long. Poll this while your program waits for hardware before it answers.
   bool is_over() const;
 
   /// Returns a file descriptor that poll(2) and select(2) report as readable while `next` would not block. Do not read

@@ -130,7 +130,7 @@ const char* cohort_needed_text(const CohortStart* start, const char* name);
 /* ---- Step ---- */
 
 /* One robot's sensor readings at one tick. Valid until the callback returns, or until the event is answered. Use only
- * channels that were looked up with this robot's CohortStart; handles are not checked, and others give arbitrary
+ * channels that were looked up with this robot's CohortStart; handles are not checked, and other handles give arbitrary
  * values. */
 typedef struct CohortObservation CohortObservation;
 
@@ -322,7 +322,7 @@ CohortEventKind cohort_next_within(CohortClient* client, CohortEvent* event, int
 int cohort_descriptor(const CohortClient* client);
 
 /* Returns true if the answer to the current event is no longer needed: the server has ended the run or the lease, or
- * has been away for too long. Poll this while your loop waits for hardware before it answers. */
+ * has been unreachable for too long. Poll this while your loop waits for hardware before it answers. */
 bool cohort_is_over(const CohortClient* client);
 
 /* The schedule of a team's commands. A robot is due at each tick with `tick % period == phase`, and its command takes

@@ -55,7 +55,8 @@ typedef enum CohortObserverEnd {
   cohort_observer_server_gone = 2 /* the server crashed or exited without notice */
 } CohortObserverEnd;
 
-/* Returns whether and how the runs have ended. If they have, cohort_last_error returns details. */
+/* Returns the reason for the end of the runs, or cohort_observer_goes_on. After the end, cohort_last_error returns
+ * details. */
 CohortObserverEnd cohort_observer_ended(const CohortObserver* observer);
 
 /* ---- Queries ---- */
@@ -73,7 +74,7 @@ const char* cohort_observer_team(const CohortObserver* observer, size_t index);
  * Returns the number of events, or -1. */
 int64_t cohort_observer_ask_events(CohortObserver* observer, int milliseconds);
 const CohortRunEvent* cohort_observer_event(const CohortObserver* observer,
-                                            size_t index); /* one of them; NULL beyond the last */
+                                            size_t index); /* the event at `index`; NULL beyond the last */
 
 #ifdef __cplusplus
 }

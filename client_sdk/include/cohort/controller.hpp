@@ -46,8 +46,8 @@ struct CommandChannel {
   double upper = 0.0;
 };
 
-/// The error that no channel has the given name, or that no or the wrong number of channels match. The message lists
-/// similar names of the robot's channels.
+/// The error thrown if no channel has the given name, or if the number of matching channels is zero or wrong. The
+/// message lists similar names of the robot's channels.
 class ChannelError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -98,7 +98,7 @@ class Start {
 };
 
 /// One robot's sensor readings at one tick. Valid during `step` only. Use only channels that were looked up in this
-/// robot's `start`; handles are not checked, and others give arbitrary values.
+/// robot's `start`; handles are not checked, and other handles give arbitrary values.
 class Observation {
  public:
   Observation(std::uint64_t tick, std::chrono::nanoseconds time, std::span<const double> values)

@@ -15,7 +15,7 @@ struct Parameter {
   std::vector<std::string> values;  ///< the values of a list, or a single value, as written in the file
 };
 
-/// The error that a parameter is missing, has the wrong type or is unknown to the controller. `what()` names the
+/// The error thrown if a parameter is missing, has the wrong type or is unknown to the controller. `what()` names the
 /// parameter.
 class ParameterError : public std::runtime_error {
  public:

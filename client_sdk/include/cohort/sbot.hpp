@@ -54,14 +54,15 @@ struct Sbot {
   }
   /// Turns to the left: runs the right track at `ahead + by` and the left track at `ahead - by` [m/s].
   void turn(Command& command, double ahead, double by) const { drive(command, ahead - by, ahead + by); }
-  /// Turns the turret back to the front of the chassis, at a speed proportional to `angle`, its present angle relative
-  /// to the chassis. If the turret cannot turn, because it is gripped for example, the chassis turns.
+  /// Turns the turret back to the front of the chassis, at a speed proportional to `angle`, the present angle of the
+  /// turret relative to the chassis [rad]. If the turret cannot turn, for example because another robot grips it, the
+  /// chassis turns.
   void turn_turret_back(Command& command, double angle) const { command.set(turret_motor, -turret_gain * angle); }
   /// Turns the turret back to the front of the chassis, by its measured angle.
   void align_turret(const Observation& observation, Command& command) const {
     turn_turret_back(command, observation[turret]);
   }
-  /// Converts a bearing to the frame of the chassis. Returns an angle from -pi to pi.
+  /// Converts a bearing to the frame of the chassis. Returns an angle from -pi to pi [rad].
   double from_chassis(const Observation& observation, double bearing) const {
     return std::remainder(bearing + observation[turret], 2.0 * std::numbers::pi);
   }

@@ -25,7 +25,7 @@ static_assert(std::endian::native == std::endian::little, "state is written in t
 /// Maximum size of the state of one robot's controller [bytes].
 inline constexpr std::size_t largest_state = std::size_t{1} << 20;
 
-/// The error that a state ends too early or contains an invalid value.
+/// The error thrown if a state ends too early or contains an invalid value.
 class StateError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

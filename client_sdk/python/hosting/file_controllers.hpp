@@ -5,14 +5,14 @@
 
 namespace cohort::python {
 
-/// Controllers of classes in Python files. The extension module exports this in a capsule, where the plugin `python`
-/// finds it.
+/// Access to controllers that are classes in Python files. The extension module exports this struct in a capsule, where
+/// the plugin `python` finds it.
 struct FileControllers {
   static constexpr const char* capsule = "cohort._native.file_controllers";
 
   const char* version = COHORT_VERSION;  ///< first in every version; the rest depends on the version
-  /// Returns the factory of controllers of the class that a file defines. Reads each file once. Throws
-  /// std::runtime_error with the Python exception.
+  /// Returns the factory of controllers of the class in `file`. Reads each file once. Throws std::runtime_error with
+  /// the Python exception.
   ControllerKind (*kind_in)(const char* file) = nullptr;
 };
 

@@ -11,7 +11,7 @@
 /// Python objects for C++, using only Python's C interface.
 namespace cohort::python {
 
-/// Holds Python's global lock during its lifetime, on any thread.
+/// Holds Python's global interpreter lock (GIL) during its lifetime, on any thread.
 class Lock {
  public:
   Lock() {
@@ -31,7 +31,7 @@ class Lock {
   PyGILState_STATE state_;
 };
 
-/// An owned reference to an object. The lock must be held when it is created, changed or destroyed.
+/// An owned reference to a Python object. The GIL must be held when the reference is created, changed or destroyed.
 class Owned {
  public:
   Owned() = default;
@@ -67,13 +67,13 @@ Owned facts_of(const Start& start);
 /// Marks the parameters that Python has read; `asked` is a list of names.
 void note_asked(const Parameters& parameters, PyObject* asked);
 
-/// Values in memory that belongs to Python, so that arrays that a program has kept remain valid. The lock must be held
-/// when they are created or destroyed.
+/// An array of values in memory that Python owns, so that NumPy arrays that the user's code keeps remain valid. The GIL
+/// must be held when the array is created, resized or destroyed.
 class SharedValues {
  public:
-  /// Moves them to new memory, with zeros, if the size changes.
+  /// Allocates new memory, filled with zeros, if the size changes.
   void resize(std::size_t size);
-  /// Returns a memoryview of them, which is writable if `is_written`.
+  /// Returns a memoryview of the values, which is writable if `is_written`.
   Owned view(bool is_written) const;
   std::span<double> values() const { return values_; }
   std::size_t size() const { return values_.size(); }
@@ -92,7 +92,7 @@ std::vector<CommandChannel> command_channels_of(const std::vector<ChannelInfo>& 
 /// Sets all values of a command, each clamped to the range of its channel.
 void set_all(Command& command, const std::vector<CommandChannel>& channels, std::span<const double> values);
 
-/// Writes the result of `save`: bytes, or None if the state cannot be saved.
+/// Writes the result of a Python `save`: bytes, or None if the state cannot be saved.
 void write_state(StateWriter& state, PyObject* saved);
 
 }  // namespace cohort::python

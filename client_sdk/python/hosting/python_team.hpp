@@ -11,12 +11,12 @@
 
 namespace cohort::python {
 
-/// A Python object that drives all robots of this process, an adapter of `cohort._hosting.TeamAdapter`. Its arrays
-/// [robot, value] refer to the memory of this object.
+/// The handler for a Python object that drives all robots of this process, a `cohort._hosting.TeamAdapter`. The arrays
+/// [robot, value] of that object refer to the memory of this one.
 class PythonTeam final : public FrameHandler {
  public:
-  /// Calls `make_adapter` without arguments; it must outlive this object. `name` is that of the class, and identifies
-  /// its saved states.
+  /// `make_adapter`, which is called without arguments, must outlive this object. `name` is the name of the class, and
+  /// identifies its saved states.
   PythonTeam(PyObject* make_adapter, std::string name);
   PythonTeam(const PythonTeam&) = delete;
   PythonTeam& operator=(const PythonTeam&) = delete;

@@ -7,18 +7,18 @@
 
 namespace cohort::python {
 
-/// Releases Python's global lock during its lifetime, for long work in C++. Python can end meanwhile, if the thread is
-/// a daemon: then the work must end too, and the thread waits forever instead of taking the lock, which no longer
-/// exists.
+/// Releases Python's global interpreter lock (GIL) during its lifetime, for long work in C++. If the thread is a
+/// daemon, Python can exit meanwhile: the work must then end too, and the destructor blocks forever, because the GIL no
+/// longer exists.
 class Unlocked {
  public:
-  /// `stop`: set to true if the work must end; null: none.
+  /// `stop`, which may be null, is set to true when the work must end.
   explicit Unlocked(std::atomic<bool>* stop = nullptr);
   Unlocked(const Unlocked&) = delete;
   Unlocked& operator=(const Unlocked&) = delete;
   ~Unlocked();
 
-  /// Returns true if the work of the calling thread must end because Python ends.
+  /// Returns true if the work of the calling thread must end because Python exits.
   static bool must_end();
 
  private:
@@ -26,7 +26,8 @@ class Unlocked {
   PyThreadState* state_;
 };
 
-/// Ends the work without the lock before Python ends. To be called once, when a module is imported.
+/// Registers an exit handler that ends all work without the GIL before Python exits. Call this once, when a module is
+/// imported.
 void watch_for_the_end_of_python();
 
 }  // namespace cohort::python

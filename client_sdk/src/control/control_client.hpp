@@ -23,15 +23,15 @@ class ControlClient {
   bool wait_for_server(std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
 
   /// Sends a request and returns its reply, with any result. Returns nothing if none arrives within `at_most`, if
-  /// `stop` is set, or if the server is gone; the request may still be done.
+  /// `stop` is set, or if the server is gone; the server may still perform the request.
   std::optional<wire::Reply> ask(wire::Operation operation, std::chrono::milliseconds at_most,
                                  const std::atomic<bool>& stop);
   /// Returns true if there is a server that accepts requests.
   bool sees_server() const;
-  /// Returns true if a server was there and is gone.
+  /// Returns true if there was a server and it is gone.
   bool server_is_gone() const;
 
-  /// Returns the participant of the requests; for readers of the owner, which must not outlive it.
+  /// Returns the participant that sends the requests, for further readers, which must not outlive this object.
   wire::Participant& participant();
 
  private:

@@ -6,8 +6,8 @@
 
 #include "idl/dds/dds.hpp"
 
-/// DDS topics whose samples are CDR bytes that Cyclone neither writes nor reads. So the encoder of idl/messages serves
-/// both the network and recordings, and types need no generated code.
+/// DDS topics whose samples are CDR bytes that Cyclone DDS neither encodes nor decodes. So the encoder of idl/messages
+/// serves both the network and recordings, and types need no generated code.
 namespace cohort::ros2 {
 
 /// A received sample.

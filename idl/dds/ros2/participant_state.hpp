@@ -6,7 +6,7 @@
 #include "idl/dds/dds.hpp"
 #include "idl/dds/ros2/discovery_info.hpp"
 
-/// Shared by the files of this folder, and not for others.
+/// Internal to this folder.
 namespace cohort::ros2 {
 
 struct ParticipantState {

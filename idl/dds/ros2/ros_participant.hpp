@@ -11,8 +11,8 @@
 #include "idl/dds/ros2/discovery_info.hpp"
 #include "idl/dds/ros2/ros_domain.hpp"
 
-/// A ROS 2 node on Cyclone DDS alone: has the network interface of rmw_cyclonedds, without ROS. Messages are CDR bytes
-/// (idl/messages/cdr.hpp).
+/// A ROS 2 node on Cyclone DDS alone: on the network it behaves like a node of rmw_cyclonedds, but it needs no ROS.
+/// Messages are CDR bytes (idl/messages/cdr.hpp).
 namespace cohort::ros2 {
 
 /// QoS of publishers and subscriptions in ROS; the history is `keep last`.
@@ -55,8 +55,8 @@ class RosParticipant {
 
   Gid gid() const;
 
-  /// Announces the node and all endpoints that it has now. The first call creates the writer of announcements, so a
-  /// participant that has received from it knows everything created before.
+  /// Announces the node and all its present endpoints. The first call creates the writer of announcements, so a
+  /// participant that has received an announcement knows all endpoints created before it.
   void announce(GidFormat format);
   /// Withdraws the announcement: later participants receive none until the next one.
   void withdraw();

@@ -10,10 +10,10 @@
 
 namespace cohort::sensing {
 
-/// Visibility of lamps from rings of light sensors. For many rings it is computed lamp by lamp before the robots sense,
-/// with the solids around the lamp sorted once for all of them. For few rings it is a ray for each query. The results
-/// are the same, bit for bit. A lamp is visible if the segment from it to the middle of the ring hits nothing but the
-/// two bodies that carry them.
+/// Visibility of lamps from rings of light sensors. For many rings, it is computed lamp by lamp before the robots
+/// sense, and the solids around a lamp are sorted once for all rings. For few rings, each query casts a ray. The
+/// results are the same, bit for bit. A lamp is visible if the segment from it to the middle of the ring hits nothing
+/// but the bodies that carry the lamp and the ring.
 class LampView final : public SharedView {
  public:
   /// Keeps references to both.
@@ -23,7 +23,7 @@ class LampView final : public SharedView {
   std::uint32_t add_ring(BodyId body, LinkId link, const Eigen::Vector3d& p_LS);
   std::uint32_t ring_count() const { return static_cast<std::uint32_t>(rings_.size()); }
 
-  /// Requests the ring for the next update.
+  /// Requests the visibility for a ring from the next update.
   void ask(std::uint32_t ring) { asking_.push_back(ring); }
   /// Computes the visibility of all active lamps for the requested rings.
   void update(WorkerPool& workers) override;

@@ -58,13 +58,13 @@ class SignalChain {
 
   /// Returns true if readings have no delay and need no memory; then only `disturb` is needed.
   bool is_immediate() const { return plan_->is_immediate_; }
-  /// Returns true if the sensor measures at this tick, for a robot that is due if `is_due`.
+  /// Returns true if the sensor measures at this tick. `is_due`: the robot is due at this tick.
   bool measures_at(std::uint64_t tick, bool is_due) const {
     return plan_->is_immediate_ ? is_due || plan_->wanders_ : plan_->measurements_.contains(tick);
   }
-  /// Adds all errors to the values measured at this tick. Infinite values, which mean that what there was to measure
-  /// is out of range, become the bound of their channel if the device has noise. Like `take` and `report`, it may be
-  /// called again at the same tick after a change from outside, and then replaces its previous result.
+  /// Adds all errors to the values measured at this tick. Infinite values, which mean that the measured quantity is out
+  /// of range, become the bound of their channel if the device has noise. Like `take` and `report`, it may be called
+  /// again at the same tick after a change from outside, and then replaces its previous result.
   void disturb(std::uint64_t tick, std::span<double> values);
   /// Takes the values measured at this tick, with their errors.
   void take(std::uint64_t tick, std::span<const double> values);
@@ -75,7 +75,8 @@ class SignalChain {
   /// measured since tick 0.
   std::optional<std::uint64_t> measurement_at(std::uint64_t tick) const;
 
-  /// Adds the state that determines later readings, besides the observation itself; nothing if there is none.
+  /// Adds the state that determines later readings, besides the observation itself, to the hash; adds nothing if there
+  /// is none.
   void hash(StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
   void restore(SnapshotReader& reader);

@@ -16,8 +16,8 @@ struct SampleGrid {
 };
 
 /// Returns the readings of a ring of proximity sensors for a cylinder around the robot, which is alone at the origin.
-/// They use the ring's technique, without errors; for random rays they are the mean of 256 ticks. `device`: index in
-/// `model` of a proximity ring.
+/// The readings use the ring's technique, without errors; for random rays, they are the mean of 256 ticks. `device`:
+/// index in `model` of a proximity ring.
 description::Samples take_samples(const description::Model& model, std::size_t device, const SampleGrid& grid);
 
 }  // namespace cohort::sensing

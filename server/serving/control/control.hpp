@@ -34,18 +34,18 @@ class Control {
   Control(LiveRecordings& recordings, std::function<void()> wake) : recordings_(recordings), texts_(std::move(wake)) {}
 
   void begin(ControlledRun run);
-  /// Tells waiting clients that what they wait for will not happen, unless the next run provides it.
+  /// Ends the run, and rejects the requests that still wait, except those that the next run can answer.
   void end(RunResult::End how);
 
   void take(const ReceivedRequest& received);
   /// Notes that the writer of a client's requests has disappeared.
   void lose(const wire::Sender& sender);
 
-  /// Notes that the run has reached a boundary, where steps may be carried out.
+  /// Notes that the run has reached a boundary, where requested steps may be complete.
   void reach_boundary();
+  enum class Moment { boundary, midst };
   /// Carries out waiting requests. Within a tick these are only requests that end the run, after which nothing else has
   /// an effect. Returns false if the run has to end; see `ending`.
-  enum class Moment { boundary, midst };
   bool perform(Moment moment);
   struct Ending {
     RunResult::End how = RunResult::End::shut_down;
@@ -70,12 +70,12 @@ class Control {
 
  private:
   struct Requester {
-    std::string label;    // for people
+    std::string label;    // human-readable
     std::string account;  // account that its requests are charged to
     std::uint64_t writer = 0;
     wire::Writer<wire::Reply> replies;
   };
-  // Returns a reply to the request that is not filled in yet.
+  // Returns a reply to the request, without a result yet.
   static wire::Reply reply_to(const wire::Request& request);
   Requester* requester_of(const ReceivedRequest& received);
   void receive(const wire::Request& request);

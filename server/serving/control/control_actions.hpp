@@ -30,9 +30,9 @@ struct ActionOutcome {
   std::vector<Done> done{};
 };
 
-/// Carries out these actions together, as the robots sense again after them. `texts` has read the texts of the
-/// requests. Returns first the outcomes of requests that are refused without a look at the world, then the others, each
-/// in the order of the requests.
+/// Carries out these requests together, so that the robots sense only once after them. `texts` must have read the texts
+/// of the requests. Returns first the outcomes of requests that are refused regardless of the world, then the others,
+/// each in the order of the requests.
 std::vector<ActionOutcome> act(Simulation& simulation, std::span<const wire::Request> requests,
                                const ModelTexts& texts);
 

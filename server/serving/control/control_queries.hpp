@@ -32,7 +32,7 @@ class ControlQueries {
   void answer(wire::Reply& reply, const wire::Request& request);
 
  private:
-  // One function for each query. Queries without one ask for what every reply contains.
+  // One function for each query. Queries without a function request only data that every reply contains.
   void fill(wire::Reply& reply, const wire::Request&, const wire::GetSimulatorFeatures&) const;
   void fill(wire::Reply& reply, const wire::Request&, const wire::GetEntities& operation) const;
   void fill(wire::Reply& reply, const wire::Request&, const wire::GetEntityState& operation) const;

@@ -5,7 +5,7 @@
 
 #include "server/run/session_snapshot.hpp"
 
-/// Texts for people, in replies and events.
+/// Human-readable texts in replies and events.
 namespace cohort::session {
 
 /// Returns the sentences on controllers whose state a snapshot lacks, to be appended to a message.

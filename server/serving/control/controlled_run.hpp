@@ -14,7 +14,7 @@ struct ControlledRun {
   Simulation& simulation;
   RunMonitor& monitor;
   std::uint32_t number = 0;
-  std::function<void(wire::SimulationStatus&)> fill_status;  ///< fills in what the control does not know
+  std::function<void(wire::SimulationStatus&)> fill_status;  ///< fills in the members that only the server knows
   std::function<SessionSnapshot()> take_snapshot;            ///< at a boundary
 };
 

@@ -10,8 +10,8 @@
 
 namespace cohort::session {
 
-/// Snapshots of a run that are kept in memory, so that it can go back to them. They are taken at regular intervals,
-/// which grow when they would take too much memory. Not thread-safe.
+/// Snapshots of a run that are kept in memory, so that the run can go back to them. They are taken at regular
+/// intervals, which grow when they would take too much memory. Not thread-safe.
 class KeptSnapshots {
  public:
   /// Keeps one every `interval` ticks; 0: none.
@@ -20,11 +20,11 @@ class KeptSnapshots {
   /// Returns true if a snapshot of this tick should be kept.
   bool wants(std::uint64_t tick) const;
   void keep(SessionSnapshot snapshot) { keep(std::make_shared<const SessionSnapshot>(std::move(snapshot))); }
-  /// Keeps a snapshot of any tick, such as the one that the run goes on from.
+  /// Keeps a snapshot of any tick, such as the one from which the run continues.
   void keep(std::shared_ptr<const SessionSnapshot> snapshot);
   /// Returns the last snapshot at or before `tick`; null if there is none.
   std::shared_ptr<const SessionSnapshot> last_until(std::uint64_t tick) const;
-  /// Forgets the snapshots after `tick`, as the run will take another course.
+  /// Discards the snapshots after `tick`, because the run continues differently from there.
   void forget_after(std::uint64_t tick);
 
   /// Returns the current number of ticks between snapshots.

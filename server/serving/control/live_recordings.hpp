@@ -17,9 +17,9 @@
 
 namespace cohort::session {
 
-/// Recordings of a run that clients make while it goes on. Each has a thread that produces the bytes of its file, which
-/// the client fetches in parts. Data that is not fetched in time is bounded in memory, and exceeding the bound ends
-/// that recording only. For the thread of the run.
+/// Recordings that clients make of a run in progress. Each has a thread that produces the bytes of its file, which the
+/// client fetches in parts. Data that is not fetched in time is bounded in memory, and exceeding the bound ends that
+/// recording only. For the thread of the run.
 class LiveRecordings {
  public:
   /// Starts a world: active recordings continue with it. Both arguments must outlive their recording.
@@ -29,12 +29,12 @@ class LiveRecordings {
   /// Ends all recordings, as the run has ended and no world follows. The world may be destroyed afterwards.
   void end(RunResult::End how, const std::string& reason);
 
-  /// Starts a recording at this boundary, which no listener has been told of yet. `recorded`: the content to record, in
-  /// YAML (parsing::read_recorded); if empty, that of the experiment. Throws std::runtime_error.
+  /// Starts a recording at this boundary, which has not been reported to any listener yet. `recorded`: the content to
+  /// record, in YAML (parsing::read_recorded); if empty, that of the experiment. Throws std::runtime_error.
   void start(std::uint64_t client, const std::string& recorded);
   /// Ends the client's recording here, at its request.
   void stop(std::uint64_t client);
-  /// Handles the end of the client.
+  /// Handles the departure of the client.
   void leave(std::uint64_t client);
 
   /// Adds the memory that is kept for clients: unfetched bytes, and messages that wait to be written.

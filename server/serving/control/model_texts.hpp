@@ -17,8 +17,8 @@
 namespace cohort::session {
 
 /// Reads the model texts of requests, one at a time on a thread of its own, so that neither ticks nor other requests
-/// wait. It keeps few models, and takes no more texts while results are not fetched. All functions are for the thread
-/// of the run.
+/// wait. It keeps only a few models, and takes no more texts while too many results have not been fetched. All
+/// functions are for the thread of the run.
 class ModelTexts {
  public:
   /// The client and the number of a request.

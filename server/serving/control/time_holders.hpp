@@ -7,13 +7,13 @@
 
 namespace cohort::session {
 
-/// The clients that hold the time of a run: it leaves a tick only when each of them asks for a later one. A time
-/// advance request and its grant are those of the High Level Architecture (IEEE 1516). Pure logic. Not thread-safe.
+/// The clients that hold the time of a run: the run advances past a tick only when each of them has requested a later
+/// tick. Requests and grants are as in the High Level Architecture (IEEE 1516). Pure logic. Not thread-safe.
 class TimeHolders {
  public:
   /// Adds a client, which holds the run at its current tick.
   void add(std::uint64_t client) { holders_.try_emplace(client); }
-  /// Removes a client; returns whether it held the time.
+  /// Removes a client. Returns true if it held the time.
   bool remove(std::uint64_t client) { return holders_.erase(client) > 0; }
   bool has(std::uint64_t client) const { return holders_.contains(client); }
 

@@ -30,7 +30,8 @@ class Compressor {
 /// (RFC 8878, 3.1.1.2.2), and incompressible data grows only slightly.
 bool is_possible_size(std::uint64_t size, std::uint64_t compressed_size);
 
-/// Decompresses `bytes` into `to`. Throws std::runtime_error with the reason if they do not hold exactly so many bytes.
+/// Decompresses `bytes` into `to`. Throws std::runtime_error with the reason unless they decompress to exactly the size
+/// of `to`.
 void decompress(ByteView bytes, std::span<std::byte> to);
 
 }  // namespace cohort::recording

@@ -7,7 +7,7 @@
 namespace cohort::recording {
 
 /// Returns the CRC-32 of ISO 3309 and ITU-T V.42 (polynomial 0x04C11DB7, reflected), as used by MCAP, zip and PNG.
-/// `crc`: that of the preceding bytes.
+/// `crc`: the CRC of the preceding bytes.
 std::uint32_t crc32(ByteView bytes, std::uint32_t crc = 0);
 
 }  // namespace cohort::recording

@@ -15,17 +15,17 @@ namespace cohort::recording {
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<const std::byte>;
 
-/// Nanoseconds since an epoch that the file's user knows; in Cohort's files, simulated time.
+/// Nanoseconds since an epoch that the application defines; in Cohort's files, simulated time.
 using Timestamp = std::chrono::duration<std::uint64_t, std::nano>;
 
 using SchemaId = std::uint16_t;   ///< from 1; 0: no schema
 using ChannelId = std::uint16_t;  ///< unique in a file
 using StringMap = std::map<std::string, std::string>;
 
-/// The first and the last bytes of a file.
+/// The magic bytes at the beginning and at the end of a file.
 inline constexpr std::array<std::uint8_t, 8> mcap_magic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 
-/// The first byte of a record. Its length follows, in eight bytes.
+/// The first byte of a record. The length of the content follows, in eight bytes.
 enum class Opcode : std::uint8_t {
   header = 0x01,
   footer = 0x02,

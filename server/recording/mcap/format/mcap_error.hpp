@@ -8,8 +8,8 @@
 
 namespace cohort::recording {
 
-/// The error of a recording that cannot be read or written. `what()` is `FILE: byte OFFSET: what was found and what was
-/// expected`.
+/// The error thrown if a recording cannot be read or written. `what()` is `FILE: byte OFFSET: what was found and what
+/// was expected`.
 class McapError : public std::runtime_error {
  public:
   McapError(std::filesystem::path file, std::uint64_t offset, const std::string& problem)
@@ -29,7 +29,7 @@ class McapError : public std::runtime_error {
   std::string problem_;
 };
 
-/// The error of a file that cannot be opened, written or replaced. The message says what failed, where, why, and what
+/// The error thrown if a file cannot be opened, written or replaced. The message says what failed, where, why, and what
 /// to do.
 class FileError : public std::runtime_error {
  public:

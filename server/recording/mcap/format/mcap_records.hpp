@@ -28,7 +28,8 @@ void append(Bytes& to, const MetadataIndex& index);
 void append(Bytes& to, const Statistics& statistics);
 void append(Bytes& to, const SummaryOffset& offset);
 void append_data_end(Bytes& to, std::uint32_t crc);
-/// Appends the footer's record, with the CRC of `summary_before` and of the footer's own first fields, and the magic.
+/// Appends the footer's record, with the CRC of `summary_before` and of the footer's own first fields, and the magic
+/// bytes.
 void append_end(Bytes& to, const Footer& footer, ByteView summary_before);
 /// Appends a chunk's record up to its (compressed) records, which are `head.compressed_size` bytes and must follow.
 void append_chunk_head(Bytes& to, const ChunkHead& head);

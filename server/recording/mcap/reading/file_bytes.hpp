@@ -6,10 +6,10 @@
 
 namespace cohort::recording {
 
-/// A file with random access, whose size is that at its opening. For any thread.
+/// A file with random access. Its size is determined when it is opened. For any thread.
 class FileBytes {
  public:
-  /// Throws FileError if it cannot be opened or is not a regular file.
+  /// Throws FileError if the file cannot be opened or is not a regular file.
   explicit FileBytes(std::filesystem::path path);
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
@@ -18,11 +18,11 @@ class FileBytes {
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t size() const { return size_; }
   Place at(std::uint64_t offset) const { return {&path_, offset, {}}; }
-  /// Throws McapError if the file ends before, or cannot be read.
+  /// Fills `to` with the bytes from `offset` on. Throws McapError if the file ends too early, or cannot be read.
   void read(std::uint64_t offset, std::span<std::byte> to) const;
-  /// Does the same, but checks the size before it allocates memory.
+  /// Returns `size` bytes from `offset` on. Checks the size before it allocates memory. Throws McapError likewise.
   Bytes read(std::uint64_t offset, std::uint64_t size) const;
-  /// Returns the CRC of the bytes from `from` to before `to`, both in the file.
+  /// Returns the CRC of the bytes in [`from`, `to`), which must be in the file.
   std::uint32_t crc(std::uint64_t from, std::uint64_t to) const;
 
  private:

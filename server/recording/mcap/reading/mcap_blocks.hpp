@@ -29,8 +29,8 @@ class ReadBudget {
 struct Block {
   std::uint64_t offset = 0;  ///< in the file
   std::uint64_t length = 0;  ///< length of all its records
-  Timestamp start_time{};    ///< times of its messages
-  Timestamp end_time{};
+  Timestamp start_time{};    ///< least log time of its messages
+  Timestamp end_time{};      ///< greatest log time
   bool is_chunk = true;
   std::vector<ChannelId> channels{};  ///< channels with messages in it, in order; empty if unknown
 };

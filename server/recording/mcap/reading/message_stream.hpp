@@ -22,8 +22,8 @@ struct MessageQuery {
   Order order = Order::log_time;
 };
 
-/// The messages of a file, in sequence. It holds the current chunk, and in order of time also the chunks that overlap
-/// it. It may outlive its reader. For one thread at a time.
+/// The messages of a file, in sequence. The stream keeps the current chunk in memory and, in the order of log times,
+/// also the chunks that overlap it in time. It may outlive its reader. For one thread at a time.
 class MessageStream {
  public:
   MessageStream(MessageStream&&) noexcept;

@@ -13,7 +13,7 @@ struct Recovery {
   std::uint64_t lost_bytes = 0;
 
   bool was_whole() const { return damages.empty(); }
-  /// Returns a text for people: a line on the kept data, one on the lost data, and one for each damage, at most 20.
+  /// Returns a human-readable text: a line on the kept data, one on the lost data, and one for each damage, at most 20.
   std::string text() const;
 };
 
@@ -21,7 +21,7 @@ struct Recovery {
 /// metadata. The file is written beside `target` and replaces it when it is complete. `target` may be `source`; then a
 /// complete file is not changed. Throws FileError if a file cannot be opened or written, or is being recorded. Throws
 /// McapError, and keeps `target` unchanged, if `source` is not an MCAP file, or is damaged and has no readable message.
-/// To a different file it also writes attachments and metadata without messages.
+/// If `target` is a different file, attachments or metadata without messages are enough.
 Recovery recover(const std::filesystem::path& source, const std::filesystem::path& target,
                  const ReadLimits& limits = {});
 

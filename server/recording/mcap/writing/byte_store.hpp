@@ -4,8 +4,8 @@
 
 namespace cohort::recording {
 
-/// The destination of a recording's bytes, in sequence. Failing functions throw FileError. `sync` may be called from
-/// another thread than the rest.
+/// The destination of a recording's bytes, in sequence. On failure, the functions throw FileError. `sync` may be called
+/// on a different thread from the others.
 class ByteStore {
  public:
   ByteStore() = default;
@@ -15,7 +15,7 @@ class ByteStore {
 
   /// Returns a name for messages.
   virtual std::string name() const { return "the recording"; }
-  /// Writes all bytes; after an exception, some may be written.
+  /// Writes all bytes; after an exception, some of them may have been written.
   virtual void write(ByteView bytes) = 0;
   /// Removes the bytes that were written after the first `size` bytes.
   virtual void cut_off(std::uint64_t size) = 0;

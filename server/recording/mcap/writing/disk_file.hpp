@@ -10,11 +10,11 @@
 namespace cohort::recording {
 
 /// A file that is written from beginning to end. While it is open, no other DiskFile can open it. A file that it
-/// replaces stays until the first `sync`, and for good if there is none. Failing functions throw FileError: what
-/// failed, where, why, and what to do.
+/// replaces stays until the first `sync`, and for good if there is none. On failure, the functions throw FileError,
+/// which says what failed, where, why, and what to do.
 class DiskFile : public ByteStore {
  public:
-  /// Creates the file, or one that will replace it.
+  /// Creates the file, or a new one that will replace an existing file.
   explicit DiskFile(std::filesystem::path path);
   ~DiskFile() override;
 

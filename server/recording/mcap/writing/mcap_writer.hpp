@@ -8,7 +8,7 @@
 
 namespace cohort::recording {
 
-/// A function that takes the next bytes of a file: all of them, or throws.
+/// A function that either takes all of the next bytes of a file, or throws.
 using ByteSink = std::function<void(ByteView)>;
 
 /// Returns `cohort` and its version.
@@ -36,10 +36,10 @@ class McapWriter {
 
   /// Adds a schema. Ids start at 1, in the order of the calls. Throws std::length_error beyond 65,535 of them.
   SchemaId add_schema(std::string name, std::string encoding, std::string data);
-  /// Adds a channel, with ids likewise. `schema`: 0 if there is none; otherwise an added one, or std::invalid_argument
-  /// is thrown.
+  /// Adds a channel; its id is assigned in the same way. `schema`: the id of an added schema, or 0 for none. Throws
+  /// std::invalid_argument for other schemas.
   ChannelId add_channel(std::string topic, SchemaId schema, std::string message_encoding, StringMap metadata = {});
-  /// Adds a schema or channel with an id of the caller, which must be new; for copying a file.
+  /// Adds a schema or a channel with an id that the caller has chosen and that must be new; for copying a file.
   void add(Schema schema);
   void add(Channel channel);
 

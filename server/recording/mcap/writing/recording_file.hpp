@@ -41,14 +41,14 @@ class RecordingFile {
   /// Creates or replaces the file. Throws FileError if there is no such folder or no permission, or if another process
   /// is recording to it.
   explicit RecordingFile(const std::filesystem::path& path, RecordingOptions options = {});
-  /// Records to a store of the caller.
+  /// Records to a store that the caller provides.
   explicit RecordingFile(std::shared_ptr<ByteStore> store, RecordingOptions options = {});
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
-  /// Closes it.
+  /// Closes the file.
   ~RecordingFile();
 
-  /// The same as of McapWriter, with the same ids for the same calls.
+  /// Act like the functions of McapWriter, with the same ids for the same calls.
   SchemaId add_schema(std::string name, std::string encoding, std::string data) noexcept;
   ChannelId add_channel(std::string topic, SchemaId schema, std::string message_encoding,
                         StringMap metadata = {}) noexcept;
@@ -59,7 +59,7 @@ class RecordingFile {
   bool write_message(ChannelId channel, std::uint32_t sequence, Timestamp log_time, Timestamp publish_time,
                      ByteView data, Importance importance) noexcept;
 
-  /// Ends the recording at its present state, with `why` as its `error`.
+  /// Ends the recording in its present state, with `why` as its `error`.
   void end_early(const std::string& why);
 
   /// Returns the numbers of dropped display messages, by channel.

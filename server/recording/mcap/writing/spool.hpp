@@ -12,7 +12,7 @@
 namespace cohort::recording {
 
 /// A buffer between the thread that writes a recording and the client that fetches it in parts. The thread waits while
-/// `capacity` bytes or more are not fetched. For any thread.
+/// `capacity` bytes or more have not been fetched. For any thread.
 class Spool : public ByteStore {
  public:
   explicit Spool(std::size_t capacity) : capacity_(capacity) {}
@@ -32,7 +32,7 @@ class Spool : public ByteStore {
   void abandon();
 
   void write(ByteView bytes) override;
-  /// Does nothing: the bytes may already be fetched. Records are always whole here.
+  /// Does nothing, because the bytes may already have been fetched. Here, all written records are complete.
   void cut_off(std::uint64_t size) override;
   void sync() override {}
   void finish() override;

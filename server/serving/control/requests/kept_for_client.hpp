@@ -19,7 +19,7 @@ struct KeptForClient {
   std::size_t bytes = 0;
 };
 
-/// Returns a text for people, such as `saved snapshot`.
+/// Returns a human-readable name, such as `saved snapshot`.
 std::string name_of(KeptForClient::Kind kind);
 
 /// Returns the oldest entries, which must be dropped so that the rest has at most `most` bytes.

@@ -12,7 +12,7 @@ struct ReceivedRequest {
   wire::Participant* participant = nullptr;
 };
 
-/// Returns the memory that a request takes.
+/// Returns the size of a request in memory [bytes].
 inline std::size_t size_of(const wire::Request& request) {
   std::size_t bytes = sizeof request + request.label.size();
   const auto add = [&](const auto& content) { bytes += content.size(); };

@@ -17,7 +17,7 @@ class RequestBudget {
   using Time = std::chrono::nanoseconds;  ///< from a steady clock
   static constexpr Time allowance = std::chrono::milliseconds(20);
   static constexpr Time largest_debt = std::chrono::seconds(10);
-  /// A run that cannot make its first step blocks other restarts for at most this time.
+  /// A new run that has not made a step blocks further restarts by the same account for at most this time.
   static constexpr Time longest_restart = std::chrono::seconds(1);
 
   /// Returns true if the account's next request may be carried out now.
@@ -26,9 +26,9 @@ class RequestBudget {
   void charge(const std::string& account, Time took, Time now);
 
   /// Notes that a request of the account has ended the run to start another one. The account is charged for the time up
-  /// to the first boundary of the new run, until that has made a step.
+  /// to the first boundary of the new run.
   void begin_restart(const std::string& account, Time now);
-  /// Notes that the run is at a boundary; `has_stepped`: after a step of its own.
+  /// Notes that the run is at a boundary; `has_stepped`: the run has made at least one step.
   void note_boundary(bool has_stepped, Time now);
   /// Returns true if the account may restart the run now: the run that it started last must have made a step.
   bool allows_restart(const std::string& account, Time now);

@@ -20,13 +20,13 @@ namespace cohort::session {
 /// that is transferred in parts. All of it is bounded. Pure logic, no network. Not thread-safe.
 class RequestLedger {
  public:
-  /// Returns true if the client's id belongs to this participant, `who`, since its first request. A participant has one
+  /// Returns true if the first request with this client id came from the participant `who`. A participant has only one
   /// id.
   bool is_in_own_name(std::uint64_t client, std::uint64_t who);
 
   enum class Receipt {
     fresh,      ///< to be carried out; `keep` ends it
-    under_way,  ///< in progress, or waiting for that
+    under_way,  ///< in progress, or waiting to be carried out
     answered,   ///< `remembered` is its reply
     forgotten,  ///< older than the remembered replies
     too_many,   ///< the client has reached its limit of requests in progress
@@ -43,11 +43,11 @@ class RequestLedger {
 
   /// Offers data that the client fetches in parts, in place of earlier data.
   void offer(std::uint64_t client, std::shared_ptr<const std::vector<std::byte>> data, KeptForClient::Time now);
-  /// Returns the part from `offset` on, empty after the end; nothing if there is no data for the client.
   struct Part {
     std::uint64_t size = 0;  ///< size of the whole data
     std::span<const std::byte> bytes{};
   };
+  /// Returns the part from `offset` on, empty after the end; nothing if there is no data for the client.
   std::optional<Part> part(std::uint64_t client, std::uint64_t offset) const;
 
   /// Takes a part of an upload. Parts arrive in order from offset 0 on; repeated parts are allowed. Returns the fault,

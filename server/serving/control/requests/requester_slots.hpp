@@ -18,7 +18,7 @@ class RequesterSlots {
   static constexpr std::size_t most = 64;
   static constexpr std::size_t most_of_identity = 32;
   static constexpr std::size_t kept_for_role = 16;
-  /// A client that waits for a reply asks again before this time.
+  /// A client counts as idle after this time: one that waits for a reply repeats its request earlier.
   static constexpr Time idle_after = std::chrono::milliseconds(1500);
 
   struct Holder {

@@ -14,7 +14,7 @@ namespace cohort::data {
 struct Selection {
   std::chrono::nanoseconds from{0};                               ///< log time
   std::chrono::nanoseconds to = std::chrono::nanoseconds::max();  ///< log time, inclusive
-  std::set<std::string> robots{};  ///< with commands and observations; empty: all
+  std::set<std::string> robots{};                                 ///< with commands and observations; empty: all
 };
 
 /// Writes the tables of docs/recordings.md, "Tables". The column `run` numbers the worlds of the recording, from 0;

@@ -4,8 +4,8 @@
 
 #include "tools/common/drawing/chart.hpp"
 
-/// How each device of an s-bot responds (docs/sbot.md), measured in small worlds, beside the closed forms of the thesis
-/// (chapter 3) or of mechanics. The same at each run.
+/// Charts of the responses of an s-bot's devices (docs/sbot.md), measured in small worlds, compared with closed forms
+/// from the thesis (chapter 3) or from mechanics. Each run gives the same charts.
 namespace cohort::figures {
 
 Page proximity_and_ground();

@@ -9,8 +9,8 @@ inline constexpr std::size_t turret = 1;
 inline constexpr double turret_height = 0.055;  ///< z of the turret's link [m]
 inline constexpr double turret_radius = 0.058;  ///< [m]
 
-/// A robot like the s-bot: 0.7 kg, a chassis with tracks and a turret on a joint, both round. Links 0 and 1, joint 0,
-/// device 0.
+/// Returns a robot like the s-bot: 0.7 kg, a round chassis with tracks and a round turret on a joint. They are links 0
+/// and 1, joint 0 and device 0.
 inline description::Model tracked_robot() {
   using namespace description;
   Model model;

@@ -6,7 +6,7 @@
 
 namespace cohort::test {
 
-/// Fills messages with anything, the same anything each time; numbers that a float holds exactly.
+/// Fills messages with random values, the same in each run. A float represents all of them exactly.
 class AnyMessage {
  public:
   template <class Value>

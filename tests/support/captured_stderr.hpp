@@ -7,8 +7,8 @@
 
 namespace cohort::test {
 
-/// Keeps what the process writes to standard error while this lives. Other than GoogleTest's capture it can be read
-/// while it goes on.
+/// Captures the standard error of this process during its lifetime. Unlike GoogleTest's capture, it can be read while
+/// it captures.
 class CapturedStderr {
  public:
   CapturedStderr() : kept_(::dup(STDERR_FILENO)), file_(std::tmpfile()) {

@@ -19,8 +19,8 @@ inline std::vector<std::string> ctl_command(const ReservedDomain& domain, const 
   return command;
 }
 
-/// Runs `cohort ctl`, which has to succeed, and returns what it printed. A server that was started with `--paused` and
-/// is told to step stands still between two steps: a test can act at a tick, however busy the machine is.
+/// Runs `cohort ctl`, checks that it succeeds, and returns its output. A server that was started with `--paused` and is
+/// stepped stands still between two steps. A test can therefore act at an exact tick, however busy the machine is.
 inline std::string control(const ReservedDomain& domain, std::vector<std::string> arguments) {
   const std::string command = arguments.front();
   arguments.insert(arguments.begin(), {"--timeout", patience_in_seconds});

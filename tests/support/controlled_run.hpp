@@ -27,16 +27,16 @@ class ControlledRun {
   std::vector<std::string> ctl(const std::vector<std::string>& arguments) const {
     return ctl_command(domain_, arguments);
   }
-  /// Returns what `cohort ctl` printed; it has to succeed.
+  /// Runs `cohort ctl`, checks that it succeeds, and returns its output.
   std::string done(const std::vector<std::string>& arguments) const { return control(domain_, arguments); }
   nlohmann::json status() const { return nlohmann::json::parse(done({"status", "--json"})); }
   std::uint64_t tick() const { return status()["tick"]; }
-  /// Asks until the status has what `condition` wants; false if it does not in time.
+  /// Polls until the status satisfies `condition`. Returns false if it does not in time.
   template <class Condition>
   bool comes_to(Condition condition) const {
     return eventually([&] { return condition(status()); });
   }
-  /// The run's summary, once all are gone.
+  /// Waits for the server's end, and returns the run's summary.
   nlohmann::json finish() {
     EXPECT_EQ(server_.wait_for_exit(), 0) << server_.output();
     return field_.summary();
@@ -51,14 +51,14 @@ class ControlledRun {
 
 inline const std::atomic<bool> never = false;
 
-/// As programs have it.
+/// Returns the control interface that programs use.
 inline Control control_of(const ControlledRun& run) {
   return Control({.domain = run.domain().number(), .time_limit = patience});
 }
 /// Returns the client under Control, which sends any request, well-formed or not.
 inline ControlClient client_of(const ControlledRun& run) { return ControlClient({.domain = run.domain().number()}); }
 
-/// The hash of the field's run with its controllers in the server's process.
+/// Returns the state hash of the field's run with controllers in the server's process.
 inline std::string reference(const FieldOfRobots& field, const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments = {"--controllers", "inprocess"};
   arguments.insert(arguments.end(), more.begin(), more.end());

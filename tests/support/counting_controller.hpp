@@ -7,7 +7,8 @@
 
 namespace cohort::test {
 
-/// Commands how many steps it has made, the tick, twice its reading, and why it was started. Throws when it reads -1.
+/// A controller that commands its number of steps, the tick, twice its reading, and the reason of its start. Throws if
+/// it reads -1.
 class CountingController final : public Controller {
  public:
   void start(const Start& start) override {

@@ -10,12 +10,12 @@
 #include "idl/messages/ros_simulation_queries.hpp"
 #include "idl/messages/ros_simulation_services.hpp"
 
-/// The structs of idl/messages that ROS 2 has messages for, for tests of each of them.
+/// The structs of idl/messages that correspond to ROS 2 messages, for tests of each of them.
 namespace cohort::test {
 
 namespace ros = messages::ros;
 
-/// The messages that all distributions of ROS 2 have.
+/// The messages that all ROS 2 distributions have.
 using StandardMessages =
     std::tuple<ros::Time, ros::Duration, ros::Header, ros::Empty, ros::Bool, ros::Int32, ros::Float32, ros::Float64,
                ros::String, ros::ColorRGBA, ros::Float32MultiArray, ros::Float64MultiArray, ros::Clock, ros::Pose,

@@ -14,8 +14,8 @@
 
 namespace cohort::test {
 
-/// The server's side of the protocol, one message at a time, for tests of clients: says what it is told to say and
-/// keeps what it hears.
+/// The server's side of the protocol, one message at a time, for tests of clients. It sends messages on request, and
+/// keeps the messages that it receives.
 class FakeServer {
  public:
   struct Answer {
@@ -27,7 +27,7 @@ class FakeServer {
   };
 
   FakeServer() {
-    // Not before all else is there: the readers call back at once.
+    // These are made last, because the readers call back at once.
     joins_.emplace(free_.server,
                    wire::Reader<wire::Join>::Callbacks{[this](const wire::Join& join, const wire::Sender&) {
                                                          const std::lock_guard lock(mutex_);
@@ -55,7 +55,7 @@ class FakeServer {
 
   std::uint32_t domain() const { return free_.domain; }
 
-  /// The Join of a client; makes ready to speak to it. Empty if none comes.
+  /// Waits for the Join of a client, returns it, and makes the writers to this client. Returns nullopt if none arrives.
   std::optional<wire::Join> accept() {
     if (!eventually([&] { return join().has_value(); })) return std::nullopt;
     client_ = join()->client;
@@ -67,7 +67,7 @@ class FakeServer {
     return join();
   }
 
-  /// Goes without a word, but keeps the domain so that no other test's server is taken for it.
+  /// Disappears without a message. Keeps the domain, so that clients do not find another test's server instead.
   void leave() {
     descriptions_.reset();
     admits_.reset();
@@ -92,7 +92,7 @@ class FakeServer {
     frames_->write({.client = client_, .epoch = epoch, .tick = tick, .robots = robots, .values = values});
   }
 
-  /// Sends a frame until an answer comes that was not there before; empty if none comes.
+  /// Sends a frame repeatedly until a new answer arrives, and returns it; nullopt if none arrives.
   std::optional<Answer> ask(std::uint64_t tick, const std::vector<double>& values, std::uint64_t epoch = 1,
                             const std::vector<std::uint32_t>& robots = {0}) {
     const std::size_t before = answers().size();

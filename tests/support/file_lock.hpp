@@ -10,8 +10,8 @@
 
 namespace cohort::test {
 
-/// Takes a DDS domain from all other tests of this machine: the file to close when it is free again, negative if
-/// another has it.
+/// Reserves a DDS domain among all tests of this machine. Returns a file descriptor, which must be closed to release
+/// the domain, or a negative number if the domain is reserved.
 inline int lock_domain(std::uint32_t domain) {
   const auto path = std::filesystem::temp_directory_path() / ("cohort-test-domain-" + std::to_string(domain));
   const int file = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
@@ -20,7 +20,7 @@ inline int lock_domain(std::uint32_t domain) {
   return -1;
 }
 
-/// Among all processes one at a time has a file while this lives.
+/// An exclusive lock on a file among all processes, held during its lifetime.
 class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& file) : file_(open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {

@@ -24,7 +24,7 @@ inline std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// A folder that is gone with this.
+/// A folder that the destructor removes.
 class ScratchFolder {
  public:
   ScratchFolder() {

@@ -11,7 +11,7 @@
 
 namespace cohort::test {
 
-/// A server on a domain that no other process has, so that tests may run side by side.
+/// A server on a domain that no other process uses, so that tests may run in parallel.
 struct FreeDomain {
   std::uint32_t domain;
   wire::Participant server;
@@ -32,7 +32,7 @@ inline FreeDomain take_free_domain(std::uint32_t first = 60, std::uint32_t last 
   return std::move(*found);
 }
 
-/// A domain without a server, which no other test of this machine takes until this process ends.
+/// Returns a domain without a server, which no other test of this machine uses until this process ends.
 inline std::uint32_t find_empty_domain() {
   for (std::uint32_t domain = 75; domain <= 79; ++domain)
     if (lock_domain(domain) >= 0) return domain;

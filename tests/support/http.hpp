@@ -4,7 +4,7 @@
 
 namespace cohort::test {
 
-/// To a port of the loopback.
+/// A connection to a port of the loopback interface.
 class TcpConnection {
  public:
   TcpConnection();
@@ -13,7 +13,7 @@ class TcpConnection {
   ~TcpConnection();
 
   bool connect(const std::string& port) const;
-  /// All of it; false if it cannot.
+  /// Sends all of the text. Returns false if this fails.
   bool send(const std::string& text) const;
   /// Waits for data and returns them; empty at the end.
   std::string receive() const;
@@ -22,21 +22,21 @@ class TcpConnection {
   int socket_;
 };
 
-/// Returns the answer of a server at this port of the loopback to GET of `target`, with status line and headers. It
-/// reads to the end of the connection or, if the protocol is switched (101), of the headers. Waits until a server
-/// listens; empty if none does. `headers`: additional ones, each with its "\r\n".
+/// Returns the response of the server at this port of the loopback interface to a GET of `target`, with status line and
+/// headers. Reads to the end of the connection or, if the protocol is switched (101), of the headers. Waits until a
+/// server listens; returns an empty text if none does. `headers` are additional headers, each with its "\r\n".
 std::string http_get(const std::string& port, const std::string& target, const std::string& headers = "");
 
-/// The same, asking for a WebSocket of the view, which needs its token.
+/// Like http_get, but requests the view's WebSocket. `target` must contain its token.
 std::string http_get_socket(const std::string& port, const std::string& target);
 
-/// The port in the address that a view has printed.
+/// Returns the port in the address that a view has printed.
 std::string port_in(const std::string& output);
 
-/// A view serves the page there, all of it.
+/// Checks that a view serves the complete page at this port.
 void expect_page(const std::string& port);
 
-/// Returns a port of the loopback on which no program listens.
+/// Returns a port of the loopback interface on which no program listens.
 std::string free_port();
 
 }  // namespace cohort::test

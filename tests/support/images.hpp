@@ -13,7 +13,7 @@ inline std::string big_endian(std::uint32_t number, int bytes) {
   return text;
 }
 
-/// `end` makes images of one size different.
+/// Returns the header of a PNG image. `end` distinguishes images of the same size.
 inline std::string png_of(std::uint32_t width, std::uint32_t height, const std::string& end = "") {
   return "\x89PNG\r\n\x1a\n" + big_endian(13, 4) + "IHDR" + big_endian(width, 4) + big_endian(height, 4) + end;
 }
@@ -25,9 +25,8 @@ inline std::string jpeg_of(std::uint32_t width, std::uint32_t height) {
          big_endian(width, 2) + "\x01";
 }
 
-/// Returns a glTF file of one triangle with texture coordinates (0, 0), (1, 0), (0, 1), measured from the upper edge of
-/// the image. `image` is the JSON object of its image. If `view` is not empty, view 3 of the buffer contains it. As a
-/// file .glb.
+/// Returns a binary glTF file (.glb) of one triangle with texture coordinates (0, 0), (1, 0), (0, 1), measured from the
+/// upper edge of the image. `image` is the JSON object of its image. If `view` is not empty, buffer view 3 contains it.
 inline std::string glb_of(const std::string& image, const std::string& view = "") {
   const float numbers[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1};
   std::string buffer(reinterpret_cast<const char*>(numbers), sizeof numbers);

@@ -9,12 +9,12 @@
 
 namespace cohort::test {
 
-/// Identities of one server, as `cohort security init` makes them: observer, red for the robots 0..7 and blue
-/// for 8..15.
+/// The identities of one server, as `cohort security init` creates them: `observer`, `red` for the robots 0..7 and
+/// `blue` for 8..15.
 class Keys {
  public:
-  /// `observers_side`: what an observer's certificates let it do. As a controller it stands for a program that does not
-  /// keep to what it may.
+  /// `observers_side` is the role that the certificates of `observer` permit. With the role of a controller, it
+  /// represents a program that exceeds its permissions.
   explicit Keys(const std::string& protection = "sign", unsigned days = 30,
                 wire::Role observers_side = wire::Role::observer) {
     make({.name = "observer", .role = observers_side, .participant = wire::observers_participant}, protection, days);
@@ -29,7 +29,7 @@ class Keys {
     return wire::read_identity(folder_.path() / "server" / name);
   }
 
-  /// Makes a folder with the files of `name` for the participant of `other`.
+  /// Makes an identity with the files of `name` and the participant index of `other`. Returns its folder.
   std::string disguise(const std::string& name, const std::string& other) const {
     const std::filesystem::path to = folder_.path() / (name + "_at_" + other);
     std::filesystem::copy(client_folder(name), to);

@@ -13,14 +13,16 @@
 
 namespace cohort::test {
 
-/// A script for node with the packages of npm that it needs, copied from the sources to the build's folder.
+/// A script for node and the npm packages that it needs, copied from the sources to the build folder.
 class NodeFolder {
  public:
-  /// `node` and `npm` are programs, empty where there are none. `source` has package.json and package-lock.json too.
+  /// `node` and `npm` are programs; empty if they are missing. `source` also contains package.json and
+  /// package-lock.json.
   NodeFolder(std::string node, std::string npm, std::filesystem::path source, std::filesystem::path folder)
       : node_(std::move(node)), npm_(std::move(npm)), source_(std::move(source)), folder_(std::move(folder)) {}
 
-  /// Installs the packages once, in the first process that needs them. Returns the reason why it cannot, or nothing.
+  /// Installs the packages once, in the first process that needs them. Returns the reason if this is impossible,
+  /// otherwise nullopt.
   std::optional<std::string> prepare(const std::string& script) const {
     if (node_.empty()) return "there is no node: tools/dev/install-packages tools/dev/packages-node.txt";
     if (npm_.empty()) return "there is no npm: tools/dev/install-packages tools/dev/packages-node.txt";
@@ -49,7 +51,7 @@ class NodeFolder {
     write_file(folder_ / "installed", wanted);
   }
 
-  // As a whole or not at all: another test's script may be reading it.
+  // Replaces the file atomically, because another test's script may be reading it.
   void put(const std::string& name) const {
     const std::string content = read_file(source_ / name);
     if (read_file(folder_ / name) == content) return;

@@ -10,10 +10,10 @@ namespace cohort::test {
 /// it. It is shorter than ctest's time limit of the test (COHORT_TEST_TIMEOUT).
 inline constexpr std::chrono::seconds patience{COHORT_TEST_PATIENCE};
 
-/// For commands that are told how long to wait.
+/// The same time, for commands with a time limit.
 inline const std::string patience_in_seconds = std::to_string(patience.count());
 
-/// Polls until `condition` holds; false if it does not within `at_most`.
+/// Polls until `condition` holds. Returns false if it does not within `at_most`.
 template <class Condition>
 bool eventually(Condition&& condition, std::chrono::milliseconds at_most = patience,
                 std::chrono::milliseconds pause = std::chrono::milliseconds(1)) {

@@ -9,7 +9,7 @@
 
 namespace cohort::test {
 
-/// How a world is simulated: the parameter of tests that ask the same of every kind.
+/// The settings of physics: the parameter of tests that apply to every kind of physics.
 struct Physics {
   description::Fidelity fidelity = description::Fidelity::treel;
   description::Solver solver = description::PhysicsSettings{}.solver;
@@ -22,7 +22,7 @@ struct Physics {
     return fidelities[static_cast<std::size_t>(fidelity)] + solvers[static_cast<std::size_t>(solver)] +
            (dynamics == description::Dynamics::bullet ? "_bullet" : "");
   }
-  /// With a floor only.
+  /// Returns a world with only a floor.
   description::World world(double friction = 1.0) const {
     description::World world = world_with_floor(friction);
     world.physics.fidelity = fidelity;
@@ -30,7 +30,7 @@ struct Physics {
     world.physics.dynamics = dynamics;
     return world;
   }
-  /// `tracked_robot`; where wheels are simulated, with wheels that its drive turns.
+  /// Returns `tracked_robot`; with `articulated` fidelity, it has wheels that its drive turns.
   description::Model robot() const {
     description::Model model = tracked_robot();
     if (fidelity != description::Fidelity::articulated) return model;
@@ -47,7 +47,7 @@ inline std::string name_of(const ::testing::TestParamInfo<Physics>& info) { retu
 
 using EveryPhysics = ::testing::TestWithParam<Physics>;
 
-/// The same with bodies of Bullet.
+/// Returns the same settings with Bullet's dynamics.
 constexpr Physics by_bullet(Physics physics) {
   physics.dynamics = description::Dynamics::bullet;
   return physics;

@@ -12,12 +12,12 @@
 #include "tests/support/files.hpp"
 #include "tests/support/patience.hpp"
 
-/// Running `cohort` as users do, from tests.
+/// Functions to run `cohort` from tests as users do.
 namespace cohort::test {
 
 using namespace std::chrono_literals;
 
-/// A program in a process group of its own, killed with all that it started when this is gone.
+/// A program in its own process group. The destructor kills the whole group.
 class Process {
  public:
   using Environment = std::map<std::string, std::string>;
@@ -28,11 +28,12 @@ class Process {
 
   pid_t pid() const { return pid_; }
   void signal(int number) const;
-  /// Returns its standard output and standard error so far, in one.
+  /// Returns its combined standard output and standard error so far.
   std::string output() const;
-  /// Waits until the output contains `text`; false if the process ended without it or patience ran out.
+  /// Waits until the output contains `text`. Returns false if the process ends without it, or after `patience`.
   bool wait_for_output(const std::string& text);
-  /// Waits for its end. Its exit code, or 128 + the signal that ended it; nothing if patience ran out.
+  /// Waits for the end of the process. Returns its exit code, or 128 plus the number of the signal that ended it;
+  /// nullopt after `patience`.
   std::optional<int> wait_for_exit();
   bool running();
 
@@ -42,7 +43,7 @@ class Process {
   std::optional<int> exit_code_;
 };
 
-/// How a program ended, and what it wrote where.
+/// The exit code of a program, and its output. The code is nullopt if the program did not end in time.
 struct Ended {
   std::optional<int> exit_code;
   std::string out;
@@ -53,17 +54,18 @@ Ended run_to_end(const std::vector<std::string>& command, const Process::Environ
 /// Returns whether a shell finds the program.
 bool is_installed(const std::string& program);
 
-/// Returns whether the process runs. A process that has ended does not, even if no other has waited for it yet.
+/// Returns whether the process runs. A zombie does not count as running.
 bool is_alive(pid_t pid);
-/// Returns the memory of the process.
+/// Returns the resident memory of the process [bytes].
 std::size_t resident_bytes(pid_t pid);
-/// Waits until it has ended; false if patience ran out.
+/// Waits until the process has ended. Returns false after `patience`.
 bool wait_until_gone(pid_t pid);
 
-/// Processes started by `parent`; some may be missing while its processes and threads start and end (proc(5)).
+/// Returns the child processes of `parent`. Some may be missing while its processes and threads start and end
+/// (proc(5)).
 std::vector<pid_t> children_of(pid_t parent);
 
-/// A DDS domain that no other test of this machine has while this lives.
+/// A DDS domain that no other test of this machine uses during its lifetime.
 class ReservedDomain {
  public:
   ReservedDomain();
@@ -83,7 +85,7 @@ nlohmann::json read_json(const std::filesystem::path& file);
 std::string hash_in(const std::filesystem::path& summary);
 
 std::string cohort_program();
-/// A controller of tests/commands/.
+/// Returns the path of a controller of tests/commands/.
 std::string test_controller(const std::string& name);
 std::string demo_experiment();
 
@@ -92,8 +94,8 @@ nlohmann::json run_experiment(const std::string& experiment, const std::vector<s
                               const Process::Environment& environment = {});
 /// Runs `cohort run` on the demo with more arguments, checks that it succeeds, and returns its summary.
 nlohmann::json run_demo(const std::vector<std::string>& arguments, const Process::Environment& environment = {});
-/// Hash of the first `seconds` of the demo with its controllers in the server's process: what every other way to run it
-/// has to reach.
+/// Returns the state hash after the first `seconds` of the demo with its controllers in the server's process. All other
+/// ways to run the demo must give the same hash.
 std::string reference_hash(double seconds);
 
 }  // namespace cohort::test

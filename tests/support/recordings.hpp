@@ -38,8 +38,9 @@ inline Bytes read_bytes(const std::filesystem::path& file) {
 /// Returns the content of message `i` of `small_recording`.
 inline std::string said(int i) { return "message " + std::to_string(i) + " of this recording"; }
 
-/// Messages 0 to `count` - 1 in turns on the channels 1 `/even` and 2 `/odd`, log times 1000 × number, a chunk for
-/// every `per_chunk`; an attachment `world.sdf`, and metadata `run`.
+/// Returns an MCAP file with the messages 0 to `count` - 1, alternately on the channels 1 `/even` and 2 `/odd`. The log
+/// time of message i is 1000 i [ns]. Each chunk has `per_chunk` messages. The file also has an attachment `world.sdf`
+/// and metadata `run`.
 inline Bytes small_recording(int count, int per_chunk = 4, recording::McapWriterOptions options = {}) {
   Bytes file;
   recording::McapWriter writer([&](ByteView bytes) { file.insert(file.end(), bytes.begin(), bytes.end()); },
@@ -67,7 +68,7 @@ inline std::vector<std::string> messages_of(const recording::McapReader& reader,
   return messages;
 }
 
-/// A file that is gone with this; in memory where there is such a folder, since much of recording waits for the disk.
+/// A file that the destructor removes. It is in memory if /dev/shm exists, because recording often waits for the disk.
 class TemporaryFile {
  public:
   explicit TemporaryFile(ByteView bytes = {}) {

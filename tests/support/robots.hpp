@@ -2,7 +2,7 @@
 
 #include "tests/figures/tracked_robot.hpp"
 
-/// Small worlds, described in code: what the tests of physics, sensing and simulation stand on.
+/// Small worlds described in code, for tests of physics, sensing and simulation.
 namespace cohort::test {
 
 inline constexpr double g = 9.81;  // [m/s^2]
@@ -14,7 +14,7 @@ using description::static_shape;
 
 inline constexpr std::size_t turret = 1;  // the link of `tracked_robot`
 
-/// A robot with tracks, a turret on a motor, encoders and a ring of 15 proximity sensors.
+/// Returns a robot with tracks, a motorised turret, encoders and a ring of 15 proximity sensors.
 inline description::Model tracked_robot(double noise = 0.0) {
   using namespace description;
   Model model = figures::tracked_robot();
@@ -31,7 +31,7 @@ inline description::Model tracked_robot(double noise = 0.0) {
   return model;
 }
 
-/// A wheel on the first link of a model that drives along x; returns its joint.
+/// Adds a wheel to the first link of a model that drives along x. Returns the index of its joint.
 inline std::size_t add_wheel(description::Model& model, const Eigen::Vector3d& p_MW, double radius, double width,
                              double mass) {
   description::Joint joint;

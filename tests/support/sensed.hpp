@@ -14,14 +14,14 @@
 
 namespace cohort::test {
 
-/// A ball of 1 kg, 0.2 m across, that carries one device on its link.
+/// Returns a ball of 1 kg and 0.2 m diameter that carries one device on its link.
 inline description::Model carrier(const description::Device& device) {
   description::Model model = loose("carrier", description::Sphere{0.1}, solid_sphere(1.0, 0.1));
   model.devices.push_back(device);
   return model;
 }
 
-/// A world with one carrier in it, and what its device reads.
+/// A world with one carrier, and the readings of its device.
 class Sensed {
  public:
   explicit Sensed(const description::Device& device, const Pose& X_WL = at(0, 0, 1)) : Sensed(carrier(device), X_WL) {}
@@ -36,7 +36,7 @@ class Sensed {
     sensor_->sense(0, values);
     return values;
   }
-  /// With noise, at this tick.
+  /// Returns the values with noise, at this tick.
   std::vector<double> report(std::uint64_t tick) {
     std::vector<double> values = read();
     readout_->disturb(tick, values);
@@ -46,7 +46,7 @@ class Sensed {
     make();
     return channels_;
   }
-  /// The one whose name ends so.
+  /// Returns the index of the first value of the channel `…/QUANTITY`.
   std::size_t offset_of(const std::string& quantity) {
     std::size_t offset = 0;
     for (const Channel& channel : channels()) {

@@ -4,8 +4,8 @@
 
 namespace cohort::exec {
 
-/// Returns the library that replaces the clocks of a program, as seen from the folder of the running program, in a
-/// build tree as in an installation. Throws std::runtime_error if it is not there.
+/// Returns the library that replaces a program's clocks. It is found relative to the folder of the running program,
+/// both in a build tree and in an installation. Throws std::runtime_error if it is missing.
 std::filesystem::path preload_library();
 
 }  // namespace cohort::exec

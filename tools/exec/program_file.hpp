@@ -5,12 +5,13 @@
 
 namespace cohort::exec {
 
-/// Returns the file that a command names: of $PATH, unless it has a slash. Throws std::runtime_error.
+/// Returns the file that a command names. It is looked up in $PATH unless it contains a slash. Throws
+/// std::runtime_error.
 std::filesystem::path file_of_command(const std::string& command);
 
-/// Returns why the clocks of a program cannot be replaced, for people: because it is linked statically, belongs to
-/// another machine, or takes another user's rights. Empty if they can be, as far as its file tells. For a script, the
-/// interpreter is checked.
+/// Returns a message to the user that says why a program's clocks cannot be replaced: it is linked statically, is built
+/// for another machine, or is set-user-ID or set-group-ID. Empty if the file shows no such obstacle. For a script,
+/// checks the interpreter.
 std::string why_not_virtual(const std::filesystem::path& program);
 
 }  // namespace cohort::exec

@@ -10,7 +10,7 @@
 
 namespace cohort::exec {
 
-/// A file in memory that this process and the program map.
+/// The clock page as a file in memory, which this process and the program map.
 class PageFile {
  public:
   /// Throws std::runtime_error.
@@ -26,8 +26,8 @@ class PageFile {
   void* memory_ = nullptr;
 };
 
-/// Starts a program with the library that replaces its clocks. Throws std::runtime_error that says why it cannot be
-/// started.
+/// Starts a program with the library that replaces its clocks, and returns its process. Throws std::runtime_error that
+/// says why it cannot be started.
 pid_t start_program(ProgramOptions& options, const std::filesystem::path& program, const std::string& page_file);
 
 }  // namespace cohort::exec

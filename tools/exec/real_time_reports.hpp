@@ -13,19 +13,20 @@
 
 namespace cohort::exec {
 
-/// Finds what a program in virtual time does in real time, and says it once, for people.
+/// Finds actions of a program in virtual time that happen in real time, and reports each to the user once.
 class RealTimeReports {
  public:
   RealTimeReports(ClockPage& page, std::string name) : page_(page), name_(std::move(name)) {}
 
-  /// Returns reports on calls that wait by real time, once for each call of a process. `process`: the program's own.
+  /// Returns reports on calls that wait in real time, once for each such function and process. `process` is the
+  /// program's main process.
   std::vector<std::string> new_calls(pid_t process);
-  /// Notes the calls of processes that may have ended, for `new_calls`.
+  /// Collects calls for `new_calls`, because the processes that made them may end.
   void note_calls();
-  /// Returns reports on processes whose program does not use the library. A process may have become another program
-  /// since the library was in it.
+  /// Returns reports on processes whose program does not use the library. A process may have replaced its program by
+  /// `exec` since the library was in it.
   std::vector<std::string> new_programs(const std::vector<pid_t>& processes);
-  /// Returns reports on threads that sleep by system calls of their own.
+  /// Returns reports on threads that sleep by direct system calls.
   std::vector<std::string> new_sleepers(const ThreadWatch& watch);
   /// Forgets a process that has ended.
   void forget(pid_t process) { known_.erase(process); }
@@ -33,7 +34,7 @@ class RealTimeReports {
  private:
   struct Known {
     std::string image{};
-    bool is_real = false;  // as was said
+    bool is_real = false;  // as has been reported
     std::uint64_t calls = 0;
   };
   struct Call {

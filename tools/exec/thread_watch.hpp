@@ -10,10 +10,10 @@
 
 namespace cohort::exec {
 
-/// Returns whether a system call's number is that of a sleep by the machine's clock.
+/// Returns whether the system call with this number sleeps by the machine's clock.
 bool is_sleep(long number);
 
-/// The threads of processes, as the kernel tells of them in /proc: whether all of them wait. One thread.
+/// Observes in /proc whether all threads of some processes wait. Not thread-safe.
 class ThreadWatch {
  public:
   ThreadWatch() = default;
@@ -21,22 +21,22 @@ class ThreadWatch {
   ThreadWatch(const ThreadWatch&) = delete;
   ThreadWatch& operator=(const ThreadWatch&) = delete;
 
-  /// Looks at these processes from now on, and at the threads that they have now, but for the thread `except`.
+  /// Sets the processes to watch, with their present threads except `except`.
   void look_at(const std::vector<pid_t>& processes, pid_t except = 0);
 
-  /// Returns whether every thread waits in the kernel, and none has run while this was found out.
+  /// Returns whether every thread waits in the kernel, and none has run during this check.
   bool all_wait();
-  /// Returns whether a thread has ended since look_at, so that it has to be called again.
+  /// Returns whether a thread has ended since look_at, which must then be called again.
   bool has_changed() const { return has_changed_; }
-  /// Returns the processor time that the threads which all_wait has seen have used, as far as the kernel tells.
+  /// Returns the processor time of the threads that all_wait has seen, as far as the kernel provides it.
   std::chrono::nanoseconds processor_time() const;
-  /// Returns how many processes it looks at.
+  /// Returns the number of watched processes.
   std::size_t process_count() const { return processes_; }
 
-  /// Returns the processes that the threads have started and that live.
+  /// Returns the living processes that the threads have started.
   std::vector<pid_t> children();
 
-  /// Says which threads do not wait, for people.
+  /// Returns a message to the user that names the threads which do not wait.
   std::string busy_threads();
 
   struct SystemCall {
@@ -45,21 +45,21 @@ class ThreadWatch {
     long number = -1;
     std::uint64_t arguments[6]{};
   };
-  /// Returns whether all_wait has seen a thread sleep by the machine's clock, as far as the kernel tells.
+  /// Returns whether all_wait has seen a thread sleep by the machine's clock, as far as the kernel shows it.
   bool sleeps(pid_t thread) const;
-  /// Returns what the threads that wait are waiting in, as far as the kernel tells.
+  /// Returns the system calls in which threads wait, as far as the kernel shows them.
   std::vector<SystemCall> system_calls() const;
 
  private:
   struct Thread {
     pid_t process = 0;
     int stat = -1;         // descriptors
-    int schedstat = -1;    // -1: the kernel has none
+    int schedstat = -1;    // -1: not supported by the kernel
     int children = -1;     // likewise
     int system_call = -1;  // likewise
     std::string ran{};     // contents of schedstat
-    bool rests = false;    // since it ran last, it was seen to wait for something else than a file
-    bool sleeps = false;   // then, by the machine's clock
+    bool rests = false;    // was seen waiting for something other than a file since it ran last
+    bool sleeps = false;   // this wait is a sleep by the machine's clock
   };
   static void close_all(Thread& thread);
   bool note_run(Thread& thread);

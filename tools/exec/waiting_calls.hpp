@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <string_view>
 
-/// The calls of the C library that wait, and by which time they do it in a program in virtual time.
+/// The C library's waiting calls, and the time by which each waits in a program in virtual time.
 namespace cohort::exec {
 
 enum class Waits : std::uint8_t {
   by_virtual_time,  ///< replaced: ends at a time of the program's clock
-  by_real_time,     ///< lasts as long as it asks for in real time; a warning says so
+  by_real_time,     ///< not replaced: its time limit is real time; causes a warning
   for_others,       ///< has no time limit
 };
 

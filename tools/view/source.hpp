@@ -11,7 +11,7 @@
 
 namespace cohort::view {
 
-/// A viewer's request: an operation and its arguments. Which operations there are is in docs/view.md.
+/// A viewer's request: an operation and its arguments. docs/view.md lists the operations.
 struct ViewRequest {
   std::string operation;
   double number = 0.0;
@@ -26,11 +26,11 @@ struct ViewRequest {
 
 struct Answer {
   bool is_done = false;
-  std::string text;  ///< a sentence: what was done, or why not
+  std::string text;  ///< a sentence for the user: the result, or the error
   std::shared_ptr<const ValueHistory> history{};
 };
 
-/// Where scenes come from: publishes to Topics on a thread of its own, from its construction to its destruction.
+/// A source of scenes. It publishes to Topics on a separate thread, from its construction to its destruction.
 class Source {
  public:
   virtual ~Source() = default;
@@ -38,11 +38,11 @@ class Source {
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
 
-  /// `answer` is called once, on any thread, perhaps before this returns. Any thread.
+  /// Executes a request. `answer` is called once, on any thread, possibly before this returns. Any thread.
   virtual void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) = 0;
-  /// Sets the robots whose channels are to be published from now on: ids. Any thread.
+  /// Sets the ids of the robots whose channels are published from now on. Any thread.
   virtual void watch(const std::vector<std::uint32_t>& robots) = 0;
-  /// This visitor asks for nothing any more. Any thread.
+  /// Called when a visitor has left. Any thread.
   virtual void leave(std::uint64_t /*visitor*/) {}
 };
 

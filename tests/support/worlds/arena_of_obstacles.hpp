@@ -6,8 +6,8 @@ namespace cohort::test {
 
 enum class Obstacles { fixed, drawn };
 
-/// A walled arena of 4 m x 4 m with 24 obstacles, which are drawn too or stand in rows, and the places of one robot,
-/// drawn after them. Nothing of the populations is placed yet.
+/// Returns a walled arena of 4 m x 4 m with 24 obstacles, in rows or in a population with random places. One robot is
+/// in a population that is placed after them. The populations are not placed yet.
 inline description::World arena_of_obstacles(Obstacles obstacles) {
   using namespace description;
   World world;

@@ -69,8 +69,8 @@ inline std::string scanner(const std::string& name) {
 }
 inline std::string bare_sensor(const std::string& type) { return sensor(type, "<" + type + "/>"); }
 
-/// The content of a world with an element, for the parts below it. The longest path counts; the element is the first of
-/// its name.
+/// Returns the content of a world for each element, used for tests of the element's parts. The longest matching path
+/// counts. The element under test is the first of its name.
 inline const Texts& bases() {
   static const std::string three = link("a") + link("b") + link("c");
   static const std::string revolute = turning("j", "revolute", "a", "b", axis("axis", "0 0 1"));
@@ -175,7 +175,7 @@ inline const Texts& bases() {
   return all;
 }
 
-/// Other values of texts.
+/// Returns alternative values of texts.
 inline const Texts& values() {
   static const Texts all = {
       {"model/@canonical_link", "b"},
@@ -212,7 +212,7 @@ inline const Texts& values() {
   return all;
 }
 
-/// Parts with an effect that is not seen here, and the reason.
+/// Returns the parts whose effect these tests cannot detect, with the reason.
 inline const Texts& exceptions() {
   static const Texts all = {
       {"sdf/@version", "older versions have other elements"},
@@ -224,7 +224,7 @@ inline const Texts& exceptions() {
   return all;
 }
 
-/// A folder with the files that the documents name.
+/// A folder with the files that the documents refer to.
 class DocumentFolder : public test::ScratchFolder {
  public:
   DocumentFolder() {

@@ -9,7 +9,7 @@
 
 namespace cohort::test {
 
-/// Writes everything of an experiment that may depend on its seed, numbers as their bits.
+/// Writes all parts of an experiment that may depend on its seed as text, with numbers as their bits.
 class ExperimentText {
  public:
   explicit ExperimentText(const description::Experiment& experiment) {

@@ -6,8 +6,8 @@
 
 namespace cohort::test {
 
-/// An experiment of its own: s-bots on a plane that keep out of each other's way. `team` has more lines for their one
-/// team, such as `mode: free`, in the form `, KEY: VALUE`.
+/// An experiment in which s-bots on a plane avoid each other. `team` has more keys of their only team in the form `,
+/// KEY: VALUE`, such as `, mode: free`.
 class FieldOfRobots {
  public:
   explicit FieldOfRobots(int robots, double duration, const std::string& team = "",
@@ -44,7 +44,7 @@ class FieldOfRobots {
   ScratchFolder folder_;
 };
 
-/// Events of a kind in a summary.
+/// Returns the events of a kind in a summary.
 inline std::vector<nlohmann::json> events_of(const nlohmann::json& summary, const std::string& kind) {
   std::vector<nlohmann::json> events;
   for (const auto& event : summary["events"])

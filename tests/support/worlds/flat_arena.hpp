@@ -9,8 +9,9 @@
 
 namespace cohort::test {
 
-/// Discs that drive among discs within four walls: as much of a world as a controller for obstacle avoidance needs. The
-/// discs have the s-bot's measures, its proximity sensors and its tracks, which take some time to reach their speed.
+/// A minimal planar simulation for controllers of obstacle avoidance: discs that drive among discs within four walls.
+/// Robots have the s-bot's dimensions, proximity sensors and tracks, whose speed follows its target with a first-order
+/// lag.
 class FlatArena {
  public:
   static constexpr double robot_radius = 0.058;  // [m]
@@ -40,7 +41,7 @@ class FlatArena {
            std::all_of(robots.begin(), robots.end(), [&](auto& r) { return apart(r.x, r.y, robot_radius); });
   }
 
-  /// One ray for each sensor: 1 touching, falling linearly to 0 at the range.
+  /// Returns the readings of a robot, from one ray for each sensor: 1 at contact, falling linearly to 0 at the range.
   std::array<double, sensor_count> readings(std::size_t robot) const {
     std::array<double, sensor_count> result{};
     for (std::size_t i = 0; i < sensor_count; ++i) {
@@ -59,7 +60,7 @@ class FlatArena {
     r.y += (r.left + r.right) / 2.0 * std::sin(r.heading) * step;
   }
 
-  /// Pushes out of each other what overlaps, and notes who touches something.
+  /// Separates overlapping robots and obstacles, and records which robots touch something.
   void separate() {
     for (Robot& r : robots) r.touches = false;
     for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -80,7 +81,7 @@ class FlatArena {
   std::vector<Robot> robots;
 
  private:
-  // From the robot's rim to the first thing in that direction.
+  // Returns the distance from the robot's rim to the nearest obstacle in this direction [m].
   double free_way(std::size_t robot, double dx, double dy) const {
     const double x = robots[robot].x;
     const double y = robots[robot].y;

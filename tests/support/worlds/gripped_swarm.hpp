@@ -5,12 +5,12 @@
 
 namespace cohort::test {
 
-/// Robots in a square, not quite where a grid would have them, each holding on to some of its neighbours as they stand.
+/// Robots on a slightly disturbed square grid, each of which grips some of its neighbours in their present poses.
 struct GrippedSwarm {
   struct Grip {
     ConnectionId connection;
     BodyId a, b;
-    Pose X_Pa, X_Pb;  // the frame of the connection in the link of either end
+    Pose X_Pa, X_Pb;  // the connection's frame P in the gripping link of a and in the turret of b
   };
   static constexpr int side = 5;
 
@@ -20,7 +20,7 @@ struct GrippedSwarm {
   std::vector<Grip> grips;
   RandomStream random;
 
-  /// With arms, each robot grips with its arm, otherwise with its turret.
+  /// With arms, robots grip with the arm, otherwise with the turret.
   GrippedSwarm(description::Solver solver, std::uint64_t seed, bool with_arms, double rotor_inertia = 0.0)
       : gripping_link(with_arms ? arm_link : turret), random(seed, "swarm", "drive") {
     small.description.physics.solver = solver;
@@ -33,7 +33,7 @@ struct GrippedSwarm {
           with_arms ? with_arm(2.0, 0.05, rotor_inertia) : tracked_robot(),
           at(spacing * column + off(0.005), spacing * row + off(0.005), 0, with_arms ? off(0.05) : off(3.0))));
     }
-    // With turrets to one or two of the neighbours at the right and behind; the arms reach only to the right.
+    // Turrets grip one or two of the neighbours to the right and behind; arms reach only to the right.
     for (int i = 0; i < side * side; ++i) {
       const bool has_right = i % side + 1 < side;
       const bool has_behind = i / side + 1 < side;
@@ -48,7 +48,7 @@ struct GrippedSwarm {
     physics::World& world = small.world();
     const Pose X_WLa = world.link_pose(a, LinkId{link});
     const Pose X_WLb = world.link_pose(b, LinkId{turret});
-    // At the jaw, or halfway between the turrets.
+    // The grip is at the jaw, or halfway between the turrets.
     const Eigen::Vector3d p_W =
         link == turret ? Eigen::Vector3d(0.5 * (X_WLa.position + X_WLb.position) + Eigen::Vector3d(0, 0, 0.02))
                        : Eigen::Vector3d(X_WLa * Eigen::Vector3d(arm_length, 0, 0));
@@ -74,7 +74,7 @@ struct GrippedSwarm {
                                        physics::JointTarget::position(0.4 * random.uniform(period, draw + 3) - 0.2));
     }
   }
-  /// The greatest distance between the two ends of a grip [m].
+  /// Returns the largest distance between the two ends of a grip [m].
   double gap() {
     double greatest = 0.0;
     for (std::size_t i = 0; i < grips.size(); ++i) {

@@ -9,7 +9,8 @@ inline constexpr std::size_t arm_link = 2;
 inline constexpr std::size_t elevation_joint = 1;
 inline constexpr double arm_length = 0.1;  // from the elevation joint to the jaw [m]
 
-/// The tracked robot with an arm at the front of its turret, level at 0, that a motor lifts by a negative angle.
+/// Returns the tracked robot with an arm at the front of its turret. The arm is horizontal at joint position 0, and a
+/// motor lifts it towards negative positions.
 inline description::Model with_arm(double max_effort = 2.0, double arm_mass = 0.05, double rotor_inertia = 0.0) {
   description::Model model = tracked_robot();
   model.name = "lifter";

@@ -4,7 +4,7 @@
 
 namespace cohort::test {
 
-/// Reads a model that names no files.
+/// Reads a model that refers to no files.
 inline description::ParsedModelPtr model_of_text(const std::string& text) {
   return parsing::model_reader(nullptr, {})(text);
 }

@@ -9,10 +9,10 @@
 #include "server/geometry/scene/scene.hpp"
 #include "server/geometry/shapes/convex_hull.hpp"
 
-/// Scenes of one solid, and at random of every shape that there is.
+/// Scenes of one solid, and random scenes with solids of all shapes.
 namespace cohort::geometry {
 
-/// Built.
+/// Returns a built scene with one solid.
 inline Scene scene_of(const Shape& shape, const Pose& X_WC) {
   Scene scene;
   scene.add({shape, {}, BodyId{0}, !is_ground(shape), X_WC});
@@ -29,7 +29,7 @@ inline Pose upright_pose(const Eigen::Vector3d& position, double yaw) {
   return {position, Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()))};
 }
 
-/// Every third upright, every third leaning a little, the others in any orientation.
+/// Returns a random pose. By `n`, one third are upright, one third lean slightly, and the others have any orientation.
 inline Pose random_pose(const RandomStream& random, std::uint64_t n, double half_width, double half_height) {
   Eigen::Vector3d position = random_vector(random, n, half_width);
   position.z() *= half_height / half_width;
@@ -45,7 +45,7 @@ inline description::Mesh random_mesh(const RandomStream& random, std::uint64_t n
   std::vector<Eigen::Vector3d> points;
   for (std::uint64_t i = 0; i < 12; ++i) points.push_back(random_vector(random, 2'000'000 + 100 * n + i, 0.1));
   auto triangles = std::make_shared<description::TriangleMesh>(geometry::convex_hull(points));
-  if (n % 2 == 0 && !convex) triangles->triangles.pop_back();  // a skin that does not close
+  if (n % 2 == 0 && !convex) triangles->triangles.pop_back();  // an open surface
   return {triangles, convex};
 }
 
@@ -58,9 +58,9 @@ inline std::shared_ptr<const description::HeightGrid> random_heights(const Rando
   return grid;
 }
 
-/// Builds `count` solids in the box of `half_width` along x and y and of `half_height` along z. Each has a body of its
-/// own, except every fifth, which belongs to the one before; half of them move. Below them is ground of both kinds,
-/// beside them a plane as a wall, and among them are walls.
+/// Returns a built scene with `count` solids in a box of `half_width` along x and y and `half_height` along z. Each has
+/// its own body, except every fifth, which belongs to the body of the previous one. Half of them move. Below them are
+/// planes and height maps as ground, beside them an inclined plane, and among them walls.
 inline Scene random_scene(std::uint64_t seed, std::uint32_t count, double half_width, double half_height) {
   const RandomStream random(seed, "random_scene", "solids");
   Scene scene;

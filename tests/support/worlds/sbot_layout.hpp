@@ -4,8 +4,8 @@
 
 namespace cohort::test {
 
-/// float64 values of a command of the s-bot that ships: tracks, turret, LEDs, loudspeakers and gripper. The tracks come
-/// first.
+/// Number of values of a command of the s-bot that is shipped with Cohort: tracks, turret, LEDs, loudspeakers and
+/// gripper. The tracks come first.
 inline constexpr std::size_t sbot_command_size = 32;
 
 }  // namespace cohort::test

@@ -11,10 +11,10 @@
 
 namespace cohort::test {
 
-/// Returns the reading of an IR or light sensor for the light that arrives.
+/// Returns the reading of an infrared or light sensor for a received light `x`.
 inline double sigmoid(double x) { return 2.0 / (1.0 + std::exp(-x)) - 1.0; }
 
-/// A world whose robots are asked and told by the names of channels. Everything is added before the first tick.
+/// A world whose robots are read and commanded by channel names. All objects must be added before the first tick.
 class SensingWorld {
  public:
   explicit SensingWorld(unsigned threads = 1) : threads_(threads) {}
@@ -22,7 +22,7 @@ class SensingWorld {
   std::uint32_t add(const description::Model& model, const std::string& name, const Pose& X_WM) {
     return place(world(), model, name, X_WM);
   }
-  /// A thing that stands still, with one emitter in the middle of its only link, which touches nothing.
+  /// Adds a static model with one emitter at the origin of its only link, without collisions.
   std::uint32_t add_emitter(const std::string& name, const decltype(description::Emitter::what)& what,
                             const Pose& X_WM) {
     description::Model model = description::static_model(name);
@@ -41,7 +41,7 @@ class SensingWorld {
     }
     return *simulation_;
   }
-  /// Another run of the same experiment.
+  /// Begins another run of the same experiment.
   void begin_again(unsigned threads) {
     simulation_.reset();
     threads_ = threads;
@@ -54,7 +54,7 @@ class SensingWorld {
     const RobotKind& kind = simulation().kinds()[simulation().kind_of(robot)];
     return simulation().observation(robot)[offset_of(kind.observation, channel) + index];
   }
-  /// From the next step on; the other channels keep their values.
+  /// Sets a robot's command channel from the next step on. The other channels keep their values.
   void command(std::uint32_t robot, const std::string& channel, const std::vector<double>& values) {
     const RobotKind& kind = simulation().kinds()[simulation().kind_of(robot)];
     commands_.resize(simulation().robot_count());

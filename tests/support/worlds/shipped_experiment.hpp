@@ -22,7 +22,8 @@ namespace cohort::test {
 
 inline const std::filesystem::path shipped_experiments = COHORT_SOURCE_DIR "/worlds/experiments";
 
-/// The same with our own dynamics, if COHORT_TEST_DYNAMICS is `cohort`: all such tests are run with either.
+/// Returns the experiment, with Cohort's own dynamics if COHORT_TEST_DYNAMICS is `cohort`. All such tests run with
+/// either dynamics.
 inline description::Experiment with_dynamics_of_test(description::Experiment experiment) {
   const char* const dynamics = std::getenv("COHORT_TEST_DYNAMICS");
   if (dynamics != nullptr && std::string_view(dynamics) == "cohort")
@@ -30,10 +31,10 @@ inline description::Experiment with_dynamics_of_test(description::Experiment exp
   return experiment;
 }
 
-/// One of worlds/experiments, run to its end with its controllers in this process.
+/// An experiment of worlds/experiments, run to its end with its controllers in this process.
 class ShippedExperiment {
  public:
-  /// `watch` is called at every boundary, when all robots have sensed.
+  /// `watch` is called at every tick boundary, after all robots have sensed.
   explicit ShippedExperiment(const std::string& name, std::optional<std::uint64_t> seed = {}, double seconds = 0.0,
                              std::function<void(const ShippedExperiment&)> watch = {})
       : experiment(with_dynamics_of_test(parsing::read_experiment(
@@ -60,12 +61,12 @@ class ShippedExperiment {
     return std::any_of(result.events.begin(), result.events.end(),
                        [](const session::RunEvent& event) { return event.kind == "quarantined"; });
   }
-  /// Returns the share of groups of bodies that were not solved to the bound.
+  /// Returns the fraction of groups of bodies for which the solver did not converge.
   double unconverged() const {
     const physics::Convergence& convergence = simulation.convergence();
     return static_cast<double>(convergence.unconverged) / static_cast<double>(convergence.solved);
   }
-  /// Returns the last observation of a robot: the first value of the channel.
+  /// Returns the first value of a channel in the last observation of a robot.
   double reading(std::uint32_t robot, const std::string& channel) const {
     std::size_t offset = 0;
     for (const Channel& each : simulation.kinds()[simulation.kind_of(robot)].observation) {
@@ -82,7 +83,7 @@ class ShippedExperiment {
     return count;
   }
   double seconds() const { return std::chrono::duration<double>(simulation.time()).count(); }
-  /// Returns how many robots are no further than `radius` from a point of the plane.
+  /// Returns the number of robots within `radius` [m] of a point in the horizontal plane.
   int robots_near(double x, double y, double radius) const {
     int count = 0;
     for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
@@ -91,7 +92,8 @@ class ShippedExperiment {
     }
     return count;
   }
-  /// How many robots are in the largest group, if those are in one whose origins are no further apart than `reach`.
+  /// Returns the size of the largest group of robots, where robots with origins within `reach` [m] of each other belong
+  /// to the same group.
   int largest_group(double reach) const {
     std::vector<int> group(simulation.robot_count(), -1);
     int largest = 0;

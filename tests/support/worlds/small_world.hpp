@@ -10,7 +10,7 @@
 
 namespace cohort::test {
 
-/// A world that a test puts together and then steps. Bodies are added before the first step.
+/// A world that a test builds and then steps. Bodies must be added before the first step.
 class SmallWorld {
  public:
   explicit SmallWorld(description::World its_description = world_with_floor(), unsigned threads = 1)
@@ -48,10 +48,10 @@ class SmallWorld {
   std::unique_ptr<physics::World> world_;
 };
 
-/// All links of a body taken together, about the origin.
+/// Energy and momentum of all links of a body, about the world's origin.
 struct WholeMotion {
   double kinetic_energy = 0.0;    ///< [J]
-  double potential_energy = 0.0;  ///< by weight, 0 at z = 0 [J]
+  double potential_energy = 0.0;  ///< gravitational, 0 at z = 0 [J]
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();
 };
@@ -87,7 +87,7 @@ inline std::uint64_t hash_of(const physics::World& world, std::span<const BodyId
   return hash.value();
 }
 
-/// `restored`, a new world of the same description, goes on from a snapshot of `world`.
+/// Restores a snapshot of `world` in `restored`, a new world of the same description.
 inline void restore_from(const physics::World& world, physics::World& restored) {
   SnapshotWriter writer;
   world.save(writer);
@@ -96,7 +96,7 @@ inline void restore_from(const physics::World& world, physics::World& restored) 
   EXPECT_TRUE(reader.is_at_end());
 }
 
-/// The principal moments of inertia of a solid box about its centre [kg m^2].
+/// Returns the mass and inertia of a solid box about its centre.
 inline description::Inertial solid_box(double mass, const Eigen::Vector3d& size) {
   const Eigen::Vector3d squares = size.cwiseProduct(size);
   description::Inertial inertial;
@@ -107,7 +107,8 @@ inline description::Inertial solid_box(double mass, const Eigen::Vector3d& size)
   return inertial;
 }
 
-/// A joint of two links of a model, or of the world and one, about or along this axis; `place`: its, in the child.
+/// Returns a joint between two links of a model, or between the world and a link, about or along `axis`. `place` is its
+/// position in the child link [m].
 inline description::Joint joint_of(const std::string& name, description::JointType type, std::size_t parent,
                                    std::size_t child, const Eigen::Vector3d& axis,
                                    const Eigen::Vector3d& place = Eigen::Vector3d::Zero()) {
@@ -123,7 +124,7 @@ inline description::Joint joint_of(const std::string& name, description::JointTy
 
 using description::solid_sphere;
 
-/// A box as a convex mesh.
+/// Returns a box as a convex mesh.
 inline description::Mesh box_mesh(const Eigen::Vector3d& size) {
   auto mesh = std::make_shared<description::TriangleMesh>();
   for (int i = 0; i < 8; ++i)
@@ -134,7 +135,7 @@ inline description::Mesh box_mesh(const Eigen::Vector3d& size) {
   return {mesh, true};
 }
 
-/// One link with one collision at its centre of mass.
+/// Returns a model of one link with one collision at its centre of mass.
 inline description::Model loose(const std::string& name, const description::Shape& shape,
                                 const description::Inertial& inertial, description::Surface surface = {}) {
   description::Model model;

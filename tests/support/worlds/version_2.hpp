@@ -5,7 +5,8 @@
 
 namespace cohort::test {
 
-/// A program of the next major version of the protocol, as far as others can see it: a writer of `cohort/v2/join`.
+/// A program with the next major version of the protocol, reduced to the part that others see: a writer of
+/// `cohort/v2/join`.
 class Version2 {
  public:
   explicit Version2(wire::Participant participant)

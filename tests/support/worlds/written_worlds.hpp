@@ -13,12 +13,12 @@
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/files.hpp"
 
-/// Shared by the tests of descriptions: worlds written on the spot, and the errors that are to be reported for them.
+/// Helpers for tests of descriptions: worlds written by the tests, and the errors that must be reported for them.
 namespace cohort::description {
 
 inline const std::filesystem::path source = COHORT_SOURCE_DIR;
 
-/// A folder of its own with the s-bot beside it, so that model://sbot is found.
+/// A fixture with a scratch folder that contains the s-bot, so that model://sbot is found.
 class Description : public ::testing::Test {
  protected:
   Description() {
@@ -62,7 +62,7 @@ std::vector<Problem> problems_of(Read&& read) {
   return {};
 }
 
-/// Links of these one-letter names, with mass and inertia.
+/// Returns links with these one-letter names, with mass and inertia.
 inline std::string links(const std::string& names) {
   std::string text;
   for (const char name : names)
@@ -83,7 +83,7 @@ inline std::string static_model_sdf(const std::string& content, const std::strin
   return "<model name=\"" + name + "\"><static>true</static>" + content + "</model>";
 }
 
-/// Wrong content, and what is to be said of it.
+/// Invalid content, and the problem that must be reported.
 struct Flaw {
   std::string content;
   int line;
@@ -102,7 +102,7 @@ inline void expect_problem(const std::vector<Problem>& problems, const std::file
   EXPECT_TRUE(found) << "expected " << flaw.line << ": " << flaw.element << ": " << flaw.message << "\ngot\n" << all;
 }
 
-/// A world with this content has this flaw and no other.
+/// Checks that reading this world file reports this problem and no other.
 inline void expect_only_flaw(const Flaw& flaw, const std::filesystem::path& world) {
   const std::vector<Problem> problems = problems_of([&] { parsing::read_world(world, 1); });
   expect_problem(problems, world, flaw);

@@ -14,7 +14,7 @@ namespace cohort::ardupilot {
 /// ArduPilot's SITL: each of its servo packets is answered at the next exchange.
 class Sitl final : public bridges::Firmware {
  public:
-  /// `patience` and `outputs` outlive this; without outputs those of the robot's model.
+  /// `patience` and `outputs` must outlive this. If `outputs` is empty, the outputs of the robot's model are used.
   Sitl(const bridges::Patience& patience, const std::vector<autopilots::Output>& outputs)
       : patience_(patience), given_(outputs) {}
 
@@ -36,7 +36,7 @@ class Sitl final : public bridges::Firmware {
   double steps_in_a_second_ = 0.0;
   autopilots::Shares shares_{};
   bool driven_ = false;          // at some time
-  bool is_silent_ = false;       // beyond patience, and has not spoken since
+  bool is_silent_ = false;       // has exceeded the patience, and has sent nothing since
   bool owes_an_answer_ = false;  // to the packet of `frame_count_`
   std::uint32_t frame_count_ = 0;
   std::string last_answer_;

@@ -13,32 +13,33 @@ namespace cohort::autopilots {
 struct Output {
   std::size_t number = 1;  ///< number of the output, from 1 to `most_outputs`
   std::string channel;     ///< a channel of the robot's commands
-  double low = 0.0;        ///< the command where the output is at its least
-  double high = 1.0;       ///< the command where it is at its greatest
+  double low = 0.0;        ///< command at the output's minimum
+  double high = 1.0;       ///< command at the output's maximum
 };
 
 inline constexpr std::size_t most_outputs = 32;
 
-/// How far each output is from its least to its greatest, 0 to 1; nothing where the autopilot does not use it.
+/// The value of each output, from 0 (minimum) to 1 (maximum); nullopt for an output that the autopilot does not use.
 using Shares = std::array<std::optional<double>, most_outputs>;
 
 /// Reads `NUMBER=CHANNEL:LOW..HIGH`. Throws std::runtime_error that says what was expected.
 Output output_in(const std::string& text);
 
-/// The autopilot whose default output numbers are used: they agree for multicopters, and differ for vehicles that steer
-/// by two sides.
+/// The autopilot whose default output numbers are used. The numbers are the same for multicopters, and differ for
+/// vehicles with skid steering.
 enum class Numbering { ardupilot, px4 };
 
-/// Returns the outputs of a model that ships. Throws std::runtime_error if there are none for it.
+/// Returns the default outputs of a model that is shipped with Cohort. Throws std::runtime_error if it has none.
 std::vector<Output> outputs_of(const std::string& model, Numbering numbering);
 
 /// The command channels that outputs drive.
 class OutputMap {
  public:
-  /// Looks the channels of `outputs` up; without any, of those of the robot's model. Throws std::runtime_error.
+  /// Looks up the channels of `outputs`, or of the outputs of the robot's model if `outputs` is empty. Throws
+  /// std::runtime_error.
   void start(const Start& start, const std::vector<Output>& outputs, Numbering numbering);
 
-  /// Sets commands in proportion to the shares; where there is none, leaves the channel at its neutral value.
+  /// Sets commands in proportion to the shares. Leaves a channel at its neutral value if its output has no share.
   void act(const Shares& shares, Command& command) const;
 
   const std::vector<Output>& outputs() const { return outputs_; }

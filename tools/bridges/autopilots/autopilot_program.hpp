@@ -8,16 +8,16 @@
 
 namespace cohort::autopilots {
 
-/// The options that bridges of autopilots have besides those of all bridges: where autopilots are awaited, which of
-/// their outputs drives what, and what happens while one is silent.
+/// The options of bridges to autopilots, in addition to those of all bridges: where autopilots connect, which channel
+/// each of their outputs drives, and the reaction to a silent autopilot.
 class AutopilotProgram {
  public:
-  /// `port`: of the first robot; those of the others follow at a distance of `port_step`. `kind`: `udp` or `tcp`.
+  /// `port` is the first robot's port; each further robot's port is `port_step` higher. `kind` is `udp` or `tcp`.
   AutopilotProgram(bridges::BridgeProgram& program, std::string kind, unsigned port, unsigned port_step);
   AutopilotProgram(const AutopilotProgram&) = delete;
   AutopilotProgram& operator=(const AutopilotProgram&) = delete;
 
-  /// As `open_link` takes it. Throws UsageError.
+  /// Returns a robot's link in the format of `open_link`. Throws UsageError.
   std::string link_of(std::size_t robot) const;
 
   /// Filled when the command line has been read.

@@ -6,19 +6,19 @@
 
 namespace cohort::autopilots {
 
-/// How a vehicle moves, in the frames of autopilots.
+/// The motion of a vehicle, in the frames of autopilots.
 struct Motion {
-  Vector3 position{};      ///< position of its GPS, from the world's origin, NED [m]
+  Vector3 position{};      ///< position of the GPS receiver relative to the world's origin, NED [m]
   Vector3 velocity{};      ///< NED [m/s]
   Quaternion attitude{};   ///< FRD to NED
   Vector3 turn_rate{};     ///< FRD [rad/s]
-  Vector3 acceleration{};  ///< less gravity, what an accelerometer measures, FRD [m/s^2]
+  Vector3 acceleration{};  ///< specific force, as an accelerometer measures it, FRD [m/s^2]
 };
 
 /// The sensors `imu` and `gps` of a vehicle.
 class MotionSensors {
  public:
-  /// Throws ChannelError.
+  /// Looks up the channels. Throws ChannelError if one is missing.
   void start(const Start& start) {
     orientation_ = start.observation("imu/0/orientation");
     turn_rate_ = start.observation("imu/0/angular_velocity");

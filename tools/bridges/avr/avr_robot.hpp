@@ -13,37 +13,38 @@
 
 namespace cohort::avr {
 
-/// Returns the whole cycles of a clock [Hz] in a time: those of a sum of times are those of its end, without drift.
+/// Returns the number of whole cycles of a clock of this `frequency` [Hz] in a time, without accumulated rounding
+/// errors.
 std::uint64_t cycles_in(std::chrono::nanoseconds time, std::uint32_t frequency);
 
 /// The destination of the bytes that firmware sends through a serial interface.
 enum class SerialTo { log, pty, none };
 
-/// One robot with its microcontroller. One thread at a time.
+/// One robot with its microcontroller. Not thread-safe.
 class Robot {
  public:
   struct Options {
     Image image;
     Chip chip;
     SerialTo serial_to = SerialTo::log;
-    int serial = 0;                        ///< the number of its interface
-    std::chrono::nanoseconds power_on{0};  ///< from its first frame to its power-on
+    int serial = 0;                        ///< number of the serial interface
+    std::chrono::nanoseconds power_on{0};  ///< delay of the power-on after the first frame
   };
   /// Switches the power on. Throws std::runtime_error.
   Robot(const Options& options, std::unique_ptr<Board> board, const DrivenRobot& robot,
         std::shared_ptr<bridges::Link> pty);
 
-  /// Runs the core from this frame's time to that of the next one, and sets the command by what its pins did.
+  /// Runs the core from this frame's time to that of the next one, and sets the command according to the output pins.
   void step(FrameRobot& frame, std::chrono::nanoseconds time);
-  /// The three parts of `step`, for robots whose signals reach each other within a frame. `run_until` runs the core to
-  /// a time within the frame.
+  /// The three parts of `step`, for robots that exchange signals within a frame. `run_until` runs the core to a time
+  /// within the frame.
   void begin(const FrameRobot& frame, std::chrono::nanoseconds time);
   void run_until(std::chrono::nanoseconds time);
   void end(FrameRobot& frame);
 
   std::chrono::nanoseconds period() const { return period_; }
 
-  /// Takes lines for people about what happened in the last steps.
+  /// Returns and clears the messages to the user about the last steps.
   std::vector<std::string> take_lines();
 
  private:
@@ -59,9 +60,9 @@ class Robot {
   Core core_;
   std::unique_ptr<Board> board_;
   std::chrono::nanoseconds period_;
-  std::optional<std::chrono::nanoseconds> switched_on_;  // the time of its cycle 0
+  std::optional<std::chrono::nanoseconds> switched_on_;  // time of the core's cycle 0
   std::string line_;                                     // incomplete line of the serial interface
-  std::vector<std::uint8_t> sent_to_it_;                 // and not taken yet
+  std::vector<std::uint8_t> sent_to_it_;                 // by the bridge, and not read by the core yet
   std::vector<std::string> lines_;
   int notes_told_ = 0;
   bool told_of_fault_ = false;

@@ -4,7 +4,7 @@
 
 namespace cohort::avr {
 
-/// Runs an image alone for so many simulated seconds, without a server, and prints how fast.
+/// Runs an image for this simulated time [s] without a server, and prints the speed.
 void run_benchmark(const Image& image, const Chip& chip, double seconds);
 
 }  // namespace cohort::avr

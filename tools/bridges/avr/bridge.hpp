@@ -14,9 +14,9 @@
 
 namespace cohort::avr {
 
-/// One client for all robots: each frame has all that are due, and their microcontrollers run on several threads. The
-/// outputs of a robot depend only on its own inputs and on the signals of others in earlier windows. So the number of
-/// threads changes no bit.
+/// One client for all robots: each frame contains all robots that are due, and their microcontrollers run on several
+/// threads. A robot's outputs depend only on its own inputs and on signals that others sent in earlier windows.
+/// Therefore the results do not depend on the number of threads.
 class Bridge {
  public:
   struct Options {
@@ -24,9 +24,9 @@ class Bridge {
     std::vector<Robot::Options> robots;  ///< one for all, or one for each in the order of their ids
     unsigned threads = 1;
     std::function<std::unique_ptr<Board>()> make_board;
-    /// Makes of the options what each robot has of its own, such as a serial number; may be empty.
+    /// Sets the options that differ between robots, such as the serial number; may be empty.
     std::function<void(Robot::Options&, const Start&)> prepare{};
-    Medium* medium = nullptr;  ///< between the boards, if there is any
+    Medium* medium = nullptr;  ///< carries signals between the boards; nullptr: none
   };
   explicit Bridge(Options options) : options_(std::move(options)) {}
 

@@ -17,34 +17,35 @@ struct avr_watchdog_t;
 
 namespace cohort::avr {
 
-/// A microcontroller and how it is wired up.
+/// A type of microcontroller, its clock and its supply.
 struct Chip {
-  std::string mcu;              ///< as avr-gcc's -mmcu has it, such as `atmega328p`
+  std::string mcu;              ///< name in avr-gcc's option -mmcu, such as `atmega328p`
   std::uint32_t frequency = 0;  ///< clock frequency [Hz]
   double supply = 5.0;          ///< also the reference of its analog inputs [V]
 };
 
-/// One simulated microcontroller, from power-on. It runs in simulated time only, and decides nothing by the wall clock,
-/// so the same image and the same inputs at the same cycles give the same bits. One thread at a time.
+/// One simulated microcontroller, from power-on. It runs in simulated time and never reads the wall clock. Therefore
+/// the same image and the same inputs at the same cycles give bit-identical results. Not thread-safe.
 class Core {
  public:
-  /// Throws std::runtime_error if there is no such chip, or the image is not one for it.
+  /// Throws std::runtime_error if the chip is unknown, or the image is not for this chip.
   Core(const Image& image, Chip chip);
   Core(const Core&) = delete;
   Core& operator=(const Core&) = delete;
   ~Core();
 
   const Chip& chip() const { return chip_; }
-  /// simavr's own handle, for what is not here.
+  /// Returns simavr's handle, for functions that this class does not offer.
   avr_t* handle() const { return avr_; }
   std::uint64_t cycle() const;
   std::uint32_t program_counter() const;  ///< [bytes]
 
-  /// Runs up to this cycle, or some cycles more, so many as the last instruction needs. A core that sleeps goes to the
-  /// next cycle at which anything happens in one step.
+  /// Runs up to this cycle, or a few cycles further, to the end of the last instruction. A sleeping core skips to the
+  /// next cycle at which an event is due.
   void run_until(std::uint64_t cycle);
 
-  /// Calls `event` when the core has reached this cycle; those of the same cycle in the order of the calls.
+  /// Calls `event` when the core has reached this cycle. Events of the same cycle are called in the order in which they
+  /// were added.
   void at(std::uint64_t cycle, std::function<void()> event);
   void cancel_events() { events_.clear(); }
 
@@ -54,17 +55,20 @@ class Core {
   void set_input(Pin pin, bool high);
   /// Returns whether a pin that is driven from outside is high.
   bool input(Pin pin) const;
-  /// Sets what an analog input measures [V], within 0 and the supply. Throws std::runtime_error if there is none.
+  /// Sets the voltage of an analog input [V], between 0 and the supply. Throws std::runtime_error if there is no such
+  /// input.
   void set_voltage(int input, double volts);
 
-  /// Calls `receive` with each byte that a serial interface sends. Throws std::runtime_error if there is none.
+  /// Calls `receive` with each byte that a serial interface sends. Throws std::runtime_error if there is no such
+  /// interface.
   void connect_serial(int number, std::function<void(std::uint8_t)> receive);
-  /// Sends bytes to it, and returns how many it took: its buffer is full, or it is not switched on.
+  /// Sends bytes to a serial interface, and returns how many it accepted: fewer if its buffer is full or it is not
+  /// enabled.
   std::size_t send_serial(int number, std::span<const std::uint8_t> bytes);
 
-  /// Why it does not run any more: it did what no chip can do; nothing while it runs.
+  /// Returns why the core has stopped, such as an invalid instruction; nullopt while it runs.
   const std::optional<std::string>& fault() const { return fault_; }
-  /// Takes what people want to know of what happened since the last call: resets, an endless sleep.
+  /// Returns and clears the messages to the user since the last call, about resets and endless sleep.
   std::vector<std::string> take_notes();
 
  private:

@@ -9,19 +9,19 @@
 
 namespace cohort::avr {
 
-/// Bytes of an image that follow each other in one memory.
+/// A contiguous range of bytes in one memory.
 struct Segment {
   std::uint32_t address = 0;
   std::vector<std::uint8_t> bytes{};
 };
 
-/// A compiled program of a microcontroller, as a file has it.
+/// A compiled program for a microcontroller, as read from a file.
 struct Image {
   std::string file;
   std::vector<Segment> flash{};
   std::vector<Segment> eeprom{};
-  std::string mcu{};                         ///< that it says it is for; empty if it does not say
-  std::optional<std::uint32_t> frequency{};  ///< [Hz] that it asks for, by simavr's section .mmcu
+  std::string mcu{};                         ///< microcontroller named by the image; empty: none
+  std::optional<std::uint32_t> frequency{};  ///< required clock [Hz], from simavr's section .mmcu
 
   /// Returns the address after the last byte of its program.
   std::uint32_t flash_end() const;

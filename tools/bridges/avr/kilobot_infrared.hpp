@@ -16,20 +16,20 @@ namespace cohort::avr::kilobot {
 
 class Air;
 
-/// Outputs of a receiver's two amplifiers for light, as counts of the 10-bit converter.
+/// Outputs of a receiver's two amplifiers, as counts of the 10-bit analog-to-digital converter.
 struct Gains {
   int low = 0, high = 0;
 };
-/// Returns what they give for the light of a robot at this distance [m], between the middles of both.
+/// Returns the outputs for the light of a robot at this distance between the robots' centres [m].
 Gains gains_at(double distance);
 
-/// A robot whose light arrives, and its distance [m].
+/// A robot whose light is received, and its distance [m].
 struct Heard {
   std::uint32_t robot = 0;
   double distance = 0.0;
 };
 
-/// The infrared sender and receiver of one robot, on the pins of its core. Its thread is that of its core.
+/// The infrared transmitter and receiver of one robot, on the pins of its core. Used by the thread that runs the core.
 class Transceiver {
  public:
   /// Connects to a core that has not run yet.
@@ -38,14 +38,14 @@ class Transceiver {
   Transceiver& operator=(const Transceiver&) = delete;
   ~Transceiver();
 
-  /// Says the simulated time of the core's cycle 0.
+  /// Sets the simulated time of the core's cycle 0.
   void switch_on(std::chrono::nanoseconds time) { switched_on_ = time; }
 
-  /// Says whose light arrives from now on.
+  /// Sets the robots whose light is received from now on.
   void hear(std::vector<Heard> senders) { senders_ = std::move(senders); }
 
-  /// Lets a message of 12 bytes arrive, as strong as that of a robot that touches, whose first pulse begins at this
-  /// cycle of the nominal clock.
+  /// Delivers a message of 12 bytes with the signal strength of a touching robot. Its first pulse begins at this cycle
+  /// of the nominal clock.
   void receive_message(std::uint64_t cycle, std::span<const std::uint8_t> message);
 
  private:
@@ -71,12 +71,13 @@ class Transceiver {
   std::vector<Edge> sent_;  // since the last exchange
   std::vector<Heard> senders_;
   std::map<std::uint32_t, std::int32_t> passing_;  // strengths of the pulses that have not ended, by sender
-  int pulses_ = 0;                                 // that arrive at present
+  int pulses_ = 0;                                 // being received
   std::int32_t strength_ = 0;                      // sum over all of them
   std::uint64_t last_pulse_ = 0;
 };
 
-/// The light between robots. Receivers in range get a signal one bit later, each edge at its own cycle.
+/// The infrared light between robots. Receivers in range get a signal one bit time later, with each edge at its exact
+/// cycle.
 class Air final : public Medium {
  public:
   std::chrono::nanoseconds window() const override;

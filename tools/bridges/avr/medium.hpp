@@ -10,7 +10,8 @@ class Medium {
  public:
   virtual ~Medium() = default;
 
-  /// Shorter than the time from sending to receiving, by at least the longest instruction.
+  /// Returns the length of a window. It is shorter than the time from sending to receiving, by at least the longest
+  /// instruction.
   virtual std::chrono::nanoseconds window() const = 0;
 
   /// Called between two windows, while no core runs.

@@ -21,44 +21,44 @@ struct Pin {
 };
 std::string name_of(const Pin& pin);
 
-/// The waveform of a pin: it is high for a share of each period.
+/// The waveform of a pin: it is high for a fraction of each period.
 struct Waveform {
   double duty = 0.0;    ///< 0 to 1
-  double period = 0.0;  ///< [cycles]; 0: it stays as it is, and `duty` is 0 or 1
+  double period = 0.0;  ///< [cycles]; 0: a constant level, with a `duty` of 0 or 1
   bool operator==(const Waveform&) const = default;
 };
 
 /// An output pin: how long it was high, and its pulses.
 class Output {
  public:
-  /// Calls `edge` at each change of its level, unless a timer makes a waveform.
+  /// Called at each change of the level, unless a timer generates the waveform.
   std::function<void(std::uint64_t cycle, bool high)> edge{};
 
   Waveform waveform() const { return waveform_; }
   /// Restarts the measurement.
   void begin_window(std::uint64_t cycle);
-  /// Returns the share of the window up to now in which it was high.
+  /// Returns the fraction of the window, up to this cycle, in which the pin was high.
   double duty(std::uint64_t cycle) const;
-  /// Returns the length of the last whole pulse [cycles]; nothing if none has ended since `oldest`.
+  /// Returns the length of the last complete pulse [cycles]; nullopt if none has ended since the cycle `oldest`.
   std::optional<double> pulse(std::uint64_t oldest) const;
-  /// Returns the cycles from one rising edge to the next; nothing if there were not two since `oldest`.
+  /// Returns the cycles from one rising edge to the next; nullopt if there were not two since the cycle `oldest`.
   std::optional<double> period(std::uint64_t oldest) const;
 
   void set(std::uint64_t cycle, Waveform waveform);
 
  private:
   Waveform waveform_;
-  std::uint64_t since_ = 0;         // the waveform, or the window, began
-  std::uint64_t window_ = 0;        // began
+  std::uint64_t since_ = 0;         // cycle at which the waveform or the window began
+  std::uint64_t window_ = 0;        // cycle at which it began
   double high_ = 0.0;               // [cycles] in the window up to `since_`
-  std::uint64_t rise_ = 0;          // the last one
+  std::uint64_t rise_ = 0;          // cycle of the last one
   std::uint64_t pulse_ended_ = 0;   // 0: there was none
   std::uint64_t pulse_length_ = 0;  // [cycles]
   std::uint64_t last_period_ = 0;   // [cycles] before the last rising edge; 0: there was none
 };
 
-/// All output pins of a core. The waveform of a timer's pin follows from its registers by the formulas of the data
-/// sheet, since simavr's own pins follow timers in some modes only.
+/// All output pins of a core. The waveform of a timer's pin is computed from the timer's registers with the formulas of
+/// the data sheet, because simavr's own pins follow timers only in some modes.
 class Outputs {
  public:
   Outputs(avr_t* core, std::string mcu);
@@ -68,10 +68,10 @@ class Outputs {
 
   /// Returns the pin's output, which is measured from now on. Throws std::runtime_error if there is no such pin.
   Output& watch(Pin pin);
-  /// Returns what counts as high while the pin is a low output: what is between it and the supply, such as an LED, is
-  /// then on. Throws as `watch`.
+  /// Returns an output that counts as high while the pin is driven low. A load between the pin and the supply, such as
+  /// an LED, is then on. Throws as `watch`.
   Output& watch_sink(Pin pin);
-  /// All registers are at their initial values again.
+  /// Called when the chip has reset its registers.
   void reset();
   void begin_window();
 

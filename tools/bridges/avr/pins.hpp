@@ -13,13 +13,13 @@
 
 namespace cohort::avr {
 
-/// One value of a channel of the robot.
+/// One value of a robot's channel.
 struct ChannelValue {
   std::string channel;    ///< such as `left_wheel/0/velocity`
   std::size_t index = 0;  ///< index of the value in a channel with several
 };
 
-/// A function by points with straight lines between them; beyond the first and the last it stays as it is there.
+/// A piecewise linear function; constant before the first point and after the last.
 class Curve {
  public:
   struct Point {
@@ -32,29 +32,29 @@ class Curve {
   std::vector<Point> points_;  // x ascending, at least two
 };
 
-/// A motor behind a bridge: `scale` × duty(enable) × (duty(forward) - duty(backward)), where what is absent counts as
-/// full, and with its direction reversed where `direction` is low.
+/// A motor on an H-bridge. Its command is `scale` × duty(enable) × (duty(forward) - duty(backward)). The duty of an
+/// absent pin is 1. A low `direction` reverses the motor.
 struct Motor {
   ChannelValue command;
   double scale = 1.0;
   std::optional<Pin> enable, forward, backward, direction;
 };
 
-/// A servo: a command by the length of its pulses [s].
+/// A servo: the curve maps the pulse length [s] to the command.
 struct Servo {
   ChannelValue command;
   Pin pin;
   Curve pulses;
 };
 
-/// An LED: how bright by duty, for one value or for red, green and blue.
+/// An LED: its brightness is the duty, of one pin or of red, green and blue.
 struct Led {
   std::string channel;
   std::optional<Pin> red, green, blue, all;
   bool active_low = false;
 };
 
-/// A loudspeaker: a frequency by edges; it is silent without them.
+/// A loudspeaker: its frequency is that of the pin's edges; it is silent without edges.
 struct Speaker {
   std::string device;
   Pin pin;
@@ -70,7 +70,7 @@ struct Switch {
   bool is_low_when_on = true;
 };
 
-/// An analog input: a voltage by an observation.
+/// An analog input: the curve maps the observation to a voltage.
 struct Analog {
   ChannelValue observation;
   int input = 0;
@@ -85,7 +85,7 @@ struct Encoder {
   double edges_per_turn = 0.0;  ///< on both pins together
 };
 
-/// An HC-SR04: an echo as long as sound needs for twice the range.
+/// An ultrasonic range sensor HC-SR04: its echo pulse lasts as long as sound travels to the obstacle and back.
 struct Ultrasonic {
   ChannelValue observation;  ///< [m]
   Pin trigger, echo;
@@ -93,27 +93,27 @@ struct Ultrasonic {
 
 using Wire = std::variant<Motor, Servo, Led, Speaker, Switch, Analog, Encoder, Ultrasonic>;
 
-/// One entry of a file of pins, and its line there.
+/// One entry of a pin map, and its line in the file.
 struct Entry {
   Wire wire;
   int line = 0;
 };
 
-/// A robot's wiring: what is on which pin.
+/// A robot's wiring: the device on each pin.
 struct Pins {
   std::string file;
-  std::string mcu{};                         ///< empty if it does not say
+  std::string mcu{};                         ///< empty: not specified
   std::optional<std::uint32_t> frequency{};  ///< [Hz]
   double supply = 5.0;                       ///< [V]
-  std::optional<int> serial{};               ///< the serial interface that people see
+  std::optional<int> serial{};               ///< serial interface shown to the user
   std::vector<Entry> wires{};
 };
 
-/// Reads a file of pins. Throws std::runtime_error that says file, line, what is wrong, and what was expected.
+/// Reads a pin map. Throws std::runtime_error that names the file, the line, the error, and what was expected.
 Pins read_pins(const std::filesystem::path& file);
 
-/// Reads the name of a pin: `PB5`, or as on the board of an Arduino, `D13` or `A0`, where `mcu` is on one. Throws
-/// std::runtime_error.
+/// Reads the name of a pin, such as `PB5`. If an Arduino board has this `mcu`, also reads the board's names, such as
+/// `D13` or `A0`. Throws std::runtime_error.
 Pin pin_of(const std::string& name, const std::string& mcu);
 
 }  // namespace cohort::avr

@@ -13,16 +13,16 @@
 
 namespace cohort::betaflight {
 
-/// A quadcopter that Betaflight flies, by the sticks of a pilot: at each frame it gets the state and the sticks, and
-/// commands the motors once.
+/// A quadcopter flown by Betaflight, which follows the sticks of a pilot. At each frame Betaflight gets the state and
+/// the sticks, and sends one command to the motors.
 class Copter final : public bridges::Firmware {
  public:
-  /// `patience` outlives this. `program`: started and ended with the run.
+  /// `patience` must outlive this. `program` is started and ended with the run.
   Copter(const bridges::Patience& patience, std::unique_ptr<Program> program);
-  /// A program that is started outside of the bridge, at this IPv4 address.
+  /// Uses a program that is started outside of the bridge, at this IPv4 address.
   Copter(const bridges::Patience& patience, std::string address);
 
-  /// The robot has the channels of worlds/robots/quadcopter_x.
+  /// Requires the channels of worlds/robots/quadcopter_x.
   void start(const DrivenRobot& robot) override;
   bool exchange(bridges::Conversation& program, const Observation& observation) override;
   void act(Command& command) const override;
@@ -48,11 +48,12 @@ class Copter final : public bridges::Firmware {
   std::optional<Pilot> pilot_;
   double step_ = 0.0;   // between frames [s]
   double sent_ = -1.0;  // time of the last state packet [s]
-  // By resets, which turn the run's time back and must not turn that of packets back, and by packets sent again [s].
+  // Offset of the packets' time from the run's time [s]. Grows at resets, which must not turn the packets' time back,
+  // and with packets that are sent again.
   double time_lost_ = 0.0;
-  std::array<double, 2> place_{}, velocity_{};  // to the north and west of the pad, as it was seen last
+  std::array<double, 2> place_{}, velocity_{};  // north and west of the pad, when it was last seen
   Motors motors_{};
-  std::chrono::steady_clock::time_point sent_at_{};  // by the wall's clock
+  std::chrono::steady_clock::time_point sent_at_{};  // by the wall clock
   bool flies_ = false;                               // the program has answered since the start
 
   ObservationChannel orientation_, angular_velocity_, acceleration_, pressure_, height_, climb_, pads_, pad_;

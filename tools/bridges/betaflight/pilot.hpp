@@ -9,25 +9,25 @@ namespace cohort::betaflight {
 
 /// The flight plan of a pilot, with its times [s].
 struct Plan {
-  double height = 1.0;       ///< to hover at, above where it starts [m]
+  double height = 1.0;       ///< height of hovering above the start [m]
   double take_off_at = 8.0;  ///< arms 2 s earlier, and takes off later if the flight controller does not arm
   double land_at = 70.0;
 };
 
-/// Flies a quadcopter by the sticks of a remote control as its plan has it: arms, takes off, hovers above where it
-/// started, lands and disarms. It keeps height, place and heading; the flight controller, in its mode ANGLE, keeps the
-/// angles that the sticks ask for.
+/// A pilot who flies a quadcopter by remote control according to a plan: arms, takes off, hovers above the start, lands
+/// and disarms. The pilot holds height, position and heading; the flight controller, in mode ANGLE, holds the attitude
+/// set by the sticks.
 class Pilot {
  public:
   explicit Pilot(const Plan& plan) : plan_(plan) {}
 
-  /// Returns the sticks, `step` [s] after the last ones. The pilot sees position, velocity
-  /// and orientation in the state, and hears whether motors turn.
+  /// Returns the stick positions, `step` [s] after the last call. The pilot uses position, velocity and orientation of
+  /// the state, and whether the motors turn.
   Channels fly(const State& state, bool motors_turn, double step);
 
-  /// The angle that a stick asks for at its end [rad], as the configuration of the flight controller has it.
+  /// The angle at full deflection of a stick [rad], as in the configuration of the flight controller.
   static constexpr double greatest_angle = 30.0 * std::numbers::pi / 180.0;
-  /// The rate that the yaw stick asks for at its end [rad/s].
+  /// The yaw rate at full deflection of the yaw stick [rad/s].
   static constexpr double greatest_yaw_rate = 200.0 * std::numbers::pi / 180.0;
 
  private:
@@ -41,8 +41,8 @@ class Pilot {
   bool has_landed_ = false;
   std::optional<double> heading_;  // at take-off [rad]
   double climb_ = 0.0;             // smoothed [m/s]
-  double hover_ = 0.4;             // throttle that keeps the height, as far as the pilot knows by now
-  double on_floor_ = 0.0;          // how long it has stood there, to land [s]
+  double hover_ = 0.4;             // estimated throttle that holds the height
+  double on_floor_ = 0.0;          // time on the floor while landing [s]
 };
 
 }  // namespace cohort::betaflight

@@ -9,10 +9,11 @@
 
 namespace cohort::betaflight {
 
-/// The datagrams of one program: it sends from any port, and listens at two, which are told apart by what is sent.
+/// The datagrams of one program. It sends from any port, and listens on two: the contents of a packet determine its
+/// port.
 class ProgramLink final : public bridges::Link {
  public:
-  /// `socket`: bound to where servo packets come, non-blocking. `address`: the program's, IPv4.
+  /// `socket` is non-blocking and bound to the port of servo packets. `address` is the program's IPv4 address.
   ProgramLink(bridges::Descriptor socket, const std::string& address);
 
   std::string place() const override;
@@ -30,12 +31,12 @@ class ProgramLink final : public bridges::Link {
   int mistakes_ = 0;
 };
 
-/// Returns whether the program at this IPv4 address has booted, and takes state packets. It opens its command line
-/// last, so it has booted if it accepts a connection there. Also true if there is no answer within 100 ms, as from
-/// behind a firewall: then nothing is known.
+/// Returns whether the program at this IPv4 address has booted and accepts state packets. The program opens its command
+/// line last, so it has booted if it accepts a connection there. Also returns true if there is no answer within 100 ms,
+/// such as behind a firewall, because the state is then unknown.
 bool has_booted(const std::string& address);
 
-/// Returns a socket for servo packets that come to this address of the machine. Throws std::runtime_error.
+/// Returns a socket for servo packets, bound to this address of the machine. Throws std::runtime_error.
 bridges::Descriptor open_servo_socket(const std::string& address);
 
 }  // namespace cohort::betaflight

@@ -10,16 +10,16 @@
 
 namespace cohort::betaflight {
 
-/// A program that does not begin to respond.
+/// Thrown if a program does not start to respond in time.
 struct Silent : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A conversation with the command line of a flight controller, at its TCP port. Set-up only: it blocks.
+/// A connection to the command line of a flight controller, on its TCP port. For set-up only, because it blocks.
 class CommandLine {
  public:
-  /// Connects `socket` as soon as the program listens, also if it was connected before, and waits for the prompt.
-  /// `check` is called while it waits, and throws to end that. Throws Silent after `patience`.
+  /// Connects `socket` as soon as the program listens, even if it was connected before, and waits for the prompt. Calls
+  /// `check` while waiting, which may throw to end the wait. Throws Silent after `patience`.
   CommandLine(const bridges::Descriptor& socket, std::chrono::seconds patience, std::function<void()> check);
 
   /// Throws std::runtime_error if the program does not know or accept the command.

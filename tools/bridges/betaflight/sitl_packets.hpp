@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-/// The packets of Betaflight's SITL program (docs/bridges/betaflight.md), as its source has them. Pure functions.
+/// The packets of Betaflight's SITL program (docs/bridges/betaflight.md), as in its source code. Pure functions.
 namespace cohort::betaflight {
 
 inline constexpr std::uint16_t servo_port = 9002;  // the program sends there
@@ -19,14 +19,14 @@ inline constexpr std::size_t servo_size = 16;
 
 using Vector = std::array<double, 3>;
 
-/// Measurements of a flight controller's sensors. Axes of the body are x forward, y left, z up.
+/// Measurements of a flight controller's sensors. The axes of the body are x forward, y left, z up.
 struct State {
   double time = 0.0;                                      ///< [s]
   Vector angular_velocity{};                              ///< body rates, in body axes [rad/s]
-  Vector acceleration{};                                  ///< less gravity, in the axes of the body [m/s^2]
-  std::array<double, 4> orientation{1.0, 0.0, 0.0, 0.0};  ///< w x y z, from the body to north, west and up
-  Vector velocity{};                                      ///< to the north, west and up [m/s]
-  Vector position{};                                      ///< to the north, west and up of where it starts [m]
+  Vector acceleration{};                                  ///< specific force, in body axes [m/s^2]
+  std::array<double, 4> orientation{1.0, 0.0, 0.0, 0.0};  ///< w x y z, from the body to north-west-up
+  Vector velocity{};                                      ///< in north-west-up [m/s]
+  Vector position{};                                      ///< relative to the start, in north-west-up [m]
   double pressure = 101325.0;                             ///< [Pa]
 };
 
@@ -39,7 +39,7 @@ std::vector<std::uint8_t> rc_packet(double time, const Channels& channels);
 
 /// Motors in the order of Betaflight's mixer QUADX: rear right, front right, rear left, front left; 0 to 1.
 using Motors = std::array<double, 4>;
-/// Decodes the `servo_size` bytes of a servo packet. Throws std::runtime_error if a value is none.
+/// Decodes the `servo_size` bytes of a servo packet. Throws std::runtime_error if a value is outside [-1, 1].
 Motors motors_in(std::span<const std::uint8_t> packet);
 
 }  // namespace cohort::betaflight

@@ -13,7 +13,7 @@
 
 namespace cohort::bridges {
 
-/// A mistake in the options of a bridge.
+/// An error in the command-line options of a bridge.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -22,14 +22,15 @@ class UsageError : public std::runtime_error {
 /// The command line of a bridge's program: the options that all bridges have, to which each adds its own.
 class BridgeProgram {
  public:
-  /// `name`: of the program. `who`: what people call what drives a robot.
+  /// `name` is the program's name. `who` is the word in messages for what drives a robot, such as `firmware`.
   BridgeProgram(std::string name, std::string who, const std::string& text);
 
-  /// Adds the option --run: programs for robots, started in virtual time. `text`: what it is for.
+  /// Adds the option --run, the command of a program that is started in virtual time for each robot. `text` is the
+  /// option's help text.
   void offer_to_run_programs(const std::string& text =
                                  "Shell command of a program that drives a robot: started once for each robot, with "
                                  "simulated time as its clock");
-  /// Returns the command of --run; empty: none was given.
+  /// Returns the command of --run; empty if there was none.
   const std::string& command() const { return command_; }
 
   CLI::App& app() { return app_; }
@@ -43,20 +44,20 @@ class BridgeProgram {
                   [&value, choices](const std::string& given) { value = choices.at(given); });
   }
 
-  /// Adds --serial, which takes the place of the links that the program's other options name. For programs that create
-  /// firmware and links separately.
+  /// Adds --serial, which replaces the links that the program's other options name. For programs that create firmware
+  /// and links separately.
   CLI::Option& add_serial();
   bool has_serial() const { return !serial_.empty(); }
 
-  /// Reads the command line, then drives each robot by a firmware that `make` gives, over the link that `link_of`
-  /// names for the robot's place among those of --robots. Returns the program's exit code.
+  /// Reads the command line, then drives each robot of --robots by a firmware that `make` creates. `link_of` returns
+  /// the link of the robot with this index among them. Returns the program's exit code.
   int run(int argc, char** argv, const std::function<std::unique_ptr<Firmware>()>& make,
           const std::function<std::string(std::size_t robot, std::size_t robots)>& link_of);
 
-  /// The same with firmware and links that `make` gives for each of the robots, by its place among those of --robots.
+  /// Creates firmware and link of the robot with this index among those of --robots.
   using MakeDriver = std::function<Driver(const std::vector<std::string>& robots, std::size_t robot)>;
   int run(int argc, char** argv, const MakeDriver& make);
-  /// Reads the command line, then calls `drive`, whose client has all robots of --robots, which may be any selectors.
+  /// Reads the command line, then calls `drive` with one client for all robots of --robots, which may be any selectors.
   /// Returns the program's exit code.
   int run(int argc, char** argv, const std::function<ClientEnd(const ClientOptions& client)>& drive);
 
@@ -81,7 +82,7 @@ class BridgeProgram {
   Patience patience_;
 };
 
-/// Splits a list of selectors into one for each robot: ids, ranges of ids and names. Throws UsageError.
+/// Splits a list of ids, ranges of ids and names into one selector for each robot. Throws UsageError.
 std::vector<std::string> single_robots(const std::string& list);
 
 }  // namespace cohort::bridges

@@ -9,7 +9,7 @@
 
 namespace cohort::bridges {
 
-/// A file descriptor that is closed with this.
+/// A file descriptor that the destructor closes.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -35,7 +35,7 @@ class Descriptor {
 /// Returns the system's text of an error number.
 inline std::string text_of_error(int error) { return std::generic_category().message(error); }
 
-/// Returns whether a call that failed with this error is to be made again later.
+/// Returns whether a call that failed with this error should be repeated later.
 inline bool is_for_later(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
 
 }  // namespace cohort::bridges

@@ -2,7 +2,7 @@
 
 namespace cohort::bridges {
 
-/// Thrown while a bridge waits for firmware, when its answer is no longer needed.
+/// Thrown to end the wait for firmware whose answer is no longer needed.
 struct GaveUp {};
 
 }  // namespace cohort::bridges

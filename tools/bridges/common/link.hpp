@@ -9,52 +9,52 @@
 
 namespace cohort::bridges {
 
-/// The firmware has left, or cannot be reached any more: why, for people.
+/// Thrown if the firmware has disconnected or cannot be reached any more. The text gives the reason to the user.
 class LinkLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A connection to one robot's firmware that never blocks: TCP, UDP or a serial line. One thread at a time.
+/// A connection to one robot's firmware that never blocks: TCP, UDP or a serial line. Not thread-safe.
 class Link {
  public:
   virtual ~Link() = default;
 
-  /// Returns where the firmware reaches it, such as `127.0.0.1:1000` or `/dev/pts/3`.
+  /// Returns the address or device to which the firmware connects, such as `127.0.0.1:1000` or `/dev/pts/3`.
   virtual std::string place() const = 0;
 
-  /// Returns whether it has no connections, as a pseudo-terminal and UDP: then it is connected always.
+  /// Returns whether the link has no connections, like UDP and a pseudo-terminal. It then always counts as connected.
   virtual bool is_connectionless() const = 0;
 
-  /// Returns whether firmware is connected, and connects firmware that waits to be.
+  /// Accepts firmware that waits to be connected. Returns whether firmware is connected.
   virtual bool connect() = 0;
 
-  /// Returns who is connected, for people.
+  /// Returns the name of the other side for messages to the user.
   virtual std::string peer() const = 0;
 
-  /// Returns the file descriptor that is readable when firmware waits to be connected, or when bytes are there.
+  /// Returns the file descriptor that is readable when firmware waits to be connected, or when bytes have arrived.
   virtual int descriptor() const = 0;
 
-  /// Reads bytes that are there, of a datagram all that fit, and returns how many; 0 if there are none. Throws
-  /// LinkLost.
+  /// Reads the bytes that have arrived, or as much of one datagram as fits, and returns how many; 0 if there are none.
+  /// Throws LinkLost.
   virtual std::size_t read(std::span<std::uint8_t> bytes) = 0;
 
-  /// Writes bytes and returns how many; 0 if none can be taken now. A datagram is written whole. Throws LinkLost.
+  /// Writes bytes and returns how many; 0 if none can be written now. A datagram is written whole. Throws LinkLost.
   virtual std::size_t write(std::span<const std::uint8_t> bytes) = 0;
 
   /// Ends the connection, so that other firmware can connect.
   virtual void hang_up() = 0;
 };
 
-/// Opens the link that `place` names; an address is an IPv4 address of this machine, a port of 0 is any free one:
+/// Opens the link that `place` names. An address is an IPv4 address of this machine; the port 0 means any free port:
 ///
 /// - `tcp:ADDRESS:PORT` waits for one connection at a time.
-/// - `udp:ADDRESS:PORT` takes datagrams, and answers to where the last one came from. One that another sender has
-///   replaced is not heard any more, unless the other is hung up.
-/// - `udp:ADDRESS:PORT:PEER_ADDRESS:PEER_PORT` also sends there before any came, and takes none from elsewhere.
-/// - `serial:DEVICE:BAUD` opens a serial line, raw, 8 data bits, no parity, 1 stop bit. Its device is there at first,
-/// and
-///   is opened again when it was unplugged and has come back.
+/// - `udp:ADDRESS:PORT` receives datagrams, and sends to the sender of the last one. A sender that another one has
+///   replaced is ignored until the link is hung up.
+/// - `udp:ADDRESS:PORT:PEER_ADDRESS:PEER_PORT` sends to the peer even before it has received anything, and ignores all
+///   other senders.
+/// - `serial:DEVICE:BAUD` opens a serial line, raw, 8 data bits, no parity, 1 stop bit. The device must exist at
+///   first. If it is unplugged, it is opened again when it comes back.
 /// - `pty` makes a pseudo-terminal, whose other end is a serial device to the firmware; `pty:PATH` also makes PATH a
 ///   symbolic link to it.
 ///

@@ -17,24 +17,24 @@ struct Driver {
   std::unique_ptr<Link> link;
 };
 
-/// One robot that firmware drives: a client of its own on a thread of its own, so that the other robots go on while
-/// this one waits for its firmware.
+/// One robot that firmware drives. It has its own client and thread, so that the other robots continue while this one
+/// waits for its firmware.
 class RobotBridge {
  public:
   struct Options {
     ClientOptions client;  ///< `robots` names the robot
     std::string who = "firmware";
-    std::string command{};  ///< for the shell: a program that is started to connect; empty: none
+    std::string command{};  ///< shell command of a program that is started for the robot; empty: none
   };
 
-  /// Says where firmware reaches the link. The bridge ends when `stop` is set, and sets it if it fails.
+  /// Reports to the user where the firmware connects. The bridge ends when `stop` is set, and sets it if it fails.
   RobotBridge(Options options, Driver driver, Patience patience, std::atomic<bool>& stop);
   RobotBridge(const RobotBridge&) = delete;
   RobotBridge& operator=(const RobotBridge&) = delete;
   ~RobotBridge();
 
   void start();
-  /// Waits for its end.
+  /// Waits for the end of the bridge.
   ClientEnd wait();
 
  private:
@@ -53,13 +53,13 @@ class RobotBridge {
   const Client* client_ = nullptr;  // while it runs
   Conversation conversation_;
   std::unique_ptr<TimedProgram> program_;
-  bool is_other_run_ = false;  // than that of the last frame
+  bool is_other_run_ = false;  // the next frame is of another run than the last one
   ClientEnd end_ = ClientEnd::failed;
   std::thread thread_;
 };
 
-/// Runs bridges until all have ended. Returns the exit code for their program: that of the first bridge that ended for
-/// another reason than the end of the run or of the other bridges.
+/// Runs bridges until all have ended. Returns the program's exit code: that of the first bridge that ended for another
+/// reason than the end of the run or of the other bridges.
 int run_bridges(const std::vector<std::unique_ptr<RobotBridge>>& bridges);
 
 }  // namespace cohort::bridges

@@ -8,12 +8,12 @@
 
 namespace cohort::bridges {
 
-/// Opens a serial device, raw, 8N1, for this program alone. One that is unplugged is lost, and connects again when a
-/// device of that name can be opened. Throws std::runtime_error if there is none at first.
+/// Opens a serial device, raw, 8N1, for exclusive use. If the device is unplugged, the link is lost; it connects again
+/// when a device of that name can be opened. Throws std::runtime_error if the device cannot be opened at the start.
 std::unique_ptr<Link> open_serial(const std::string& device, unsigned baud);
 
-/// Makes a pseudo-terminal; unless it is empty, `symlink` points to its other end as long as the link lives, and must
-/// not exist before. Throws std::runtime_error.
+/// Makes a pseudo-terminal. Unless `symlink` is empty, it is created as a symbolic link to the other end, and removed
+/// with the link. Throws std::runtime_error, also if `symlink` exists.
 std::unique_ptr<Link> make_pty(const std::filesystem::path& symlink);
 
 }  // namespace cohort::bridges

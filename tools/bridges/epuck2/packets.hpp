@@ -16,9 +16,9 @@ inline constexpr std::size_t sensors_size = 104;
 inline constexpr int image_width = 160;
 inline constexpr int image_height = 120;
 inline constexpr std::uint8_t greatest_brightness =
-    100;  // for each colour of an RGB LED; larger values leave it unchanged
+    100;  // for each colour of an RGB LED; larger values leave the LED unchanged
 
-/// A command, as it is written.
+/// The fields of a command packet.
 struct Command {
   bool wants_image = false;
   bool wants_sensors = false;
@@ -39,9 +39,9 @@ std::optional<std::string> mistake_of(std::span<const std::uint8_t> begun);
 /// Decodes the `command_size` bytes of a command.
 Command decode(std::span<const std::uint8_t> bytes);
 
-/// Contents of the sensors packet, in its own units.
+/// Contents of the sensors packet, in the packet's units.
 struct Sensors {
-  std::array<std::int16_t, 3> acceleration{};  ///< x to the right, y forward, z up; 768 is 1 g
+  std::array<std::int16_t, 3> acceleration{};  ///< x right, y forward, z up; 768 is 1 g
   float acceleration_size = 0.0F;
   float orientation = 0.0F;                        ///< [degrees]
   float inclination = 0.0F;                        ///< [degrees]
@@ -62,9 +62,9 @@ struct Sensors {
   std::uint8_t button = 0;
 };
 
-/// Packets of a robot: an id of one byte, then its payload.
+/// Returns a packet of the robot: an id of one byte, then the payload.
 std::vector<std::uint8_t> sensors_packet(const Sensors& sensors);
-/// All black: nothing is rendered.
+/// Returns a black image, because nothing is rendered.
 std::vector<std::uint8_t> image_packet();
 std::vector<std::uint8_t> empty_packet();
 

@@ -11,16 +11,16 @@ namespace cohort::epuck2 {
 /// The answer to a command that requests image and sensors.
 enum class Packets {
   both,     ///< the image, then the sensors, as the robot sends them
-  in_turn,  ///< one of them, by turns, for programs that read a single packet after each command
+  in_turn,  ///< one of them, alternately, for programs that read a single packet after each command
 };
 
-/// An e-puck2 whose commands come from a program, each of them answered at the next exchange.
+/// An e-puck2 driven by a program. Each command of the program is answered at the next exchange.
 class Robot final : public bridges::Firmware {
  public:
-  /// `patience` outlives this.
+  /// `patience` must outlive this.
   Robot(const bridges::Patience& patience, Packets packets) : patience_(patience), packets_(packets) {}
 
-  /// The robot has the channels of worlds/robots/epuck2.
+  /// Requires the channels of worlds/robots/epuck2.
   void start(const DrivenRobot& robot) override;
   bool exchange(bridges::Conversation& program, const Observation& observation) override;
   void act(cohort::Command& command) const override;

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <tuple>
 
-/// The messages of MAVLink that bridges speak: fields in the order of the wire, which is by size, extensions last.
-/// Facts from MAVLink's common.xml; `crc_extra` is the checksum of each one's definition.
+/// The MAVLink messages that bridges use, as defined in MAVLink's common.xml. Fields are in the order of the wire:
+/// sorted by size, extensions last. `crc_extra` is the checksum of the message's definition.
 namespace cohort::mavlink {
 
 struct Heartbeat {
@@ -42,7 +42,7 @@ struct HilActuatorControls {
   static constexpr std::uint8_t crc_extra = 47;
   std::uint64_t time_usec = 0;
   std::uint64_t flags = 0;
-  std::array<float, 16> controls{};  ///< -1 to 1, or 0 to 1 of what does not reverse
+  std::array<float, 16> controls{};  ///< -1 to 1, or 0 to 1 for an actuator that does not reverse
   std::uint8_t mode = 0;
 
   static auto fields(auto& m) { return std::tie(m.time_usec, m.flags, m.controls, m.mode); }

@@ -22,18 +22,18 @@ struct Packet {
 /// Returns the frame of a packet, whose payload has at most `largest_payload` bytes.
 std::vector<std::uint8_t> frame_of(const Packet& packet, std::uint8_t crc_extra);
 
-/// Returns the size of what a stream begins with: a frame, or bytes that cannot be one up to where the next may begin.
-/// 0 if more bytes are needed to know.
+/// Returns the size of the first piece of a stream [bytes]: a frame, or invalid bytes up to where the next frame may
+/// begin. Returns 0 if more bytes are needed.
 std::size_t size_at(std::span<const std::uint8_t> stream);
 
 /// A piece of a stream, as `size_at` delimits it.
 struct Piece {
-  std::optional<Packet> packet;  ///< nothing: the bytes are no frame, or its checksum is wrong
-  bool is_known = false;         ///< its message is one of hil_messages.hpp; others' checksums cannot be checked
+  std::optional<Packet> packet;  ///< nullopt: the bytes are not a frame, or the checksum is wrong
+  bool is_known = false;         ///< the message is in hil_messages.hpp; other messages' checksums cannot be checked
 };
 Piece piece_of(std::span<const std::uint8_t> bytes);
 
-/// X.25's checksum, as MAVLink has it: CRC-16/MCRF4XX.
+/// Returns MAVLink's variant of the X.25 checksum: CRC-16/MCRF4XX.
 std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t seed = 0xffff);
 
 }  // namespace cohort::mavlink

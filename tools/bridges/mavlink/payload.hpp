@@ -11,7 +11,7 @@
 
 #include "tools/bridges/mavlink/mavlink_frames.hpp"
 
-/// Between messages and payloads: fields one after the other, little-endian.
+/// Encodes messages to payloads and decodes them: fields without padding, little-endian.
 namespace cohort::mavlink {
 
 namespace coding {
@@ -32,7 +32,7 @@ void put(std::vector<std::uint8_t>& payload, const std::array<Number, size>& num
   for (const Number& number : numbers) put(payload, number);
 }
 
-// Beyond the end of a payload there are zeros.
+// Bytes beyond the end of a payload count as zeros.
 template <class Number>
 void take(std::span<const std::uint8_t>& payload, Number& number) {
   std::uint64_t bits = 0;
@@ -57,7 +57,7 @@ std::vector<std::uint8_t> payload_of(const Message& message) {
   return payload;
 }
 
-/// Returns the message that a packet has; nothing if it is another one.
+/// Returns the message in a packet; nullopt if the packet contains another message.
 template <class Message>
 std::optional<Message> message_in(const Packet& packet) {
   if (packet.id != Message::id) return std::nullopt;

@@ -12,14 +12,14 @@
 
 namespace cohort::px4 {
 
-/// PX4 as its simulator sees it: it receives the measurements of its sensors and answers with controls.
+/// PX4, connected as to its simulator: it receives the measurements of its sensors and answers with controls.
 ///
-/// PX4 boots on simulated time. Until its first controls come, it receives the sensors as they are, at the pace of the
-/// wall clock, while the simulation stands still. From then on each exchange sends them once, and waits for the
-/// controls of that very time.
+/// PX4 boots on simulated time. Before it sends its first controls, it receives the present measurements at the pace of
+/// the wall clock, while the simulation stands still. After that, each exchange sends the measurements once, and waits
+/// for the controls of the same time.
 ///
-/// PX4 that drives a robot of a free team runs on its own clock: each exchange sends the measurements and takes the
-/// newest controls that are there.
+/// If PX4 drives a robot of a free team, it runs on its own clock: each exchange sends the measurements and uses the
+/// latest controls received.
 class Autopilot final : public bridges::Firmware {
  public:
   struct Options {
@@ -27,7 +27,7 @@ class Autopilot final : public bridges::Firmware {
     std::vector<autopilots::Output> outputs{};              ///< empty: those of the robot's model
     bool is_hardware = false;                               ///< has a clock of its own
   };
-  /// `patience` and `options` outlive this.
+  /// `patience` and `options` must outlive this.
   Autopilot(const bridges::Patience& patience, const Options& options) : patience_(patience), options_(options) {}
 
   void start(const DrivenRobot& robot) override;
@@ -59,13 +59,13 @@ class Autopilot final : public bridges::Firmware {
   ObservationChannel magnetic_field_;
   ObservationChannel pressure_;
   std::uint64_t period_ = 0;  // [us]
-  bool is_free_ = false;      // the robot's team
+  bool is_free_ = false;      // the robot's team is free
   autopilots::Shares shares_{};
   bool driven_ = false;  // at some time
 
   // State of the present connection.
   std::size_t connection_ = 0;        // its number, from 1
-  bool drives_ = false;               // controls have come
+  bool drives_ = false;               // controls have been received
   std::uint64_t time_ = 0;            // time of the last HIL_SENSOR [us]
   std::uint64_t time_before_ = 0;     // time of the HIL_SENSOR before it; 0: none
   std::uint64_t state_interval_ = 0;  // interval of HIL_STATE_QUATERNION [us]; 0: not requested
@@ -73,7 +73,7 @@ class Autopilot final : public bridges::Firmware {
   std::size_t broken_ = 0;  // pieces that were no messages
   std::size_t missed_ = 0;  // exchanges without controls in time
   std::optional<Clock::time_point>
-      heard_at_{};  // by a free robot: the last controls, unless it was told of its silence
+      heard_at_{};  // arrival of the last controls, in a free team; nullopt once the silence was reported
 };
 
 }  // namespace cohort::px4

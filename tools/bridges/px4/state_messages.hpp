@@ -8,8 +8,9 @@
 /// Messages to PX4 about a vehicle (docs/bridges/px4.md). Pure functions.
 namespace cohort::px4 {
 
-/// `magnetic_field`: FRD [T]. `pressure`: that of a barometer whose reference altitude is 0 at the world's origin [Pa];
-/// PX4 gets the pressure that is as much higher as `home`.
+/// Returns the sensor measurements at a time [us]. `magnetic_field` is in FRD [T]. `pressure` [Pa] is that of a
+/// barometer with altitude 0 at the world's origin; the message contains the pressure at an altitude that is higher by
+/// that of `home`.
 mavlink::HilSensor sensor_message(std::uint64_t time, const autopilots::Motion& motion,
                                   const autopilots::Vector3& magnetic_field, double pressure,
                                   const autopilots::Geodetic& home);

@@ -12,27 +12,27 @@
 
 namespace cohort::ros2 {
 
-/// A request of a client on Cyclone DDS, as rmw_cyclonedds sends it.
+/// A request from a client that uses Cyclone DDS, as sent by rmw_cyclonedds.
 struct CycloneRequest {
-  std::array<std::byte, 16> header{};  ///< comes back with the reply: the client's writer and the number of the request
-  std::string client{};                ///< `clientid` of the client's writer and reader
+  std::array<std::byte, 16> header{};  ///< returned with the reply: the client's writer and the number of the request
+  std::string client{};                ///< `clientid` in the user data of the client's writer and reader
   messages::Bytes request{};           ///< without the header
 };
 
-/// The endpoints of a service for clients on Cyclone DDS. They are known by their user data: clients on other
-/// implementations of DDS use the same topics, but mark their requests elsewhere. A second writer has clients on Fast
-/// DDS wait for the helper (OfferService::is_shared).
+/// The endpoints of a service for clients that use Cyclone DDS, which are recognised by their user data. Clients on
+/// other DDS implementations use the same topics, but mark their requests in another way. A second writer makes clients
+/// on Fast DDS wait for the helper (OfferService::is_shared).
 class CycloneService {
  public:
-  /// Requests go to `inbox` as messages of `input`; it is woken also when replies may go that could not before. Throws
-  /// wire::WireError.
+  /// Requests are put into `inbox` as messages of `input`. The inbox is also woken when replies that had to wait may be
+  /// sent. Throws wire::WireError.
   CycloneService(RosParticipant& participant, RosInbox& inbox, const OfferedService& service, std::size_t input);
 
-  /// Returns the request in a message of the inbox; nothing if it is of a client that is not on Cyclone DDS.
+  /// Returns the request in a message of the inbox; nullopt if its client does not use Cyclone DDS.
   std::optional<CycloneRequest> request(const RosInbox::Message& message) const;
   /// Returns whether a client can receive replies yet.
   bool is_there(const std::string& client) const;
-  /// Sends a reply, in CDR without the header. Throws wire::WireError.
+  /// Sends a reply. `reply` is in CDR, without the header. Throws wire::WireError.
   void reply(const CycloneRequest& to, messages::ByteView reply);
 
  private:

@@ -22,25 +22,25 @@
 
 namespace cohort::ros2 {
 
-/// Robots of one client in the ROS graph: tells of each frame, waits for commands as each robot's `sync` has it, and
-/// answers. One thread, but for `stop`.
+/// The robots of one client in the ROS graph. For each frame, publishes it, waits for commands according to each
+/// robot's `sync`, and answers. Not thread-safe, except for `stop`.
 class RosBridge {
  public:
   struct Options {
     ClientOptions client;
     RosParticipant::Options participant;
-    std::optional<GidFormat> gid_format{};                 ///< nothing: as peers have it
+    std::optional<GidFormat> gid_format{};                 ///< nullopt: that of the other participants
     std::optional<description::RosSync> sync{};            ///< for all robots; empty: as in the experiment
     std::optional<SimulationControl::Options> services{};  ///< nothing: no services
-    std::string command{};                                 ///< for the shell: nodes, run in virtual time; empty: none
-    /// Returns the experiment of the run. Called again when a robot comes that is not known yet.
+    std::string command{};                                 ///< shell command of nodes in virtual time; empty: none
+    /// Returns the experiment of the run. Called again when an unknown robot appears.
     std::function<std::shared_ptr<const description::Experiment>()> experiment;
     std::function<void(const std::string& text)> tell;
   };
   /// Throws wire::WireError.
   RosBridge(Options options, const std::atomic<bool>& stop);
 
-  /// Runs until the client ends. Throws std::runtime_error if it cannot go on.
+  /// Runs until the client ends. Throws std::runtime_error if the bridge cannot continue.
   ClientEnd run();
 
  private:
@@ -79,7 +79,7 @@ class RosBridge {
   RosGraph graph_;
   RosWriter clock_;
   std::shared_ptr<const description::Experiment> experiment_;
-  std::vector<std::unique_ptr<RosRobot>> robots_;  // by their first inputs
+  std::vector<std::unique_ptr<RosRobot>> robots_;  // sorted by first input
   std::vector<RosRobot*> robot_of_input_;
   std::map<std::uint32_t, RosRobot*> robot_of_id_;
   struct Shown {
@@ -96,13 +96,13 @@ class RosBridge {
   std::set<std::string> deleted_;           // robots that services have removed from this run
   std::mutex entity_changes_mutex_;
   std::vector<std::variant<SpawnedRobot, std::string>> entity_changes_;  // added robots, and names of removed entities
-  std::optional<GidFormat> format_;                                      // nothing: no participant has shown it yet
+  std::optional<GidFormat> format_;                                      // nullopt: no participant has shown it yet
   bool is_announced_ = false;
   bool is_first_frame_ = true;  // the next frame is the first of a lease
   bool is_other_run_ = true;
   std::chrono::nanoseconds step_{0};
   std::unique_ptr<RosProgram> program_;
-  std::unique_ptr<TruePoses> true_poses_;  // once they are wanted
+  std::unique_ptr<TruePoses> true_poses_;  // created when first needed
   messages::CdrWriter cdr_;
   std::optional<SimulationControl> services_;
 };

@@ -10,34 +10,37 @@
 
 namespace cohort::ros2 {
 
-/// The program that a bridge has started, such as nodes or a launch file, with the simulation's time as its own. Its
-/// work for a time is done when all of its threads wait. The threads of DDS here, which receive its messages, wait then
-/// too: datagrams on one machine are in the receiver's socket when the sender's call returns. One thread.
+/// A program that the bridge has started in virtual time, such as nodes or a launch file. Its work for a time is done
+/// when all its threads wait, and the DDS threads of this process, which receive its messages, wait too. This is
+/// sufficient because a datagram on one machine is in the receiver's socket when the sender's call returns. Not
+/// thread-safe.
 class RosProgram {
  public:
   struct Options {
-    std::string command;                                ///< for the shell
+    std::string command;                                ///< shell command
     std::uint32_t domain = 0;                           ///< ROS domain
-    std::chrono::nanoseconds start{0};                  ///< its clocks at first
-    std::function<bool()> given_up;                     ///< asked while it computes, several times a second
-    std::function<void(const std::string& text)> tell;  ///< to people
+    std::chrono::nanoseconds start{0};                  ///< initial time of its clocks
+    std::function<bool()> given_up;                     ///< asked several times a second while it computes
+    std::function<void(const std::string& text)> tell;  ///< reports to the user
   };
-  /// Starts it. Throws std::runtime_error.
+  /// Starts the program. Throws std::runtime_error.
   explicit RosProgram(const Options& options);
 
-  /// Returns whether it has not ended, as far as it is known.
+  /// Returns whether the program was still running when last checked.
   bool runs() const { return program_.runs(); }
-  /// Returns how many nodes it has.
+  /// Returns the number of the program's ROS nodes.
   std::uint32_t nodes() const { return program_.ros_nodes(); }
-  /// Runs what is due before a frame of `time`, whose successor comes at `end`. Throws bridges::GaveUp, as those below.
+  /// Runs everything that is due before a frame that lasts from `time` to `end`. Throws bridges::GaveUp, like the
+  /// functions below.
   void begin_frame(std::chrono::nanoseconds time, std::chrono::nanoseconds end, bool is_other_run);
-  /// Waits until it has done all that it does now, and what it has sent is received.
+  /// Waits until the program has done its work for the present time, and its messages have been received.
   void settle();
-  /// Returns whether one of its waits is due in the frame.
+  /// Returns whether one of the program's waits ends within the frame.
   bool is_due() { return program_.is_due(); }
-  /// Ends the next of its waits that is due in the frame. Returns false if none is; its clocks are then at the end.
+  /// Ends the next wait that is due within the frame. If none is due, sets the clocks to the end of the frame and
+  /// returns false.
   bool go_on();
-  /// Ends it; after `at_most` by force.
+  /// Ends the program, by force after `at_most`.
   void end(std::chrono::milliseconds at_most) { program_.end(at_most); }
 
  private:

@@ -15,24 +15,24 @@
 
 namespace cohort::ros2 {
 
-/// Services for clients on Fast DDS, through the program `cohort-ros2-services`. Without the program, or when it has
-/// ended, it says so once and does nothing. One thread.
+/// Services for clients on Fast DDS, through the program `cohort-ros2-services`. If the program is missing or has
+/// ended, this is reported once, and the functions do nothing. Not thread-safe.
 class ServiceHelper {
  public:
   struct Options {
-    std::string program{};  ///< its path
+    std::string program{};  ///< path of the program
     RosDomain domain{};
     std::string node = "cohort_services";  ///< the name of its node, in the namespace `/`
     std::function<void(const std::string& text)> tell;
   };
-  /// Starts the program and waits until the services have their endpoints there, or `stop` is set.
+  /// Starts the program and waits until it has created the endpoints of the services, or `stop` is set.
   ServiceHelper(Options options, std::span<const OfferedService> services, const std::atomic<bool>& stop);
 
-  /// Returns the participant that the helper has in the domain of ROS; nothing if there is no helper.
+  /// Returns the helper's participant in the ROS domain; nullopt if there is no helper.
   std::optional<Gid> participant() const;
-  /// Tells others of the node of the services.
+  /// Announces the node of the services to other participants.
   void announce(GidFormat format);
-  /// Returns the next request, if one is there.
+  /// Returns the next request, if one has arrived.
   std::optional<bridges::ros2::RequestReceived> request();
   void reply(const bridges::ros2::RequestReceived& to, messages::ByteView reply);
   /// Returns a descriptor to wait on for requests; −1 if there is no helper.
@@ -41,7 +41,7 @@ class ServiceHelper {
  private:
   void offer(std::span<const OfferedService> services, const std::atomic<bool>& stop);
   void give_up(const std::string& why);
-  // Calls `body` while there is a helper; it is given up when it has ended or speaks nonsense.
+  // Calls `body` if there is a helper. Gives the helper up if it has ended or sends invalid frames.
   void with_process(const std::function<void(bridges::ros2::ServiceProcess&)>& body);
 
   Options options_;

@@ -16,22 +16,22 @@
 
 namespace cohort::ros2 {
 
-/// Services in the graph of ROS: takes requests and answers one after the other, on a thread of its own. Clients on
-/// Cyclone DDS have endpoints here, clients on Fast DDS in the helper. Each request comes to both, and one answers it.
+/// Services in the ROS graph. A separate thread answers requests one after the other. Clients on Cyclone DDS use the
+/// endpoints here, clients on Fast DDS those of the helper. Each request reaches both, and one of them answers it.
 class ServiceHost {
  public:
-  /// Offers the services when the helper does. They must outlive this, and so must the others. `graph` then leaves out
-  /// the helper. Throws wire::WireError.
+  /// Offers the services once the helper offers them. All arguments passed by reference, and the services, must outlive
+  /// this. Hides the helper in `graph`. Throws wire::WireError.
   ServiceHost(RosParticipant& participant, RosGraph& graph, std::span<const OfferedService> services,
               ServiceHelper::Options helper, const std::atomic<bool>& stop);
-  /// Returns when the request at hand is answered.
+  /// Waits until the present request is answered.
   ~ServiceHost();
   ServiceHost(const ServiceHost&) = delete;
   ServiceHost& operator=(const ServiceHost&) = delete;
 
-  /// Tells others of the helper's node, in this format from now on. Any thread.
+  /// Announces the helper's node to other participants, in this format from now on. Any thread.
   void announce(GidFormat format);
-  /// Waits until no request is being answered, for `at_most`. Any thread.
+  /// Waits until no request is being answered, for at most `at_most`. Any thread.
   void wait_for_request(std::chrono::milliseconds at_most) const;
 
  private:

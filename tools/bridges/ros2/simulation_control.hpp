@@ -7,7 +7,7 @@
 
 namespace cohort::ros2 {
 
-/// The services of simulation_interfaces in the graph of ROS, as one client that controls the run.
+/// The services of simulation_interfaces in the ROS graph, with one client that controls the run.
 class SimulationControl {
  public:
   struct Options {
@@ -17,12 +17,12 @@ class SimulationControl {
     InterfaceVersion version = InterfaceVersion::v1;
     ServiceHelper::Options helper;
   };
-  /// `stop` ends this soon. Throws ControlError or wire::WireError.
+  /// Setting `stop` ends all waits. Throws ControlError or wire::WireError.
   SimulationControl(RosParticipant& participant, RosGraph& graph, const Options& options, const std::atomic<bool>& stop)
       : stop_(stop),
         services_(options.control, options.experiment, options.listener, options.version, end_),
         host_(participant, graph, services_.all(), options.helper, stop) {}
-  /// Answers the request that ends the run before it returns, unless `stop` is set.
+  /// Waits until the present request is answered, which may be the one that has ended the run, unless `stop` is set.
   ~SimulationControl() {
     if (!stop_) host_.wait_for_request(std::chrono::seconds(3));
     end_ = true;
@@ -30,7 +30,7 @@ class SimulationControl {
   SimulationControl(const SimulationControl&) = delete;
   SimulationControl& operator=(const SimulationControl&) = delete;
 
-  /// Tells others of the node of the helper. Any thread.
+  /// Announces the helper's node to other participants. Any thread.
   void announce(GidFormat format) { host_.announce(format); }
 
  private:

@@ -14,8 +14,8 @@ class Control;
 
 namespace cohort::ros2 {
 
-/// Where robots are, as the simulation knows it: from what the server tells observers of each tick, or, where that was
-/// lost, from a question. One thread.
+/// The true poses of robots. They come from the server's messages to observers, or from a request if such a message was
+/// lost. Not thread-safe.
 class TruePoses {
  public:
   /// Throws ControlError if the server's address or the identity cannot be used.
@@ -24,10 +24,10 @@ class TruePoses {
   TruePoses(const TruePoses&) = delete;
   TruePoses& operator=(const TruePoses&) = delete;
 
-  /// Another run begins: what is known is of the former one.
+  /// Drops the known poses, because another run begins.
   void forget();
-  /// Returns the pose of a robot at the tick of the frame under way, at which the run stands. Throws ControlError if
-  /// the server does not say it.
+  /// Returns the pose of a robot in the world at the tick of the present frame, at which the run waits. Throws
+  /// ControlError if the server does not answer.
   WorldPose pose(std::uint32_t robot, const std::string& name, std::uint64_t tick);
 
  private:

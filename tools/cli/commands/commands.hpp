@@ -8,8 +8,9 @@
 #include "tools/cli/common/log_flags.hpp"
 #include "tools/cli/common/run_program.hpp"
 
-/// The commands of `cohort`, one file each. Commands that no run needs and that take long to build are in a second
-/// program, `cohort-whole`, which has all commands. `in_whole` lists them; `cohort` starts that program for them.
+/// The commands of `cohort`, one file each. Commands that no run needs and that take long to build are only in a second
+/// program, `cohort-whole`, which has all commands. `in_whole` lists these commands; `cohort` starts `cohort-whole` for
+/// them.
 namespace cohort::tool {
 
 /// A command: its part of the command line, and the function that executes it.
@@ -18,7 +19,7 @@ struct Subcommand {
   CommandFunction run;
 };
 
-/// A command of `cohort-whole`.
+/// A command that only `cohort-whole` has.
 struct InWhole {
   const char* name;
   const char* text;  ///< for help

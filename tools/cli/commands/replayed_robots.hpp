@@ -16,7 +16,7 @@
 namespace cohort::tool {
 
 /// The topics on which cohort-ros2-bridge publishes robots, such as `odom` and `tf`, from their recorded observations.
-/// Topics of the same name in the recording are left out. One thread.
+/// Topics of the same name in the recording are left out. Not thread-safe.
 class ReplayedRobots {
  public:
   /// `recorded`: names of topics. Throws McapError, InputError, or std::runtime_error for settings that do not fit.
@@ -25,9 +25,9 @@ class ReplayedRobots {
 
   /// Returns the channels whose messages `publish` and `follow` need.
   const std::vector<recording::ChannelId>& channels() const { return channels_; }
-  /// Publishes what the bridge would publish at a recorded message.
+  /// Publishes the messages that the bridge would publish at a recorded message.
   void publish(const recording::Message& message) { take(message, true); }
-  /// Takes a message before the published part into account.
+  /// Updates the robots' odometry by a message before the published part.
   void follow(const recording::Message& message) { take(message, false); }
   /// Starts again at the beginning of the recording.
   void restart();

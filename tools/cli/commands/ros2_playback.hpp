@@ -21,9 +21,9 @@ struct Ros2Playback {
   std::optional<std::uint64_t> domain{};  ///< ROS domain; none: $ROS_DOMAIN_ID
 };
 
-/// Publishes the messages that a recording has for ROS 2 nodes, unchanged, in the order of their log times. Returns the
-/// exit code. Skips the topics by which Cohort replays a run, and observations, whose types are in no ROS 2 package.
-/// Throws std::invalid_argument if no topic remains, McapError, or wire::WireError.
+/// Publishes the messages of a recording for ROS 2 nodes, unchanged, in the order of their log times. Returns the exit
+/// code. Skips the topics by which Cohort replays a run, and observations, whose types are in no ROS 2 package. Throws
+/// std::invalid_argument if no topic remains, McapError, or wire::WireError.
 int play_to_ros2(const Ros2Playback& playback, Log& log, const std::atomic<bool>& stop);
 
 }  // namespace cohort::tool

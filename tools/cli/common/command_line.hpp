@@ -36,7 +36,7 @@ class Option {
   Option capture_default_str();
   /// Makes each occurrence of the option take one value.
   Option one_value();
-  /// Makes the option take one value, of which commas separate the parts.
+  /// Makes the option take one value, whose parts are separated by commas.
   Option comma_separated();
   /// Calls `take` for each value. It may throw UsageError.
   Option each(std::function<void(const std::string&)> take);

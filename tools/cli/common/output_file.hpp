@@ -16,8 +16,8 @@ void check_writable(std::string_view what, const std::filesystem::path& file);
 /// Replaces `file` atomically (AtomicFile). Throws std::runtime_error with the reason if it cannot.
 void write_file(std::string_view what, const std::filesystem::path& file, std::string_view contents);
 
-/// Flushes standard output. Returns the exit code of a command that would end with `code`: a failure, which is logged,
-/// if its output could not be written. A pipe whose reader has ended is no failure.
+/// Flushes standard output. Returns `code`, or the exit code of a failure, which is logged, if the output could not be
+/// written. A pipe whose reader has ended is not a failure.
 int code_after_output(int code, Log& log);
 
 }  // namespace cohort::tool

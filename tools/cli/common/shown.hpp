@@ -15,7 +15,7 @@ std::string json_text(const Json& json, int indent = -1) {
   return printable(json.dump(indent, ' ', false, Json::error_handler_t::replace), std::string::npos, Lines::kept);
 }
 
-/// Prints it to standard output.
+/// Prints text to standard output.
 inline void show(std::string_view text) { write_output(printable(text, std::string::npos, Lines::kept)); }
 
 }  // namespace cohort::tool

@@ -21,8 +21,8 @@ std::filesystem::path identity_for(const description::Experiment& experiment, co
                                    const std::filesystem::path& secure);
 
 /// Returns the processes that drive an experiment's robots on this machine: one for each team or one for each robot,
-/// and none for teams that people drive. `controllers`: one for each team, in order. `secure`: folder of identities, or
-/// empty. Throws std::runtime_error if none of its identities may drive a team.
+/// and none for teams that a user drives. `controllers` has one for each team, in order. `secure` is the folder of
+/// identities, or empty. Throws std::runtime_error if no identity may drive a team.
 std::vector<Children::Command> controller_processes(const description::Experiment& experiment,
                                                     const std::vector<TeamController>& controllers, bool per_robot,
                                                     const std::vector<std::uint32_t>& domains,

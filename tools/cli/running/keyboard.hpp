@@ -11,7 +11,7 @@
 
 namespace cohort::tool {
 
-/// The controller name of teams that people drive.
+/// The controller name of teams that a user drives with the keyboard.
 inline constexpr const char* keyboard_controller = "keyboard";
 
 /// The effect of a key: it sets channels to values, which hold until another key changes them.
@@ -33,11 +33,11 @@ std::vector<KeyBinding> key_bindings(const Start& start, const std::vector<descr
 /// `NAME/0/angular`) or of two tracks (`NAME/left/velocity` and `NAME/right/velocity`); otherwise none.
 std::vector<description::DriveChannel> drive_without_model(const Start& start);
 
-/// The keys that a person has pressed. Any thread may call it.
+/// The keys that the user has pressed. Thread-safe.
 class Keyboard {
  public:
-  /// Processes a key. It is a key of a binding, the space bar ("space"), which releases all keys, or "+" or "-", which
-  /// change the fraction of each value that is used.
+  /// Processes a key: a key of a binding, "space", which releases all keys, or "+" or "-", which change the `share` of
+  /// the bindings' values that is commanded.
   void press(const std::string& key);
 
   struct State {
@@ -64,7 +64,7 @@ using FindDrive = std::function<std::vector<description::DriveChannel>(const Sta
 
 /// Returns controllers that follow `keyboard`, which must outlive them.
 ControllerKind keyboard_controllers(Keyboard& keyboard, FindDrive find_drive = drive_without_model);
-/// Returns a controller whose keys are never pressed, to check an experiment with.
+/// Returns a keyboard controller without pressed keys, for checking an experiment.
 OwnedController keyboard_controller_without_keys();
 
 }  // namespace cohort::tool

@@ -16,8 +16,8 @@ struct Outputs {
   std::filesystem::path csv{};  ///< values that the experiment prints
 };
 
-/// Returns the files of one of `count` runs: each run has its own, for example `summary-2.json` of the second run for
-/// `summary.json`.
+/// Returns the files of one of `count` runs: each run has its own, for example `summary-2.json` instead of
+/// `summary.json` for the second run.
 Outputs numbered(const Outputs& outputs, std::size_t number, std::size_t count);
 
 /// Returns the outputs of one of the runs of `--seeds`: as `numbered`, but its printed values always have a number. The

@@ -35,7 +35,7 @@ struct RunCommand {
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   std::vector<std::uint64_t> seeds;  ///< run all files with each of these; empty: with `seed`
-  unsigned jobs = 0;                 ///< with `seeds`: runs at once; 0: by idle cores
+  unsigned jobs = 0;                 ///< with `seeds`: runs at once; 0: number of idle cores
   bool is_part = false;              ///< one run of several, started by SideBySide: no summary, no progress
   Controllers controllers = Controllers::process;
   std::optional<double> speed;  ///< 0: no limit; none: no limit, or real time if people drive
@@ -48,7 +48,7 @@ struct RunCommand {
   bool paused = false;                       ///< start paused
   bool view = false;                         ///< show the run in a browser
   bool view_controls = false;                ///< viewers may control the run
-  std::optional<std::uint16_t> view_port{};  ///< TCP port of the page; none: as `cohort view` chooses
+  std::optional<std::uint16_t> view_port{};  ///< TCP port of the page; none: chosen by `cohort view`
   bool view_opens = false;                   ///< open a browser; the run starts when the page is shown
   double keep_interval = 0.0;                ///< simulated time between kept snapshots [s]; 0: none
   std::filesystem::path from;                ///< snapshot to continue from; empty: start at the beginning

@@ -11,8 +11,7 @@ namespace cohort::tool {
 /// that selects no robot.
 void set_recorded(description::Experiment& experiment, const RecordOptions& options);
 
-/// Checks before a long run that the folder of a recording is not a rosbag2 bag of other files. Throws
-/// std::runtime_error if it is.
+/// Throws std::runtime_error if the folder of a recording is a rosbag2 bag of other files. Called before a long run.
 void check_rosbag2_metadata(const std::filesystem::path& recording);
 
 /// Writes `metadata.yaml` beside a recording, so that rosbag2 reads the folder as a bag. Throws std::runtime_error if

@@ -11,7 +11,7 @@ namespace cohort::tool {
 
 /// The main results of one run of several.
 struct SeedRow {
-  std::uint64_t run = 0;  ///< its number, from 1
+  std::uint64_t run = 0;  ///< number of the run, from 1
   std::string experiment{};
   std::uint64_t seed = 0;
   std::uint64_t ticks = 0;
@@ -31,8 +31,8 @@ struct SeedRow {
 SeedRow seed_row(std::uint64_t run, const description::Experiment& experiment, const session::RunResult& result,
                  double cpu_seconds);
 
-/// Returns the rows as text for people, in the order of their runs: a table for each experiment. A table of two rows or
-/// more has the mean and the sample standard deviation of its columns.
+/// Returns the rows as text for the user, in the order of their runs: a table for each experiment. A table of two rows
+/// or more has the mean and the sample standard deviation of its columns.
 std::string seed_table(std::vector<SeedRow> rows);
 
 /// Returns the rows as CSV, in the order of their runs, with the units in the header.

@@ -31,7 +31,7 @@ class Serving {
   /// `recording` is the file that the last run writes; empty: none. Throws std::runtime_error if the process ends.
   void start_view(const description::Experiment& experiment, const std::filesystem::path& recording,
                   const std::atomic<bool>& stop);
-  /// Waits while viewers of an ended run are connected, unless `stop` is set.
+  /// Waits while viewers of a finished run are connected, until `stop` is set.
   void let_look(const std::atomic<bool>& stop);
   /// Returns the command line that repeats the run and shows it at the same address, if the view's page has asked for
   /// it; nothing otherwise. Call after `let_look`.
@@ -58,8 +58,8 @@ class Serving {
   std::vector<std::unique_ptr<Children>> newcomers_;  // processes for added robots of the present run
   std::atomic<bool> has_view_{false};
   std::atomic<bool> is_asked_again_{false};
-  std::atomic<int> page_port_{0};  // 0: its page cannot be opened yet
-  std::string view_failure_;       // why this will never be; set before the next
+  std::atomic<int> page_port_{0};  // 0: the page cannot be opened yet
+  std::string view_failure_;       // why the page cannot be opened; set before has_failed_view_
   std::atomic<bool> has_failed_view_{false};
   std::unique_ptr<Children> view_;
 };

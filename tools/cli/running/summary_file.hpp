@@ -13,7 +13,7 @@ namespace cohort::tool {
 void write_summary(const std::filesystem::path& file, const description::Experiment& experiment,
                    const session::RunResult& result, double cpu_seconds, const StageTimes& times = {});
 
-/// Reads a summary of the run with this number. Throws std::exception if the file is no summary.
+/// Reads the summary of the run with this number. Throws std::exception if the file is not a summary.
 SeedRow read_seed_row(std::uint64_t run, const std::filesystem::path& file);
 
 }  // namespace cohort::tool

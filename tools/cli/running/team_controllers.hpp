@@ -13,7 +13,7 @@ namespace cohort::tool {
 
 /// The controller of a team.
 struct TeamController {
-  std::optional<LoadedPlugin> plugin;  ///< none: people, by `cohort teleop`, or no controller
+  std::optional<LoadedPlugin> plugin;  ///< none: a user with `cohort teleop`, or no controller
 
   bool is_started() const { return plugin.has_value(); }
   ControllerKind kind() const;

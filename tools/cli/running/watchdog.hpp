@@ -14,10 +14,10 @@
 
 namespace cohort::tool {
 
-/// Watches the ticks of a run from a thread of its own. Warns of a controller in this process that has not returned for
-/// 10 s, and of a step that takes over 10 s, with its stage. Ends the process with exit code 1 if it was asked to end
-/// and its tick still takes 10 s, because a controller loops or a step takes too long. The data recorded before are in
-/// the file.
+/// Watches the ticks of a run from a separate thread. Warns of a controller in this process that has not returned for
+/// 10 s, and of a step that takes over 10 s, with its stage. Ends the process with exit code 1 if it was asked to end,
+/// and the present tick takes another 10 s because of a controller or a step. Data recorded before are kept in the
+/// file.
 class Watchdog {
  public:
   /// `stop`: whether the process was asked to end. `stop` and `log` must outlive this.

@@ -10,9 +10,9 @@ namespace cohort::data {
 /// Returns `text` as a cell of CSV: in quotes if it has a comma, a quote or a line break.
 std::string csv_cell(const std::string& text);
 
-/// `NAME.csv` in a folder for each table: RFC 4180 with a line of names, numbers as the shortest text that reads as the
-/// same float64. `units.json` beside them has the units by table and column. Makes the folder.
-/// Throws std::runtime_error if it cannot.
+/// Writes each table to `NAME.csv` in a folder, as in RFC 4180 with a header line. Numbers are written as the shortest
+/// text that reads as the same float64. `units.json` in the folder has the units by table and column. Creates the
+/// folder. Throws std::runtime_error if this fails.
 std::unique_ptr<TableSink> csv_tables(const std::filesystem::path& folder);
 
 }  // namespace cohort::data

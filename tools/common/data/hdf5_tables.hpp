@@ -6,8 +6,8 @@
 
 namespace cohort::data {
 
-/// One HDF5 file with a dataset of compound rows for each table, chunked and compressed; a dataset has the attribute
-/// `units`, a text for each column. Replaces the file. Throws std::runtime_error if it cannot.
+/// Writes all tables to one HDF5 file: a dataset of compound rows for each table, chunked and compressed, whose
+/// attribute `units` has a text for each column. Replaces the file. Throws std::runtime_error if this fails.
 std::unique_ptr<TableSink> hdf5_tables(const std::filesystem::path& file);
 
 }  // namespace cohort::data

@@ -16,10 +16,10 @@ struct Column {
   enum class Type { real, whole, text };
   std::string name;
   Type type = Type::real;
-  std::string unit{};  ///< SI, `1` if dimensionless; empty of what has none
+  std::string unit{};  ///< SI, `1` if dimensionless; empty: not a quantity
 };
 
-/// Takes the rows of one table, in their order.
+/// Writes the rows of one table, in order.
 class TableWriter {
  public:
   TableWriter() = default;
@@ -27,13 +27,13 @@ class TableWriter {
   TableWriter& operator=(const TableWriter&) = delete;
   virtual ~TableWriter() = default;
 
-  /// A cell for each column, of its type. Throws WriteError if it cannot be written.
+  /// Adds a row with a cell for each column, of the column's type. Throws WriteError if it cannot be written.
   virtual void add(std::span<const Cell> row) = 0;
-  /// After the last row: all of it is in the file. Throws std::runtime_error if it is not.
+  /// Completes the table after the last row. Throws std::runtime_error if not all rows could be written.
   virtual void finish() = 0;
 };
 
-/// Where tables go.
+/// A destination of tables.
 class TableSink {
  public:
   TableSink() = default;
@@ -41,9 +41,9 @@ class TableSink {
   TableSink& operator=(const TableSink&) = delete;
   virtual ~TableSink() = default;
 
-  /// Begins a table. The writer must be gone before this is. Throws std::runtime_error.
+  /// Begins a table. The writer must be destroyed before this. Throws std::runtime_error.
   virtual std::unique_ptr<TableWriter> begin(const std::string& name, const std::vector<Column>& columns) = 0;
-  /// All tables are written, and their writers gone. Without it what was there before is there still. Throws
+  /// Completes the output, after all writers were destroyed. Without this call, the former output is kept. Throws
   /// std::runtime_error.
   virtual void finish() = 0;
 };

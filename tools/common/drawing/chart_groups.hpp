@@ -23,7 +23,7 @@ bool has_groups(const Page& page);
 /// Returns the style of each series of a panel.
 std::vector<LineStyle> styles_of(const Page& page, const Panel& panel);
 
-/// The legend of a page with groups: a row for each group, with its name, and its series behind it.
+/// The legend of a page with groups: a row for each group, with its name followed by its series.
 struct GroupLegend {
   std::string text;     ///< SVG
   double height = 0.0;  ///< 0 without groups

@@ -23,7 +23,7 @@ struct Series {
 struct Image {
   std::size_t width = 0;
   std::size_t height = 0;
-  std::vector<double> pixels;  ///< red, green and blue of each from 0 to 1, row by row from the top
+  std::vector<double> pixels;  ///< red, green and blue of each pixel, 0 to 1, row by row from the top
 };
 
 struct Panel {
@@ -41,8 +41,8 @@ struct Page {
   std::string name;  ///< file name without the extension
   std::string title;
   std::vector<Panel> panels;
-  /// Names of groups of series, the same in each panel. If the series are of several, each group has a colour, its
-  /// series differ in shade and dashes, and one legend below the panels has a row for each group.
+  /// Names of groups of series, the same in each panel. If series belong to more than one group, each group has a
+  /// colour, and its series differ in shade and dashes. One legend below the panels then has a row for each group.
   std::vector<std::string> groups{};
 };
 

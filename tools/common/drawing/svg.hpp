@@ -32,8 +32,8 @@ Points simplified(const Points& points, double tolerance);
 /// Ottosson, "A perceptual color space for image processing", 2020).
 std::string oklch(double lightness, double chroma, double hue);
 
-/// Returns the colour of one of `count` things: hues around the circle, alternately light and dark. `shade` is added to
-/// its lightness.
+/// Returns a colour for item `index` of `count`: hues around the colour circle, alternately light and dark. `shade` is
+/// added to the lightness.
 std::string colour_of(std::size_t index, std::size_t count, double shade = 0.0);
 
 }  // namespace cohort::tool::svg

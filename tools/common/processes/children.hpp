@@ -22,7 +22,7 @@ class Children {
     std::vector<std::string> arguments;  ///< the program's path first
     std::string name;                    ///< name in messages
     bool restarts = true;                ///< restart it if it dies
-    bool is_controller = true;           ///< it drives robots; only for messages
+    bool is_controller = true;           ///< it drives robots; only used in messages
   };
 
   /// Callbacks, called on a thread of this class, one at a time. `gave_up`, `restarted` and `killed` get a message for
@@ -35,7 +35,7 @@ class Children {
     std::function<void(const std::string& text)> gave_up{};  ///< a child died and is not restarted
     std::function<void(const Command& command, const std::string& text)> killed{};  ///< a child did not end on request
     /// If set, receives each line that a child writes to standard output or standard error. Otherwise the lines go to
-    /// our standard error.
+    /// the standard error of this process.
     std::function<void(const Command& command, const std::string& line)> wrote{};
     /// Returns whether a child may end with this code before `stop_restarting` is called. Any other end counts as a
     /// death.
@@ -49,7 +49,7 @@ class Children {
 
   /// Allows children to end from now on.
   void stop_restarting() { restarting_ = false; }
-  /// Gives the children two seconds to end by themselves before they are ended.
+  /// Ends the children, but gives them two seconds to end by themselves first.
   void let_finish();
 
  private:

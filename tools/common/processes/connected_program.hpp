@@ -13,7 +13,7 @@
 
 namespace cohort::tool {
 
-/// `stop` was set while this process waited for another one.
+/// Thrown if `stop` is set while this process waits for another one.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}
@@ -22,13 +22,13 @@ class Interrupted : public std::runtime_error {
 /// Returns the path of a program in $PATH, or nothing.
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
-/// A child process that a socket connects with this one. It runs in its own process group, so Ctrl-C does not reach it,
-/// and it dies if this process is killed. All members throw Interrupted once `stop` is set. One thread.
+/// A child process that is connected to this one by a socket. It runs in its own process group, so Ctrl-C does not
+/// reach it, and it dies if this process is killed. All members throw Interrupted once `stop` is set. Not thread-safe.
 class ConnectedProgram {
  public:
-  /// Starts a program. `command`: its path and its arguments. `descriptors`: the descriptors of the program that are
-  /// the socket, such as {0} for its standard input. `variables`: changes of its environment, such as HOME=/tmp. Throws
-  /// std::system_error. `stop` must outlive this.
+  /// Starts a program. `command` has its path and arguments. `descriptors` are the program's descriptors for the
+  /// socket, such as {0} for its standard input. `variables` change its environment, such as HOME=/tmp. `stop` must
+  /// outlive this. Throws std::system_error.
   ConnectedProgram(const std::vector<std::string>& command, const std::vector<int>& descriptors,
                    const std::atomic<bool>& stop, const std::vector<std::string>& variables = {});
   ConnectedProgram(const ConnectedProgram&) = delete;
@@ -36,17 +36,18 @@ class ConnectedProgram {
   /// Kills the process group if the program has not ended.
   ~ConnectedProgram();
 
-  /// Sends all bytes. Throws std::runtime_error with the last lines that the program has printed if it does not read.
+  /// Sends all bytes. Throws std::runtime_error with the last lines that the program has printed if the program does
+  /// not read them.
   void send(std::string_view bytes);
   /// Returns the received bytes up to a character, which is removed. Throws std::runtime_error if the program closes
   /// the socket, sends more than `most` bytes, or sends no such character within `patience`.
   std::string receive(char end, std::size_t most, std::chrono::seconds patience);
-  /// Ends what it receives, and waits until it has ended. Returns its exit code.
+  /// Closes the sending side of the socket, and waits until the program has ended. Returns its exit code.
   int finish();
   /// Closes the socket, and kills the process group if the program does not end within `patience`.
   void close(std::chrono::milliseconds patience);
 
-  /// Returns the end of what the program has printed.
+  /// Returns the last part of the program's output.
   const std::string& printed() const { return printed_; }
 
  private:

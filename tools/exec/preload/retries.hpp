@@ -4,23 +4,22 @@
 
 #include "tools/exec/preload/virtual_clock.hpp"
 
-/// Taking what other threads release, with a time limit: semaphores and locks. A thread tries again whenever one is
-/// released.
+/// Takes semaphores and locks with a time limit. A thread tries again whenever any of them is released.
 namespace cohort::exec {
 
 extern std::atomic<std::uint32_t> releases;  // futex
-extern std::atomic<std::uint32_t> takers;    // threads that wait for one
+extern std::atomic<std::uint32_t> takers;    // threads that wait for a release
 
 /// Wakes the threads that wait for a release.
 void note_release();
-/// Waits for a release after the one with the number `seen`. Returns false if a signal was handled.
+/// Waits until `releases` differs from `seen`. Returns false if a signal handler has run.
 bool await_release(std::uint32_t seen);
 
-/// A result of take_until: the virtual time has ended before.
+/// A result of take_until: virtual time has ended during the wait.
 inline constexpr int is_over = -1;
 
-/// Attempts to take something until a virtual time. `attempt` returns 0, ETIMEDOUT if it is taken, or another error;
-/// returns likewise, EINTR, or `is_over`.
+/// Tries to take an object until a virtual time. `attempt` returns 0, ETIMEDOUT if the object is not free, or another
+/// error. Returns the last result of `attempt`, EINTR, or `is_over`.
 template <class Attempt>
 int take_until(std::int64_t deadline, const Attempt& attempt) {
   for (;;) {

@@ -5,7 +5,7 @@
 
 #include "tools/exec/preload/virtual_clock.hpp"
 
-/// Facts about the program that has loaded this library. None of it is seen outside.
+/// Facts about the program that has loaded this library, used only inside the library.
 namespace cohort::exec {
 
 extern ClockPage* the_page;  // nullptr in a program that runs in real time
@@ -18,7 +18,7 @@ struct Thread {
   bool is_of_dds;
   bool creates_threads_of_dds;
   bool is_helper;
-  int uses_real_time;  // how many times it was told to
+  int uses_real_time;  // nesting depth
   bool has_slept_really;
   std::uint32_t reads;
   int event;  // descriptor + 1; 0: none
@@ -53,17 +53,17 @@ inline std::int32_t id_of_thread() {
   return self.id;
 }
 
-/// Enters this process into the page, which also those may have done who started it.
+/// Enters this process into the page, unless its parent has already done so.
 void enter_process();
-/// Gives the calling thread its place among those whose waits end at the same time, if it has none.
+/// Returns the calling thread's rank among threads whose waits end at the same time. Assigns it at the first call.
 std::uint64_t order_of_thread();
-/// Returns the calling thread's place in the page; nullptr if there are too many.
+/// Returns the calling thread's wait in the page; nullptr if there are too many.
 Wait* wait_of_thread();
-/// Notes that a thread begins to wait.
+/// Tells the host that a thread begins to wait.
 void note_change();
-/// In the child of a fork: forgets the waits, which are the parent's.
+/// Drops the waits in the child of a fork, because they are the parent's.
 void forget_waits();
-/// The calling thread ends.
+/// Called when the calling thread ends.
 void leave_thread();
 
 }  // namespace cohort::exec

@@ -3,8 +3,8 @@
 #include "tools/exec/preload/virtual_clock.hpp"
 
 /// Threads of a Python interpreter run one after the other, each until it waits. A thread that another one has woken
-/// goes on at its turn, which it has once all threads are at rest. Otherwise which of them takes the interpreter's lock
-/// first, or a lock of the program, would depend on the real time.
+/// continues at its turn, which comes when all threads are at rest. Without turns, real time would decide which thread
+/// takes the interpreter's lock, or a lock of the program, first.
 namespace cohort::exec {
 
 /// Returns whether threads wait for their turns.
@@ -13,38 +13,39 @@ bool has_turns();
 /// Waits until all other threads are at rest and this one has its turn.
 void wait_for_turn();
 
-/// A place in the line of threads that wait for their turn, of the calling thread.
+/// The calling thread's place in the queue of threads that wait for their turn.
 class PlaceInLine {
  public:
-  /// `object`: what the thread waits for; it is not `is_ready` before make_ready. `deadline`: in virtual time.
+  /// `object` is what the thread waits for. If `is_ready` is false, the thread gets no turn before make_ready or
+  /// `deadline`, which is in virtual time.
   PlaceInLine(const void* object, std::int64_t deadline, bool is_ready);
   ~PlaceInLine();
   PlaceInLine(const PlaceInLine&) = delete;
   PlaceInLine& operator=(const PlaceInLine&) = delete;
-  /// Sleeps until the turn, the deadline, or the end of turns. Returns false if a signal was handled before.
+  /// Sleeps until the turn, the deadline, or the end of turns. Returns false if a signal handler has run before.
   bool sleep();
 
  private:
   Wait* wait_;
 };
 
-/// Lets the threads that wait for an object have turns.
+/// Allows turns to the threads that wait for an object.
 void make_ready(const void* object);
-/// In the child of a fork.
+/// Called in the child of a fork.
 void forget_turns();
 
 // Hooks for the calls by which the interpreter takes and releases its lock.
 void before_lock(const pthread_mutex_t* mutex);
 void before_signal(const pthread_cond_t* condition);
 void before_unlock(const pthread_mutex_t* mutex);
-/// Waits until another thread has released the interpreter's lock. The result is that of a wait on its condition
-/// variable: 0 or ETIMEDOUT. `is_done` is false if this is to be waited for in real time.
+/// Waits until another thread has released the interpreter's lock. Returns the result of a wait on the lock's condition
+/// variable: 0 or ETIMEDOUT. Sets `is_done` to false if the caller must wait in real time instead.
 int wait_for_interpreter(pthread_cond_t* condition, pthread_mutex_t* mutex, bool& is_done);
 
-/// The interpreter has read the clock.
+/// Called when the interpreter has read the clock.
 void after_read_of_clock();
-/// The interpreter has tried to take a lock of its program. The read of the clock that belongs to it does not count as
-/// one of a thread that spins. How many locks an import takes depends on what other processes do.
+/// Called when the interpreter has tried to take a lock of its program. The related read of the clock then does not
+/// count as spinning, because the number of locks that an import takes depends on other processes.
 void after_try_to_take(bool is_taken);
 
 }  // namespace cohort::exec

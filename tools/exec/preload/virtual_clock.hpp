@@ -13,14 +13,14 @@
 #include "tools/exec/clock_page.hpp"
 #include "tools/exec/waiting_calls.hpp"
 
-/// Shared by the calls that this library replaces: a caller's time, and waits that end in virtual time. The library
-/// runs inside other people's programs: no exceptions, no memory of the heap, no C++ library.
+/// Functions shared by the calls that this library replaces: the time that a caller gets, and waits that end in virtual
+/// time. The library runs inside arbitrary programs. Therefore it uses no exceptions, no heap and no C++ library.
 namespace cohort::exec {
 
 #define COHORT_REPLACES extern "C" __attribute__((visibility("default")))
 
 inline constexpr std::int64_t second = 1'000'000'000;
-inline constexpr timespec past{};  ///< a time limit that is over: a call takes what is there, and does not wait
+inline constexpr timespec past{};  ///< a time limit that has passed: a call with it does not wait
 
 /// Returns the function that a call would reach without this library.
 template <class Function>
@@ -29,8 +29,8 @@ Function next(const char* name, const char* version = nullptr) {
   if (found == nullptr) found = ::dlsym(RTLD_NEXT, name);
   return reinterpret_cast<Function>(found);
 }
-/// The same of a library that a program may have loaded for itself alone, as Python does: then the one that the library
-/// of `caller` needs.
+/// Like `next`, but also finds a function of a library that was loaded without RTLD_GLOBAL, as Python does. That is the
+/// library on which the library of `caller` depends.
 template <class Function>
 Function next_for(const void* caller, const char* name) {
   if (const auto found = next<Function>(name)) return found;
@@ -42,7 +42,7 @@ Function next_for(const void* caller, const char* name) {
   return reinterpret_cast<Function>(found);
 }
 
-/// A name as a parameter of a template.
+/// A name as a template parameter.
 template <std::size_t size>
 struct Name {
   constexpr Name(const char (&its_text)[size]) {  // NOLINT(google-explicit-constructor): for literals
@@ -50,8 +50,8 @@ struct Name {
   }
   char text[size]{};
 };
-// Found when this library is loaded, if no call was before that. Later, a thread that looks for a function waits for
-// others that load libraries, which may wait for something that it holds.
+// Initialised when this library is loaded, unless a call came earlier. A later search could deadlock: it waits for
+// threads that load libraries, and these may wait for something that the searching thread holds.
 template <Name name, class Function, Name version>
 inline Function found_next = next<Function>(name.text, version.text[0] == '\0' ? nullptr : version.text);
 template <Name name, class Function, Name version = "">
@@ -68,35 +68,35 @@ inline std::int64_t nanoseconds(const timeval& time) { return time.tv_sec * seco
 inline timespec to_timespec(std::int64_t time) { return {time / second, time % second}; }
 inline bool is_valid(const timespec& time) { return time.tv_sec >= 0 && time.tv_nsec >= 0 && time.tv_nsec < second; }
 
-/// Returns the sum, or `never`.
+/// Returns the sum, limited to `never`.
 inline std::int64_t later(std::int64_t time, std::int64_t by) { return by >= never - time ? never : time + by; }
 
-/// The page, or nullptr in a program that runs in real time.
+/// Returns the page; nullptr in a program that runs in real time.
 ClockPage* page();
 
-/// Returns whether a caller has the machine's time: a library of DDS, this library, or any caller without a page.
+/// Returns whether a caller gets the machine's time: a DDS library, this library, or any caller if there is no page.
 bool is_real(const void* caller);
-/// Returns whether a caller has virtual time that has not ended.
+/// Returns whether a caller gets virtual time, and virtual time has not ended.
 bool is_virtual_for(const void* caller);
-/// Returns whether a caller is the Python interpreter itself, which hands its lock over by real time.
+/// Returns whether a caller is the Python interpreter itself, which passes its lock between threads by real time.
 bool is_interpreter(const void* caller);
-/// Returns whether a caller is a library of DDS.
+/// Returns whether a caller is a DDS library.
 bool is_dds(const void* caller);
 
 /// Returns the machine's time.
 std::int64_t real_time(clockid_t clock);
-/// Returns whether the program has virtual time on this clock.
+/// Returns whether this clock is virtual in the program.
 bool is_virtual(clockid_t clock);
 /// Returns the program's time on a virtual clock.
 std::int64_t virtual_time(clockid_t clock);
-/// Returns a time of a virtual clock as one of CLOCK_MONOTONIC.
+/// Converts a time of a virtual clock to CLOCK_MONOTONIC of the program.
 std::int64_t on_page(clockid_t clock, std::int64_t time);
 std::int64_t now();
-/// Returns a time of the page as one of the machine's clock, after the end of virtual time.
+/// Converts a time of the page to the machine's clock, after the end of virtual time.
 timespec in_real_time(clockid_t clock, std::int64_t deadline);
 
 void note_real_time(std::size_t number);
-/// Notes that this process makes a call that waits by real time, for a warning.
+/// Records, for a warning, that this process makes a call that waits in real time.
 template <Name name>
 void note_real_time() {
   constexpr std::size_t number = number_of_real_call(name.text);
@@ -104,13 +104,14 @@ void note_real_time() {
   note_real_time(number);
 }
 
-/// Notes that the calling thread is about to sleep in real time, as those of DDS do: the host warns of others.
+/// Records that the calling thread is about to sleep in real time through this library, as DDS threads do. The host
+/// warns about threads that sleep without this record.
 void note_real_sleep();
 
-/// Notes that the calling thread is about to do what may wake another one.
+/// Records that the calling thread is about to do something that may wake another thread.
 void stir();
 
-/// Counts a read of the clock or a poll in vain, after many of which in a row the thread waits.
+/// Counts a read of the clock or an unsuccessful poll. After many of these in a row, the thread waits.
 void count_spin();
 
 /// The helper thread's action at the end of a wait.
@@ -121,11 +122,11 @@ struct Ending {
   void (*call)(void*) = nullptr;  // with `object`
 };
 
-/// Sleeps until a virtual time. Returns false if a signal was handled before.
+/// Sleeps until a virtual time. Returns false if a signal handler has run before.
 bool sleep_until(std::int64_t deadline);
 
-/// A wait of the calling thread for something that may come before `deadline`. The helper thread ends it by `ending`,
-/// maybe more than once.
+/// A wait of the calling thread for an event, until `deadline` at the latest. The helper thread ends the wait by
+/// `ending`, possibly more than once.
 class TimedWait {
  public:
   TimedWait(std::int64_t deadline, const Ending& ending);
@@ -139,18 +140,19 @@ class TimedWait {
   Wait* wait_;
 };
 
-/// Polls until a virtual time, 0 for not at all.
+/// Polls until a virtual time. A `deadline` of 0 does not wait.
 int poll_until(pollfd* polled, nfds_t count, std::int64_t deadline, const sigset_t* mask);
 
-/// A timer: a wait that belongs to no thread. nullptr if there are too many.
+/// Makes a timer, which is a wait that belongs to no thread. Returns nullptr if there are too many.
 Wait* make_timer(const Ending& ending);
 void set_timer(Wait* timer, std::int64_t deadline);
 void remove_timer(Wait* timer);
 
-/// Returns this thread's event descriptor, which ends its polls; drained.
+/// Drains and returns this thread's event descriptor, which ends its polls.
 int event_of_thread();
 
-/// Overrides the end of this thread's waits that the libraries in between give; `never` if there is no override.
+/// Replaces the time limits that libraries pass to this thread's waits by `deadline`. `overridden` returns `never` if
+/// there is no override.
 struct Override {
   explicit Override(std::int64_t deadline);
   ~Override();
@@ -162,7 +164,7 @@ struct Override {
 };
 std::int64_t overridden();
 
-/// True while threads that this thread creates belong to DDS.
+/// Sets whether threads that this thread creates belong to DDS, until the destructor restores the former value.
 struct CreatesThreadsOfDds {
   explicit CreatesThreadsOfDds(bool they_do);
   ~CreatesThreadsOfDds();

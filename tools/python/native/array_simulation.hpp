@@ -13,11 +13,12 @@
 
 namespace cohort::python {
 
-/// Replaces a value that equals a bound of its channel up to float32 rounding, as from a policy, by this bound.
+/// Replaces each value that exceeds a bound of its channel only by float32 rounding, such as from a policy, by the
+/// bound.
 void take_bounds_of_float32(const std::vector<Channel>& channels, std::span<double> values);
 
 /// A Simulation with the observations and commands of its robots in arrays [robot, channel]. Rows are as long as the
-/// longest one. For one thread at a time.
+/// longest one. Not thread-safe.
 class ArraySimulation {
  public:
   ArraySimulation(std::shared_ptr<const description::Experiment> experiment, unsigned threads);
@@ -29,11 +30,12 @@ class ArraySimulation {
 
   std::size_t observation_size() const { return observation_size_; }
   std::size_t command_size() const { return command_size_; }
-  /// Returns an array [robot, channel]; another one after robots were added, and after a reset or a restore.
+  /// Returns an array [robot, channel]. A new array replaces it after robots were added, and after a reset or a
+  /// restore.
   const std::shared_ptr<std::vector<double>>& observations() const { return observations_; }
   const std::shared_ptr<std::vector<double>>& commands() const { return commands_; }
 
-  /// Returns the number of the world: each reset or restore makes another one.
+  /// Returns the number of the world, which changes at each reset or restore.
   std::uint32_t world_number() const { return world_number_; }
 
   bool is_timed_out() const;

@@ -10,7 +10,7 @@
 
 namespace cohort::python {
 
-/// Detects Ctrl-C, and the end of Python, while C++ runs without Python's global lock. For one thread.
+/// Detects Ctrl-C, and the end of Python, while C++ runs without Python's global interpreter lock. Not thread-safe.
 class Interruption {
  public:
   /// Returns true if the work must end. It is cheap, because it checks only occasionally. Python's signal handlers run
@@ -24,7 +24,7 @@ class Interruption {
     if (PyErr_CheckSignals() != 0) error_.emplace();
     return error_.has_value();
   }
-  /// Throws the exception of a handler, if there is one. Requires Python's global lock.
+  /// Throws the exception of a handler, if there is one. Requires Python's global interpreter lock.
   void rethrow() {
     if (error_) throw *std::exchange(error_, std::nullopt);
   }

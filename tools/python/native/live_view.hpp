@@ -24,11 +24,11 @@ namespace cohort::python {
 ///
 /// The program takes a turn for each operation that may change the simulation. During a turn, the program's thread
 /// shows the simulation from time to time. Between turns nothing changes it, and a thread of the view shows the state
-/// after the last turn. Nothing here needs Python's global lock.
+/// after the last turn. Nothing here needs Python's global interpreter lock.
 class LiveView final : public view::Source, public std::enable_shared_from_this<LiveView> {
  public:
-  /// Listens at 127.0.0.1, at `port`; without one at 8080, or any free port if that is taken. Shows the current
-  /// simulation. Throws std::runtime_error if the port is taken. `simulation` must outlive the open view.
+  /// Listens at 127.0.0.1 on `port`; without `port`, on 8080, or on any free port if that is in use. Shows the current
+  /// simulation. Throws std::runtime_error if `port` is in use. `simulation` must outlive the open view.
   LiveView(const ArraySimulation& simulation, view::PageFiles page, std::optional<std::uint16_t> port);
   ~LiveView() override { close(); }
 

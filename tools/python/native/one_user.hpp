@@ -7,8 +7,8 @@
 
 namespace cohort::python {
 
-/// Admits one thread of one process at a time. It is needed because calls into C++ release Python's global lock, and
-/// because a fork does not copy the threads of a worker pool.
+/// Admits one thread of one process at a time. It is needed because calls into C++ release Python's global interpreter
+/// lock, and because a fork does not copy the threads of a worker pool.
 class OneUser {
  public:
   class Turn {

@@ -14,29 +14,29 @@
 
 namespace cohort::view {
 
-/// Controllers that obey `command`, which must outlive them; `begun` is called whenever one is started.
+/// Returns controllers that follow `command`, which must outlive them. Calls `begun` whenever one is started.
 ControllerKind obedient_controllers(HeldCommand& command, std::function<void()> begun);
 
-/// Drives one robot for a page, as a client of the server: answers each frame at once with what was given last.
+/// Drives one robot for a page, as a client of the server. It answers each frame at once with the latest command.
 class Driver {
  public:
-  /// Claims the robot, on a thread of its own, as soon as `after` is there. `claimed` is called there, once: when the
+  /// Claims the robot, on a separate thread, once `after` is ready. Calls `claimed` once, on that thread, when the
   /// robot is driven, or with the reason why it is not.
   Driver(ClientOptions options, std::function<void(const Answer&)> claimed, std::shared_future<void> after);
-  /// Leaves the robot; takes a tenth of a second or so.
+  /// Releases the robot, which takes about 0.1 s.
   ~Driver();
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
 
   HeldCommand& command() { return command_; }
-  /// The robot was given to it. It may have ended since.
+  /// Returns whether the robot was assigned to this driver, which may have ended since.
   bool has_begun() const { return has_begun_; }
-  /// Does not wait for it. Any thread.
+  /// Starts to release the robot, without waiting. Any thread.
   void leave() { leaves_ = true; }
   bool has_ended() const;
-  /// There when the robot is left.
+  /// Returns a future that becomes ready when the robot is released.
   std::shared_future<void> end() const { return ended_; }
-  /// Why it has ended.
+  /// Returns the reason why the driver has ended.
   std::string why() const;
 
  private:

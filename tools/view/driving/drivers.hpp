@@ -14,11 +14,11 @@
 
 namespace cohort::view {
 
-/// The robots that pages drive: each by one page, which is called by its visitor's number. Any thread.
+/// The robots that pages drive: each by one page, which is identified by its visitor number. Thread-safe.
 class Drivers {
  public:
   static constexpr std::size_t most = 8;
-  /// After such a silence of a page another one may take its robot.
+  /// If a page is silent for this time, another page may take its robot.
   static constexpr std::chrono::seconds longest_silence{5};
 
   struct Options {
@@ -27,15 +27,15 @@ class Drivers {
     std::string secure{};  ///< folder of an identity that may drive; empty: without security
   };
   explicit Drivers(Options options) : options_(std::move(options)) {}
-  /// Leaves all robots.
+  /// Releases all robots.
   ~Drivers() = default;
   Drivers(const Drivers&) = delete;
   Drivers& operator=(const Drivers&) = delete;
 
-  /// Without numbers claims the robot that `request` names, or keeps it at its neutral values; otherwise tells it
-  /// these. Answered at once, but for a claim.
+  /// If `request` has no numbers, claims the robot that it names, or sets its neutral command if it is already driven.
+  /// Otherwise sets the numbers as its command. Answers at once, except for a claim.
   void drive(const ViewRequest& request, std::function<void(const Answer&)> answer);
-  /// Releases it.
+  /// Releases the robot that `request` names.
   Answer release(const ViewRequest& request);
   /// Releases all robots that this visitor drives.
   void leave(std::uint64_t visitor);

@@ -9,21 +9,21 @@
 
 namespace cohort::view {
 
-/// The command of a robot that a person drives: the newest values, as long as they are fresh. Any thread.
+/// The command of a robot that a user drives: the latest values, as long as they are recent. Thread-safe.
 class HeldCommand {
  public:
   using Clock = std::chrono::steady_clock;
-  /// After this silence the page may be gone, and the robot gets its neutral values.
+  /// After this time without values, the page may be gone, and the robot gets its neutral command.
   static constexpr std::chrono::milliseconds longest_silence{500};
 
-  /// Sets the robot's channels. Earlier values stay if they fit them.
+  /// Sets the robot's channels. Keeps earlier values if their number matches.
   void begin(const std::vector<ChannelInfo>& channels);
-  /// All values of all channels in their order, or none for the neutral ones. Throws std::invalid_argument, with a
-  /// sentence, if they are of another number or not finite.
+  /// Sets the values of all channels, in order; empty for the neutral command. Throws std::invalid_argument, with a
+  /// message to the user, if their number is wrong or one is not finite.
   void give(std::vector<double> values, Clock::time_point now);
-  /// Empty if the neutral ones are to be used.
+  /// Returns the values; empty for the neutral command.
   std::vector<double> values(Clock::time_point now) const;
-  /// How long nothing has come.
+  /// Returns the time since the latest values were set; zero if there were none.
   Clock::duration silence(Clock::time_point now) const;
 
  private:

@@ -25,13 +25,13 @@ class CameraPath {
     Viewpoint viewpoint;
   };
 
-  /// `points`: at least one, with ascending times.
+  /// `points` has at least one element, with ascending times.
   explicit CameraPath(const std::vector<Point>& points, std::optional<std::string> follow = {});
 
-  /// Returns the interpolated viewpoint at a time; before the first point and after the last one, these. Every
-  /// component is a monotone piecewise cubic function of time, so it never overshoots, and a pause of the camera is
-  /// one: F. N. Fritsch and J. Butland, A method for constructing local monotone piecewise cubic interpolants, SIAM J.
-  /// Sci. Stat. Comput. 5 (1984).
+  /// Returns the interpolated viewpoint at a time; before the first point and after the last one, that point. Every
+  /// component is a monotone piecewise cubic function of time, so it never overshoots, and the camera stays still
+  /// between equal points: F. N. Fritsch and J. Butland, A method for constructing local monotone piecewise cubic
+  /// interpolants, SIAM J. Sci. Stat. Comput. 5 (1984).
   Viewpoint at(double time) const;
   /// Returns the team, robot or object to which the points are relative.
   const std::optional<std::string>& follow() const { return follow_; }
@@ -44,15 +44,15 @@ class CameraPath {
   std::optional<std::string> follow_;
 };
 
-/// Reads a file of this form; `follow` may be left out. Throws description::InputError, or std::runtime_error if it
-/// cannot be read.
+/// Reads a file of the following form, in which `follow` is optional. Throws description::InputError, or
+/// std::runtime_error if the file cannot be read.
 ///
 ///     follow: explorers
 ///     path:
 ///       - {time: 0, position: [1, -2, 1.5], target: [0, 0, 0]}
 CameraPath read_camera_path(const std::filesystem::path& file);
 
-/// Parses its text. `file`: for messages.
+/// Parses the text of such a file. `file` is its name in error messages.
 CameraPath parse_camera_path(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace cohort::film

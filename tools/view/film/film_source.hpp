@@ -14,14 +14,14 @@
 
 namespace cohort::film {
 
-/// A message that was published: its topic, and its time, by which the page recognizes it.
+/// Identifies a published message by its topic and its time, which the page also knows.
 struct Stamp {
   view::Topic topic;
   std::int64_t time;
 };
 
-/// Shows the moments of a recording, forwards. Between two ticks, poses are interpolated. All but `ask` and `watch` are
-/// for one thread.
+/// Shows moments of a recording in ascending order, with poses interpolated between ticks. Only `ask` and `watch` are
+/// thread-safe.
 class FilmSource final : public view::Source {
  public:
   struct Options {
@@ -29,7 +29,7 @@ class FilmSource final : public view::Source {
     bool shows_contacts = false;
     unsigned threads = 1;
   };
-  /// Both must outlive this.
+  /// `recording` and `topics` must outlive this.
   FilmSource(const recording::Recording& recording, view::Topics& topics, Options options);
 
   /// Goes to the last tick boundary that is not after `log_time`, or to the first one. Throws McapError, and
@@ -40,12 +40,12 @@ class FilmSource final : public view::Source {
   /// Publishes the moment.
   std::vector<Stamp> show();
 
-  /// The place of what is followed: the centre of the objects, and the largest distance from it [m].
+  /// The place of the followed objects: their centre, and the largest distance of an object from it [m].
   struct Followed {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     double radius = 0.0;
   };
-  /// Returns nothing if all of it is absent, or if nothing is followed.
+  /// Returns the place of the followed objects; nullopt if all of them are absent or none is followed.
   const std::optional<Followed>& followed() const { return shown_.followed; }
   std::chrono::nanoseconds time() const { return time_; }
 
@@ -94,8 +94,8 @@ class FilmSource final : public view::Source {
   Moment shown_;  // between the two
 };
 
-/// Returns the frame between two of the same scene; `share`: 0 at the first, 1 at the second. Everything but poses is
-/// of the first.
+/// Returns the frame between two frames of the same scene. `share` is 0 at the first and 1 at the second. Only poses
+/// are interpolated; everything else is that of the first frame.
 messages::SceneFrame interpolated(const messages::SceneFrame& first, const messages::SceneFrame& second, double share);
 
 }  // namespace cohort::film

@@ -14,9 +14,10 @@ class FilmWriter {
   virtual ~FilmWriter() = default;
   /// Adds a picture (PNG). Throws std::runtime_error.
   virtual void add(std::string_view picture) = 0;
-  /// Gives the film its name. Without it, a film is discarded. Throws std::runtime_error.
+  /// Completes the film and gives the file its name. Without this call, the film is discarded. Throws
+  /// std::runtime_error.
   virtual void finish() = 0;
-  /// Returns whether it takes one picture only.
+  /// Returns whether only one picture can be added.
   virtual bool is_single() const { return false; }
 };
 
@@ -28,9 +29,9 @@ struct FilmSize {
 /// Returns whether a file name is that of numbered pictures, such as frame_%04d.png.
 bool has_numbers(const std::filesystem::path& file);
 
-/// Returns the writer for a file name that ends in .mp4, .webm, .gif, .webp or .png. A name of a PNG with one `%d`, or
-/// for example `%04d`, is that of numbered pictures, from 0. Films are written by ffmpeg. Throws std::invalid_argument
-/// for other names and for sizes that the format does not have, and std::runtime_error if ffmpeg is missing or the file
+/// Returns the writer for a file name that ends in .mp4, .webm, .gif, .webp or .png. A name of a PNG with one `%d` or,
+/// for example, `%04d` means numbered pictures, from 0. ffmpeg writes the films. Throws std::invalid_argument for other
+/// names and for sizes that the format does not support. Throws std::runtime_error if ffmpeg is missing or the file
 /// cannot be written. `stop` must outlive the writer.
 std::unique_ptr<FilmWriter> make_film_writer(const std::filesystem::path& file, FilmSize size, unsigned fps,
                                              const std::atomic<bool>& stop);

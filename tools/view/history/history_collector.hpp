@@ -8,7 +8,7 @@
 
 namespace cohort::view {
 
-/// Takes the values of robots in the order of time, and keeps those that a request wants.
+/// Receives the values of robots in chronological order, and keeps those that a request selects.
 class HistoryCollector {
  public:
   /// `request` must outlive this.
@@ -24,18 +24,18 @@ class HistoryCollector {
       each.is_known = each.is_known || each.place;
     }
   }
-  /// Takes all observed and commanded values of a robot, or none of one of them.
+  /// Adds all observed and all commanded values of a robot. Either of them may be empty.
   void add(std::uint32_t robot, std::chrono::nanoseconds time, std::span<const double> observation,
            std::span<const double> command);
 
-  /// Adds the samples that this has to those of another one that wants them.
+  /// Adds the samples of this collector to another one, as far as that one selects them.
   void copy_to(HistoryCollector& other) const;
   /// Returns true if samples were left out.
   bool is_reduced() const;
 
-  /// Returns the series of the values that robots have had.
+  /// Returns the series of all selected values that exist.
   ValueHistory history() const;
-  /// Answers with the history, or that no robot has such a value.
+  /// Returns an answer with the history, or one that says that no robot has such a value.
   Answer answer(std::string text, std::optional<std::chrono::nanoseconds> next = {}) const;
 
  private:

@@ -28,10 +28,10 @@ struct HistoryRequest {
   std::uint64_t visitor = 0;
 };
 
-/// Throws std::invalid_argument, with a sentence, if the request exceeds a limit.
+/// Converts a request. Throws std::invalid_argument, with a message to the user, if it exceeds a limit.
 HistoryRequest history_request_of(const ViewRequest& asked);
 
-/// A value among those of a robot.
+/// The place of a value among the values of a robot.
 struct ValuePlace {
   bool is_commanded = false;
   std::size_t index = 0;
@@ -41,11 +41,11 @@ struct ValuePlace {
 /// The name of a commanded value begins with this.
 inline constexpr std::string_view commanded_prefix = "→ ";
 
-/// Returns the index of a value within its channel, or nothing if it belongs to another channel. A value is named as
-/// its channel if that has one value, and `CHANNEL[i]` otherwise.
+/// Returns the index of a value within its channel, or nothing if it belongs to another channel. A value has the name
+/// of its channel if that has one value, and `CHANNEL[i]` otherwise.
 std::optional<std::size_t> index_in_channel(std::string_view value, std::string_view channel, std::size_t size);
 
-/// Returns the place of a value among those of channels, which have a `name`, a `unit` and a `size`.
+/// Returns the place of a value among the values of channels, which have a `name`, a `unit` and a `size`.
 template <class Channels>
 std::optional<ValuePlace> find_value(const Channels& observation, const Channels& command, std::string_view name) {
   const bool is_commanded = name.starts_with(commanded_prefix);

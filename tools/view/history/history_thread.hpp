@@ -23,7 +23,7 @@ class HistoryThread {
   using Read = std::function<Answer(const HistoryRequest&, const IsCancelled&)>;
 
   explicit HistoryThread(Read read);
-  /// Cancels, and answers requests that are left.
+  /// Cancels the present request, and answers the remaining ones.
   ~HistoryThread();
   HistoryThread(const HistoryThread&) = delete;
   HistoryThread& operator=(const HistoryThread&) = delete;

@@ -15,14 +15,14 @@ struct Sample {
 
 /// Reduces the samples of an interval of time to at most a given number, so that a plot of them looks the same.
 ///
-/// As long as they are few enough, all are kept. Otherwise the interval is divided into equal parts, and of each part
-/// the least and the greatest value remain, at their times. So no peak is lost. The first and the last sample remain
-/// too. The memory depends only on the number.
+/// As long as their number is within the limit, all samples are kept. Otherwise the interval is divided into equal
+/// parts, and the minimum and maximum of each part are kept, at their times, so that no peak is lost. The first and the
+/// last sample are kept too. The memory depends only on the limit.
 class Reduction {
  public:
-  static constexpr std::size_t least = 4;  ///< number to which samples can be reduced
+  static constexpr std::size_t least = 4;  ///< smallest limit
 
-  /// From `from` to `to`, both in it. `most` is at least `least`.
+  /// The interval is from `from` to `to`, inclusive. `most` is the limit of samples, which must be at least `least`.
   Reduction(std::chrono::nanoseconds from, std::chrono::nanoseconds to, std::size_t most);
 
   /// Ignores samples outside of the interval. Negative zero becomes zero.

@@ -9,8 +9,8 @@
 
 namespace cohort::view {
 
-/// The channels of a server's robots since the view began to receive them. It keeps a bounded number of bytes, and
-/// forgets the oldest messages beyond. Any thread.
+/// The channel values of a server's robots since the view began to receive them. Drops the oldest messages beyond a
+/// limit of bytes. Thread-safe.
 class SeenValues {
  public:
   static constexpr std::size_t most_bytes = std::size_t{64} << 20U;
@@ -19,7 +19,7 @@ class SeenValues {
 
   /// Sets the robots' channels.
   void set_scene(const messages::Scene& scene);
-  /// Takes the bytes of SceneRobots. If the run has gone back, later values are forgotten.
+  /// Adds an encoded SceneRobots message. If the run has gone back, drops later values.
   void add(std::chrono::nanoseconds time, const messages::Bytes& robots);
 
   Answer read(const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled) const;

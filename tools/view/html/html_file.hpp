@@ -17,7 +17,7 @@ struct BuiltPage {
 };
 
 /// An HTML file that contains the page with its script and its style, and blocks of data. Its content security policy
-/// forbids all requests, and all scripts but that of the page, by its hash.
+/// forbids all requests, and all scripts except that of the page, which is allowed by its hash.
 class HtmlFile {
  public:
   /// Writes the page. Throws std::runtime_error if `page` is not the built page, and WriteError.
@@ -25,7 +25,7 @@ class HtmlFile {
 
   /// Appends a block of data, in base64. Returns its index among the blocks.
   std::size_t add(std::string_view base64);
-  /// Completes the file, which has its name from then on. Without this call nothing remains of it.
+  /// Completes the file and gives it its name. Without this call, the file is discarded.
   void commit();
 
   /// Returns the number of bytes that are written.
@@ -43,10 +43,10 @@ class HtmlFile {
   std::size_t blocks_ = 0;
 };
 
-/// Returns text as the content of an HTML element.
+/// Escapes text for use as the content of an HTML element.
 std::string escaped_html(std::string_view text);
-/// Returns a script that no HTML parser ends early: `</script` and `<!--`, which may only stand in its strings, are
-/// written with an escape.
+/// Returns a script that no HTML parser ends too early: `</script` and `<!--`, which may only occur in its strings, are
+/// escaped.
 std::string script_for_html(std::string_view script);
 
 }  // namespace cohort::view

@@ -9,8 +9,8 @@
 namespace cohort::view {
 
 /// A sequence of messages, packed for a page. It begins with the number of messages, and the topic and size of each.
-/// Then the messages of one topic and size follow each other as a series, in the order of their first ones. All numbers
-/// are uint32, little-endian.
+/// Then come the messages, as one series for each topic and size, in the order of the first message of each. All
+/// numbers are uint32, little-endian.
 ///
 /// A series is a table with a row for each 32-bit word of its messages and a column for each message. Its first number
 /// is 1 if the entries are differences to the entry on the left, and 0 if they are the words themselves. A difference d

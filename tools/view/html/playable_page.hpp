@@ -14,22 +14,22 @@
 namespace cohort::view {
 
 struct PlayableOptions {
-  double frame_rate = 20.0;  ///< frames per second of log time; at most one for each boundary
+  double frame_rate = 20.0;  ///< frames per second of log time; at most one per tick boundary
   std::chrono::nanoseconds from{0};
   std::chrono::nanoseconds to = std::chrono::nanoseconds::max();
-  std::vector<std::uint32_t> robots{};  ///< ids of robots whose observations and commands the page has
+  std::vector<std::uint32_t> robots{};  ///< ids of robots whose observations and commands are included
   bool has_contacts = false;
 };
 
 /// A recording in an HTML file, as the messages that a view publishes. The page decodes them block by block. All blocks
-/// but the last are messages; the last is a table of them, as JSON. For the thread of the replay.
+/// except the last contain messages; the last is their table of contents, as JSON. Used on the thread of the replay.
 class PlayablePage {
  public:
-  /// All must outlive this.
+  /// All arguments must outlive this.
   PlayablePage(const recording::Recording& recording, const recording::Replay& replay, const PlayableOptions& options,
                HtmlFile& file);
 
-  /// Takes the state of the replay, which is at a boundary, if a frame is due there. To be called for each boundary.
+  /// Adds the state of the replay if a frame is due. Must be called at each tick boundary.
   void visit();
   /// Writes the remaining frames, the events and the table. The file is not committed.
   void finish();
@@ -66,7 +66,7 @@ class PlayablePage {
   std::size_t scene_ = 0;
   std::uint64_t scene_version_ = 0;
   std::uint64_t signals_version_ = 0;
-  std::uint64_t due_frames_ = 0;  // frames of the raster up to now
+  std::uint64_t due_frames_ = 0;  // frames due so far at frame_rate
   std::size_t frame_count_ = 0;
   std::chrono::nanoseconds first_{0};
   std::chrono::nanoseconds last_{0};

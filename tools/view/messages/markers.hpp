@@ -3,8 +3,8 @@
 #include "idl/messages/ros_messages.hpp"
 #include "idl/messages/scene_messages.hpp"
 
-/// A scene in ROS 2's own messages, for viewers that know nothing of Cohort. Each link has a frame, `NAME/LINK` in the
-/// frame `world`.
+/// A scene as standard ROS 2 messages, for viewers that do not know Cohort's messages. Each link has a frame
+/// `NAME/LINK`, relative to the frame `world`.
 namespace cohort::view {
 
 using messages::field;
@@ -86,9 +86,9 @@ struct MarkerArray {
   static constexpr auto fields = std::tuple(field("markers", &MarkerArray::markers));
 };
 
-/// All that is visible; of planes a piece. They take the place of all markers before.
+/// Returns markers for everything that is visible, with a bounded part of each plane. They replace all earlier markers.
 MarkerArray markers_of(const messages::Scene& scene);
-/// The frames of all links that are in the world.
+/// Returns the transforms of all links that are in the world.
 messages::ros::TFMessage transforms_of(const messages::Scene& scene, const messages::SceneFrame& frame);
 
 }  // namespace cohort::view

@@ -8,16 +8,16 @@
 
 namespace cohort::view {
 
-/// Publishes the data of a source on topics that have readers. One thread.
+/// Publishes the data of a source on topics. Not thread-safe.
 class ScenePublisher {
  public:
   explicit ScenePublisher(Topics& topics) : topics_(topics) {}
 
-  /// Publishes it unless it was published last. Returns the revision that it has with viewers.
+  /// Publishes a scene with a new revision, unless it equals the last one. Returns the revision that viewers know.
   std::uint32_t show(messages::Scene scene, std::chrono::nanoseconds time);
-  /// Publishes it with the revision that it has.
+  /// Publishes a scene with its own revision.
   void show_as_it_is(messages::Scene scene, std::chrono::nanoseconds time);
-  /// Publishes a frame, or signals, of the scene that was shown last.
+  /// Publish a frame, or signals, of the last scene.
   void show(const messages::SceneFrame& frame, std::chrono::nanoseconds time);
   void show(const messages::SceneSignals& signals, std::chrono::nanoseconds time);
 

@@ -7,32 +7,32 @@ namespace cohort::view {
 
 using messages::field;
 
-/// How what is shown goes on. Times of a recording are its log times, of a server simulated ones.
+/// The state of playback. Times are log times for a recording, and simulated times for a server.
 struct ViewStatus {
-  std::string source;  ///< `recording`, `server`, or `program`, which steps a world of its own
+  std::string source;  ///< `recording`, `server`, or `program`, which steps its own world
   std::string name;    ///< name of the recording's file or of the experiment
   bool may_control = false;
   bool can_seek = false;            ///< to times from `seekable_from_ns` to `seekable_to_ns`
-  bool loses_what_follows = false;  ///< going back: what comes then is new
+  bool loses_what_follows = false;  ///< seeking back discards later history
   bool is_playing = false;
-  double speed = 1.0;             ///< simulated seconds per second that are asked for; 0: as fast as it goes
-  double real_time_factor = 0.0;  ///< and that there are
+  double speed = 1.0;             ///< requested simulated seconds per second; 0: as fast as possible
+  double real_time_factor = 0.0;  ///< measured simulated seconds per second
   std::int64_t time_ns = 0;
   std::int64_t begin_ns = 0;
-  std::int64_t end_ns = 0;  ///< at the latest
+  std::int64_t end_ns = 0;  ///< latest possible end
   std::int64_t seekable_from_ns = 0;
   std::int64_t seekable_to_ns = 0;
   std::string note{};                  ///< the reason why the run does not advance; empty if it does
-  std::vector<std::string> awaited{};  ///< robots
-  /// `waiting`: for a server. `gathering`: for controllers, before the first tick. `running`. `ended`. `gone`: the
-  /// server has ended without a message.
+  std::vector<std::string> awaited{};  ///< names of robots that the run waits for
+  /// `waiting` for a server, `gathering` controllers before the first tick, `running`, `ended`, or `gone` if the server
+  /// has disappeared without a message.
   std::string phase = "running";
-  std::string end{};           ///< how it ended: `finished`, `interrupted`, `failed`, `shut_down`
-  std::string end_text{};      ///< why
-  std::string to_type{};       ///< shell command that attaches a controller or runs it again
-  std::string recording{};     ///< name of the file that `replay` shows in its place
+  std::string end{};           ///< one of `finished`, `interrupted`, `failed`, `shut_down`
+  std::string end_text{};      ///< reason of the end, for the user
+  std::string to_type{};       ///< shell command that attaches a controller or repeats the run
+  std::string recording{};     ///< name of the file that the request `replay` shows
   std::string seed{};          ///< seed of the run, in decimal; empty if unknown
-  bool can_run_again = false;  ///< `again` repeats the run
+  bool can_run_again = false;  ///< the request `again` repeats the run
   static constexpr const char* type = "cohort_msgs/msg/ViewStatus";
   static constexpr auto fields = std::tuple(
       field("source", &ViewStatus::source), field("name", &ViewStatus::name),
@@ -48,7 +48,7 @@ struct ViewStatus {
       field("can_run_again", &ViewStatus::can_run_again));
 };
 
-/// Something that happened, perhaps more than once.
+/// An event of a run, which may have occurred several times.
 struct ViewEvent {
   std::int64_t time_ns = 0;  ///< first occurrence
   std::uint64_t tick = 0;
@@ -62,7 +62,7 @@ struct ViewEvent {
                                             field("count", &ViewEvent::count), field("last_ns", &ViewEvent::last_ns));
 };
 
-/// The newest ones, oldest first; of a recording all that are shown.
+/// The latest events of a run, oldest first, or all shown events of a recording.
 struct ViewEvents {
   static constexpr std::size_t most = 1000;
 

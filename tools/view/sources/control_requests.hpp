@@ -5,8 +5,8 @@
 
 namespace cohort::view {
 
-/// Translates requests of viewers into operations of a server. Throws std::invalid_argument, with a sentence, if what
-/// it asks makes no sense.
+/// Converts a viewer's request to an operation of a server. Throws std::invalid_argument, with a message to the user,
+/// if the request is invalid.
 wire::Operation operation_of(const ViewRequest& asked);
 
 }  // namespace cohort::view

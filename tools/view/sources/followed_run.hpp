@@ -11,20 +11,20 @@
 
 namespace cohort::view {
 
-/// A running server, and when it has ended the recording that it wrote: `replay` shows that from then on. `again`
+/// A running server. After its end, the request `replay` shows the recording that it wrote instead. The request `again`
 /// repeats the run, if the options say how.
 class FollowedRun final : public Source {
  public:
-  /// `recording` is empty where there is none. `threads` replay it. `topics` must outlive this. Throws wire::WireError
-  /// as LiveSource does.
+  /// `recording` is empty if there is none. `threads` is the number of threads that replay it. `topics` must outlive
+  /// this. Throws wire::WireError like LiveSource.
   FollowedRun(LiveOptions options, std::filesystem::path recording, unsigned threads, Topics& topics);
 
   void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) override;
   void watch(const std::vector<std::uint32_t>& robots) override;
   void leave(std::uint64_t visitor) override;
-  /// Any thread, as the next.
+  /// Returns whether the server has ended. Any thread.
   bool has_ended() const;
-  /// Starts a run that waits for its first visitor.
+  /// Starts a run that waits for its first visitor. Any thread.
   void play_unseen();
 
  private:
@@ -38,7 +38,7 @@ class FollowedRun final : public Source {
   const unsigned threads_;
   Topics& topics_;
   mutable std::mutex mutex_;
-  std::unique_ptr<LiveSource> live_;  // this, or those below
+  std::unique_ptr<LiveSource> live_;  // null once the recording is shown
   std::optional<recording::Recording> recording_;
   std::unique_ptr<RecordingSource> replayed_;
 };

@@ -9,18 +9,18 @@
 
 namespace cohort::view {
 
-/// The history of a server's runs, put together from its messages piece by piece. Not thread-safe.
+/// The history of a server's runs, collected from its replies. Not thread-safe.
 class LiveHistory {
  public:
-  /// The question that brings what is not known yet.
+  /// Returns the request for the part of the history that is not known yet.
   wire::GetHistory question() const;
-  /// The reply to it, and the time of a tick. Throws messages::CdrError if the reply is none. True if there is
-  /// anything new.
+  /// Adds the reply to `question`. `step` is the step size. Returns whether anything is new. Throws messages::CdrError
+  /// if the reply contains no history.
   bool take(const wire::Reply& reply, std::chrono::nanoseconds step);
 
-  /// The newest events, in the order of their last time.
+  /// Returns the latest events, in the order of their last occurrence.
   const ViewEvents& events() const { return events_; }
-  /// The times to which the run can go back, if any.
+  /// Returns whether the run can go back in time.
   bool can_go_back() const { return keep_interval_ > 0; }
   std::chrono::nanoseconds first_kept() const { return first_kept_; }
 

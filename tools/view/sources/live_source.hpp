@@ -26,30 +26,30 @@ struct LiveOptions {
   std::uint32_t domain = 0;
   std::string secure{};          ///< folder of an observer's identity; empty: without security
   std::string secure_control{};  ///< folder of an identity that may control
-  std::string secure_drive{};    ///< and of one that may drive robots
+  std::string secure_drive{};    ///< folder of an identity that may drive robots
   bool may_control = false;
-  bool plays_when_seen = false;       ///< a run that begins paused starts as soon as a visitor looks
-  std::string again{};                ///< shell command that runs it again, shown after the end
+  bool plays_when_seen = false;       ///< a run that begins paused starts when a page is open
+  std::string again{};                ///< shell command that repeats the run, shown after the end
   std::function<void()> run_again{};  ///< repeats the run; null: the view cannot. Any thread.
-  std::string recording{};            ///< name of the file that it writes; empty: none
+  std::string recording{};            ///< name of the file that the run writes; empty: none
 };
 
-/// Shows a running server, as any observer may, with the `history` of what it has seen. Requests, if it may control:
-/// `play`, `pause`, `step`, `speed`, `reset`, `spawn`, `remove`, `move`, `light` and `push`; the server says whether
-/// they are done. Where it keeps snapshots also `seek` and steps back: to the last snapshot before, and if the run is
-/// paused on from there to the very tick. And `drive` and `release`, by which the page's user becomes the controller of
-/// a robot (Drivers).
+/// Shows a running server, as an observer, with the `history` of the values received. If it may control the run, it
+/// accepts the requests `play`, `pause`, `step`, `speed`, `reset`, `spawn`, `remove`, `move`, `light` and `push`, and
+/// the server decides whether they are executed. If the server keeps snapshots, `seek` and steps back are possible too.
+/// They go to the last snapshot before the time and, if the run is paused, from there to the exact tick. With `drive`
+/// and `release`, the page's user becomes the controller of a robot (Drivers).
 class LiveSource final : public Source {
  public:
-  /// Does not wait for the server. `topics` must outlive this. Throws wire::WireError if its address or the identity
-  /// cannot be used.
+  /// Does not wait for the server. `topics` must outlive this. Throws wire::WireError if the server's address or the
+  /// identity cannot be used.
   LiveSource(const LiveOptions& options, Topics& topics);
   ~LiveSource() override;
 
   void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) override;
   void watch(const std::vector<std::uint32_t>& robots) override;
   void leave(std::uint64_t visitor) override;
-  /// The server has said that there will be no further run, or is gone after one. Any thread.
+  /// Returns whether the server has announced that no further run follows, or has disappeared after a run. Any thread.
   bool has_ended() const { return has_ended_; }
   /// Starts a run that waits for its first visitor (`plays_when_seen`). Any thread.
   void play_unseen() { plays_unseen_ = true; }
@@ -96,7 +96,7 @@ class LiveSource final : public Source {
   Topics& topics_;
   ScenePublisher publisher_;
   std::atomic<bool> is_stopping_{false};
-  std::atomic<bool> has_server_{false};  // that can be controlled
+  std::atomic<bool> has_server_{false};  // a server that can be controlled is there
   std::atomic<bool> has_ended_{false};
   std::atomic<bool> plays_unseen_{false};
   Drivers drivers_;
@@ -107,7 +107,7 @@ class LiveSource final : public Source {
   std::vector<std::uint32_t> watched_;
   std::chrono::nanoseconds time_{0};  // simulated
   std::optional<End> end_;            // end of the last run, if no other run follows
-  wire::SimulationStatus run_;        // as the server said it last; had_run_ if it has
+  wire::SimulationStatus run_;        // latest status from the server; valid if had_run_
   bool had_run_ = false;
 
   std::mutex requests_mutex_;
@@ -117,11 +117,12 @@ class LiveSource final : public Source {
   wire::Participant participant_;
   wire::Reader<wire::SceneDescription> descriptions_;
   wire::Reader<wire::SceneUpdate> updates_;
-  // For the thread that shows: topics that only some clients read, and how many clients had come when they got them.
+  // For the thread that publishes: messages of topics that only some clients read, and Topics::arrivals when they were
+  // published last.
   Bytes contacts_;
   Bytes robots_;
   std::uint64_t arrivals_ = 0;
-  std::uint32_t revision_ = 0;  // the shown scene's, and how many links it has
+  std::uint32_t revision_ = 0;  // revision of the published scene; links_ is its number of links
   std::size_t links_ = 0;
   // For the thread that serves requests: the last messages of the server.
   LiveHistory history_;

@@ -12,15 +12,15 @@ namespace cohort::view {
 
 /// Values of robots over the time of a recording.
 ///
-/// Commands are in every recording, and observations in one that was asked to have them: those are read from the file.
-/// Otherwise the recording is replayed, apart from the replay that is shown. That takes time, so an answer may be only
-/// a first part, and the next request, from `next` on, continues the same replay.
+/// Every recording contains commands, and contains observations if these were requested: both are read from the file.
+/// Other values come from a replay, separate from the replay that is shown. Because this takes time, an answer may be
+/// only a first part; the next request, from `next` on, continues the same replay.
 ///
-/// One replay of the whole recording, the sweep, keeps a reduced history of all values of the robots that are asked
-/// for. Their other values are then there at once. Only a request with a finer resolution is replayed again, from the
-/// last snapshot before it.
+/// One replay of the whole recording, the sweep, keeps a reduced history of all values of the requested robots. Later
+/// requests for other values of these robots are therefore answered at once. Only a request with a finer resolution
+/// needs another replay, from the last snapshot before its interval.
 ///
-/// Times are log times, as those of the time bar. A commanded value is the one with which the robot has come to that
+/// Times are log times, as in the time bar. A commanded value is the one that was in effect during the tick before that
 /// time, as in `/cohort/robots`.
 class RecordedValues {
  public:
@@ -28,7 +28,8 @@ class RecordedValues {
   explicit RecordedValues(const recording::Recording& recording);
   ~RecordedValues();
 
-  /// For one thread. If a part cannot be read, the answer has the part before it, and says why.
+  /// Returns the requested values. If a part cannot be read, the answer contains the values before it, and says why.
+  /// Not thread-safe.
   Answer read(const HistoryRequest& request, const HistoryThread::IsCancelled& is_cancelled);
 
  private:
@@ -47,7 +48,7 @@ class RecordedValues {
   const recording::Recording& recording_;
   Nanoseconds end_{0};
   bool has_rosters_ = false;
-  std::vector<Nanoseconds> rosters_;                          // their log times
+  std::vector<Nanoseconds> rosters_;                          // log times of rosters
   std::map<std::uint32_t, std::string> names_;                // names of robots, by id
   std::map<std::uint32_t, std::vector<std::string>> values_;  // names of all values of robots, by id
   std::optional<recording::Replay> replay_;                   // at a boundary, to be continued

@@ -14,12 +14,12 @@
 
 namespace cohort::view {
 
-/// Shows a recording: runs its world again, at any speed, from any time. Everybody who looks sees the same. Requests:
-/// `play`, `pause`, `step` (a number of ticks, also backwards), `speed` (0: as fast as it goes), `seek` (log time
-/// [s]) and `history`, which does not disturb what is shown.
+/// Shows a recording by replaying its world, at any speed, from any time. All viewers see the same state. Requests:
+/// `play`, `pause`, `step` (a number of ticks, also negative), `speed` (0: as fast as possible), `seek` (log time [s])
+/// and `history`, which does not affect the shown state.
 class RecordingSource final : public Source {
  public:
-  /// Both must outlive this.
+  /// `recording` and `topics` must outlive this.
   RecordingSource(const recording::Recording& recording, Topics& topics, unsigned threads);
   ~RecordingSource() override;
 
@@ -34,7 +34,7 @@ class RecordingSource final : public Source {
   // Pending requests. Under the lock.
   struct Wanted {
     bool is_playing = false;
-    bool plays_again = false;  // from the beginning, if it is at the end
+    bool plays_again = false;  // plays from the beginning, if it is at the end
     double speed = 1.0;
     std::optional<Nanoseconds> seek{};
     std::int64_t steps = 0;
@@ -75,7 +75,7 @@ class RecordingSource final : public Source {
   std::uint64_t state_hash_ = 0;
   Nanoseconds end_{0};
   std::vector<std::uint32_t> watched_;
-  // The pace is counted from here.
+  // Origin from which the pace is measured.
   struct Pace {
     Clock::time_point wall{};
     Nanoseconds time{0};

@@ -12,16 +12,16 @@
 
 namespace cohort::view {
 
-/// Publishes the state of a replay as messages for viewers. For the thread of the replay.
+/// Publishes the state of a replay as messages for viewers. Used on the thread of the replay.
 class ReplayPublisher {
  public:
-  /// All must outlive this.
+  /// All arguments must outlive this.
   ReplayPublisher(const recording::Recording& recording, const recording::Replay& replay, Topics& topics)
       : recording_(recording), replay_(replay), publisher_(topics) {}
 
-  /// To be called when the replay has made a new world.
+  /// Must be called when the replay has made a new world.
   void begin_world() { is_new_world_ = true; }
-  /// To be called when the replay may have no world.
+  /// Must be called when the replay may have no world.
   void forget_world();
   bool has_scene() const { return maker_.has_value(); }
 
@@ -39,7 +39,7 @@ class ReplayPublisher {
   bool is_new_world_ = false;
 };
 
-/// Publishes the events of a recording. Returns why not all could be read, or nothing.
+/// Publishes the events of a recording. Returns the reason if not all could be read; empty otherwise.
 std::string publish_events(const recording::Recording& recording, Topics& topics);
 
 /// Returns the log time of the last boundary of a recording.

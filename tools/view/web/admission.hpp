@@ -7,28 +7,29 @@
 
 namespace cohort::view {
 
-/// Headers of a browser's request for a WebSocket.
+/// The relevant parts of a request for a WebSocket.
 struct Visitor {
-  std::string host;                   ///< the header Host: the page's own address as the browser knows it
-  std::optional<std::string> origin;  ///< the header Origin: of the page that asks; programs send none
+  std::string host;                   ///< header Host: the address at which the browser reached this server
+  std::optional<std::string> origin;  ///< header Origin: origin of the requesting page; programs send none
   std::string target;                 ///< target of the request, with its query
 };
 
 /// Conditions for a connection.
 struct Admission {
   bool is_loopback = true;             ///< other machines cannot connect
-  std::string token{};                 ///< empty: none is needed
+  std::string token{};                 ///< empty: no token is required
   std::vector<std::string> origins{};  ///< origins of other pages that may connect
 };
 
-/// On the loopback a host has to be one of this machine's own names: otherwise a page of a stranger, whose name
-/// resolves to this machine, would pass for ours.
+/// Returns whether a request's host is allowed. On the loopback interface, it must be a name of this machine. Otherwise
+/// a foreign page whose host name resolves to this machine could connect (DNS rebinding).
 bool is_own_host(const Admission& admission, std::string_view host);
 
-/// Why a visitor is refused; nothing if it may come in. A page has to be ours, or one of `origins`.
+/// Returns the reason why a visitor is rejected; nullopt if it is admitted. A page must come from this server or from
+/// one of `origins`.
 std::optional<std::string> refusal(const Admission& admission, const Visitor& visitor);
 
-/// 128 random bits as hexadecimal digits.
+/// Returns 128 random bits as hexadecimal digits.
 std::string random_token();
 
 }  // namespace cohort::view

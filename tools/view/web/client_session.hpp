@@ -14,15 +14,15 @@
 
 namespace cohort::view {
 
-/// One client of the Foxglove WebSocket protocol, without its socket: takes what it sends, and has what is to be sent
-/// to it next. A client that reads slowly misses messages: of each topic the newest waits for it, and no more than
-/// `most_replies` answers, `most_histories` of them histories. One thread.
+/// One client of the Foxglove WebSocket protocol, without its socket: handles the client's messages, and provides the
+/// next message to send. A client that reads slowly misses messages: only the latest message of each topic waits for
+/// it, and at most `most_replies` answers, of which `most_histories` are histories. Not thread-safe.
 class ClientSession {
  public:
   static constexpr std::size_t most_subscriptions = 64;
   static constexpr std::size_t most_replies = 64;
   static constexpr std::size_t most_watched = 256;
-  /// Histories among its replies: they are large.
+  /// Limit of histories among the waiting replies, because they are large.
   static constexpr std::size_t most_histories = 4;
 
   struct Text {
@@ -35,21 +35,21 @@ class ClientSession {
   using Outgoing = std::variant<Text, recording::Bytes, Data>;
 
   struct Callbacks {
-    /// Handles a request of the client; `respond` of this session answers.
+    /// Handles a request of the client, which is answered by `respond`.
     std::function<void(const protocol::ServiceCall&, const ViewRequest&)> ask;
     std::function<void()> watched_changed;
   };
   ClientSession(Topics& topics, const std::string& name, const std::string& session, Callbacks callbacks);
   ~ClientSession();
 
-  /// Invalid messages are answered with a status.
+  /// Handle a message of the client. Invalid messages are answered with a status.
   void take_text(std::string_view text);
   void take_binary(std::span<const std::byte> bytes);
   void respond(const protocol::ServiceCall& call, const Answer& answer);
 
-  /// The next thing to send; none if there is nothing new.
+  /// Returns the next message to send; nullopt if there is nothing new.
   std::optional<Outgoing> next();
-  /// Robots whose channels it wants: ids.
+  /// Returns the ids of the robots whose channels the client has requested.
   const std::vector<std::uint32_t>& watched() const { return watched_; }
 
  private:
@@ -71,7 +71,7 @@ class ClientSession {
   Callbacks callbacks_;
   std::deque<Outgoing> replies_;
   std::size_t histories_ = 0;                    // in replies_ since these were last empty
-  std::map<std::uint32_t, Slot> subscriptions_;  // by the client's numbers
+  std::map<std::uint32_t, Slot> subscriptions_;  // by the client's subscription ids
   std::uint32_t last_served_ = 0;
   std::vector<std::uint32_t> watched_;
 };

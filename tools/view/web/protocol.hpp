@@ -19,7 +19,7 @@ namespace cohort::view::protocol {
 
 inline constexpr const char* subprotocol = "foxglove.websocket.v1";
 
-/// A client's message does not conform to the protocol; the text is for the author of the client.
+/// Thrown if a client's message does not conform to the protocol. The text is for the author of the client.
 class ProtocolError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -47,7 +47,7 @@ struct NotOffered {
 };
 using FromClient = std::variant<Subscribe, Unsubscribe, ServiceCall, NotOffered>;
 
-/// Throw ProtocolError.
+/// Parse a message of a client. Throw ProtocolError.
 FromClient parse_text(std::string_view text);
 FromClient parse_binary(std::span<const std::byte> bytes);
 
@@ -55,14 +55,14 @@ inline constexpr std::uint32_t control_service = 1;
 
 enum class StatusLevel { info = 0, warning = 1, error = 2 };
 
-/// Texts.
+/// Return text messages to a client.
 std::string server_info(const std::string& name, const std::string& session);
 std::string advertise_channels();
 std::string advertise_services();
 std::string status(StatusLevel level, const std::string& message);
 std::string service_failure(const ServiceCall& call, const std::string& message);
 
-/// Binary messages. The data of a message follow its head.
+/// Return binary messages to a client. A message's data follow its head.
 std::array<std::byte, 13> message_head(std::uint32_t subscription, std::chrono::nanoseconds time);
 recording::Bytes service_response(const ServiceCall& call, const std::string& payload);
 

@@ -18,37 +18,37 @@ struct PageFile {
   std::string type;  ///< such as `text/html`
   std::string content;
 };
-/// By the path of the request, such as `/page.js`. There is nothing else to get.
+/// All files that are served, by the path of the request, such as `/page.js`.
 using PageFiles = std::map<std::string, PageFile>;
 
-/// The built page in a folder; empty if it was not built.
+/// Reads the built page from a folder; returns nothing if it was not built.
 PageFiles read_page(const std::filesystem::path& folder);
 
 struct WebOptions {
-  std::string name;                    ///< name of the source, for other viewers
+  std::string name;                    ///< name of the source, shown by other viewers such as Foxglove
   std::string address = "127.0.0.1";   ///< address of the interface
   std::uint16_t port = 8080;           ///< 0: any free one
-  std::string token{};                 ///< that a client has to give; empty: none
+  std::string token{};                 ///< token that a client must send; empty: none
   std::vector<std::string> origins{};  ///< origins of other pages that may connect, such as `https://app.foxglove.dev`
-  bool or_any_free_port = false;       ///< where `port` is taken
-  /// Pages that may show this one in a frame, as a content security policy names them.
+  bool or_any_free_port = false;       ///< if `port` is in use
+  /// Pages that may embed this one in a frame, in the syntax of a content security policy.
   std::string frame_ancestors = "'none'";
 };
 
-/// Serves the page and, at `/`, the WebSocket. One thread runs it; nothing that a browser does takes longer than its
-/// own connection, or more memory than one message for each topic.
+/// Serves the page and, at `/`, the WebSocket, on one thread. A slow client delays only its own connection, and its
+/// waiting messages are limited (ClientSession).
 class WebServer {
  public:
-  /// Listens. Throws std::runtime_error if the address or the port cannot be had. All must outlive this.
+  /// Starts to listen. `topics` must outlive this. Throws std::runtime_error if the address or the port cannot be used.
   WebServer(WebOptions options, PageFiles page, Topics& topics);
   ~WebServer();
 
   std::uint16_t port() const;
-  /// Tells clients that there is something new. Any thread.
+  /// Wakes the server to send new messages to clients. Any thread.
   void published();
-  /// Runs until `stop`. Passes requests of clients to `source`.
+  /// Runs until `stop` is called. Passes clients' requests to `source`.
   void run(Source& source);
-  /// Any thread.
+  /// Ends `run`. Any thread.
   void stop();
 
  private:

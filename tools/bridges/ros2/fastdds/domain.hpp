@@ -14,7 +14,7 @@
 
 namespace cohort::bridges::ros2 {
 
-/// The helper's participant in a domain. Its members are called from one thread but for is_of_cyclone.
+/// The helper's participant in a domain. All members except is_of_cyclone are called from one thread.
 class Domain : private eprosima::fastdds::dds::DomainParticipantListener {
  public:
   /// Joins a domain. Throws std::runtime_error.
@@ -31,7 +31,8 @@ class Domain : private eprosima::fastdds::dds::DomainParticipantListener {
   eprosima::fastdds::dds::Topic* make_topic(const std::string& name, const std::string& type);
   /// Publishes a sample in place of the last one on its topic. Throws std::runtime_error.
   void announce(Announce announced);
-  /// Returns whether this is the writer of a client on Cyclone DDS, which the bridge itself answers.
+  /// Returns whether this writer belongs to a client on Cyclone DDS, which the bridge answers without the helper. Any
+  /// thread.
   bool is_of_cyclone(const Guid& writer);
 
  private:

@@ -8,12 +8,12 @@
 
 namespace cohort::bridges::ros2 {
 
-/// A type of which DDS knows the name alone. Its samples are std::string: CDR with its encapsulation.
+/// A type of which DDS knows only the name. Its samples are std::string, containing CDR with the encapsulation header.
 class OpaqueType : public eprosima::fastdds::dds::TopicDataType {
  public:
   explicit OpaqueType(const std::string& name) {
     setName(name.c_str());
-    m_typeSize = 1024;  // where an allocation starts
+    m_typeSize = 1024;  // initial size of an allocation
     auto_fill_type_object(false);
     auto_fill_type_information(false);
   }

@@ -11,8 +11,8 @@
 
 namespace cohort::bridges::ros2 {
 
-/// The stream of frames to the bridge. A thread writes it, so that no thread that answers the bridge waits for the
-/// bridge. Safe to call from any thread.
+/// The stream of frames to the bridge. A separate thread writes it, so that threads which answer the bridge never wait
+/// for the bridge. Thread-safe.
 class Output {
  public:
   explicit Output(int descriptor);
@@ -22,9 +22,10 @@ class Output {
 
   /// Sends a frame without waiting.
   void send(const FrameToBridge& frame);
-  /// Drops what is not written yet, and what is sent from now on, so that no thread waits here any more.
+  /// Drops all frames that are not written yet, and all that are sent later, so that no thread waits here any more.
   void close();
-  /// Sends a request, once the bridge has taken most of what was sent before. Drops it if it is too large for a frame.
+  /// Waits until the bridge has read most of the earlier frames, then sends a request. Drops it if it is too large for
+  /// a frame.
   void send_request(const RequestReceived& request);
 
  private:

@@ -14,8 +14,8 @@
 
 namespace cohort::bridges::ros2 {
 
-/// The two endpoints of a service. A request is known by its client's reader and the number that the client's writer
-/// gave it, and a reply has both in `related_sample_identity`, as rmw_fastrtps does it.
+/// The two endpoints of a service. A request is identified by its client's reader and by the sequence number of the
+/// client's writer. A reply has both in `related_sample_identity`, as in rmw_fastrtps.
 class Service : private eprosima::fastdds::dds::DataReaderListener, private eprosima::fastdds::dds::DataWriterListener {
  public:
   /// Throws std::runtime_error.
@@ -47,8 +47,8 @@ class Service : private eprosima::fastdds::dds::DataReaderListener, private epro
   Output& output_;
   const std::uint32_t number_;
   mutable std::mutex mutex_;
-  std::set<Guid> clients_;       // the readers of replies; under mutex_, as what follows
-  std::deque<Waiting> waiting_;  // for their client's reader
+  std::set<Guid> clients_;       // readers of replies; under mutex_, like the next member
+  std::deque<Waiting> waiting_;  // replies whose client's reader is not matched yet
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;
   eprosima::fastdds::dds::DataReader* counted_reader_ = nullptr;
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;

@@ -22,25 +22,25 @@ namespace cohort::ros2 {
 /// The time for which a command message was meant, if the message has a stamp.
 using Stamp = std::optional<std::chrono::nanoseconds>;
 
-/// The writers that others have, by topic of DDS.
+/// The writers of other participants, by DDS topic.
 using WritersByTopic = std::map<std::string, std::vector<RosEndpoint>>;
 
-/// A topic that commands a robot. The same topic may come in several types: the publisher's type counts.
+/// A topic that commands a robot. It may have one of several types: that of its publisher.
 class CommandTopic {
  public:
   struct Type {
     std::string name;
     std::string hash;
-    /// Changes the robot's command by a message. Throws messages::CdrError, or std::invalid_argument with what is
-    /// wrong in it: then the command is as it was.
+    /// Changes the robot's command according to a message. Throws messages::CdrError, or std::invalid_argument that
+    /// says what is wrong in the message; the command is then unchanged.
     std::function<Stamp(messages::CdrReader& message, std::span<double> command)> take;
   };
-  /// Changes the robot's command as time goes on.
+  /// A command that takes time, such as a trajectory.
   struct Motion {
     std::function<void(std::chrono::nanoseconds time, std::span<double> command)> advance;
     std::function<void()> end;  ///< ends the present command
   };
-  /// `name` is absolute. `types`: the first one is offered while there is no publisher. `motion`: of commands that take
+  /// `name` is absolute. The first of `types` is used while there is no publisher. `motion` is for commands that take
   /// time.
   CommandTopic(std::string name, std::vector<Type> types, Motion motion = Motion());
 
@@ -48,25 +48,25 @@ class CommandTopic {
 
   /// Receives messages from now on.
   void open(RosParticipant& participant, std::function<void(const Received&)> received, std::function<void()> matched);
-  /// Takes the type and reliability of the topic's publishers, if none publishes with the present ones. Returns whether
-  /// they have changed.
+  /// Adopts the type and reliability of a publisher of the topic, if no publisher is matched. Returns whether they have
+  /// changed.
   bool follow(RosParticipant& participant, const std::vector<RosEndpoint>& writers);
-  /// Returns why a writer of this topic can never be received; empty if it can.
+  /// Returns why messages of this writer can never be received; empty if they can.
   std::string why_not(const RosEndpoint& writer) const;
 
-  /// As Type::take.
+  /// Changes the robot's command as Type::take does.
   Stamp take(std::span<const std::byte> message, std::span<double> command) const;
 
-  /// Sets what was commanded for this time.
+  /// Sets the command for this time, if a command that takes time is in progress.
   void advance(std::chrono::nanoseconds time, std::span<double> command) const {
     if (motion_.advance) motion_.advance(time, command);
   }
-  /// Ends what was commanded.
+  /// Ends a command that takes time.
   void end() const {
     if (motion_.end) motion_.end();
   }
 
-  /// Returns the participants that publish it, ascending.
+  /// Returns the participants that publish this topic, in ascending order.
   std::span<const Gid> participants() const { return reader_->participants(); }
 
  private:
@@ -82,8 +82,8 @@ class CommandTopic {
   std::optional<RosReader> reader_;
 };
 
-/// Returns the topics that command a robot, those that move it first: `cmd_vel` if it has a drive, commands of joints,
-/// those of its other devices. `drive` may be nullptr, and must outlive them.
+/// Returns the topics that command a robot: `cmd_vel` if it has a drive, then those of its joints, then those of its
+/// other devices. `drive` may be nullptr, and must outlive them.
 std::vector<CommandTopic> command_topics(const description::Model& model, const DrivenRobot& robot,
                                          const RobotSettings& settings, const Drive* drive);
 

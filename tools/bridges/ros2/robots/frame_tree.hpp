@@ -9,7 +9,7 @@
 #include "idl/messages/ros_messages.hpp"
 #include "server/description/model.hpp"
 
-/// The frames of a robot, as tf2 has them: those of its links, and those of its sensors on them.
+/// The tf2 frames of a robot: those of its links and of the sensors on them.
 namespace cohort::ros2 {
 
 /// A frame of a sensor on a link.
@@ -21,26 +21,28 @@ struct SensorFrame {
 
 class FrameTree {
  public:
-  /// `base`: the name of the root link's frame. `prefix`: of the names of all frames. `sensors`: those to be told too.
+  /// `base` is the name of the root link's frame, `prefix` the prefix of all frame names. `sensors` are included in the
+  /// tree.
   FrameTree(const description::Model& model, const Start& robot, const std::string& base, const std::string& prefix,
             const std::vector<SensorFrame>& sensors);
 
-  /// Returns what never changes: links that fixed joints hold, and sensors.
+  /// Returns the static transforms: those of links on fixed joints and of sensors.
   messages::ros::TFMessage fixed(const messages::ros::Time& stamp) const;
-  /// Adds what moves, as the robot's encoders measure it. Joints without an encoder are left out.
+  /// Adds the transforms of moving joints, as the robot's encoders measure them. Joints without an encoder are left
+  /// out.
   void add_moving(std::span<const double> observation, const messages::ros::Time& stamp,
                   messages::ros::TFMessage& to) const;
 
   const std::string& base() const { return base_; }
   const std::string& prefix() const { return prefix_; }
-  /// Returns the name of a frame for the sensor or link of this name, as headers have it.
+  /// Returns the frame id of the sensor or link of this name.
   std::string name_of(const std::string& frame) const { return prefix_ + frame; }
 
  private:
   struct Edge {
     std::string parent;
     std::string child;
-    Pose X_PC;  ///< where the joint is at 0
+    Pose X_PC;  ///< at joint position 0
   };
   struct MovingEdge : Edge {
     Pose X_PJ;

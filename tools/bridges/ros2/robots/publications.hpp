@@ -30,32 +30,32 @@ class Publications {
   Publications(RosParticipant& participant, const description::Model& model, const DrivenRobot& robot,
                const RobotSettings& settings, Drive* drive, const std::function<void()>& matched);
 
-  /// Begins a run, or goes on with another one: the robot's frames are told.
+  /// Begins a run, or continues with another one. Publishes the static transforms.
   void begin(std::chrono::nanoseconds time);
-  /// Returns whether `odom` tells where the robot is, rather than what its encoders say.
+  /// Returns whether `odom` has the robot's true pose instead of the encoders' odometry.
   bool wants_true_pose() const { return tells_truth_; }
-  /// Tells what is due of a frame. `truth`: the robot's pose in the world, if it is wanted.
+  /// Publishes the messages that are due at a frame. `truth` is the robot's pose in the world, if wants_true_pose().
   void publish(std::span<const double> observation, std::uint64_t tick, std::chrono::nanoseconds time,
                const std::optional<WorldPose>& truth);
-  /// Takes a frame into account without telling of it.
+  /// Updates the odometry by a frame without publishing.
   void follow(std::span<const double> observation, std::chrono::nanoseconds time,
               const std::optional<WorldPose>& truth);
-  /// Tells a frame to those of these participants who have subscribed since it was published, or once more: only topics
-  /// of which they have not been told. Returns whether there was something to tell.
+  /// Publishes messages of the last frame again for those of these participants that have subscribed since. Only topics
+  /// that such a participant has not received are published. Returns whether anything was published.
   bool publish_to_newcomers(std::span<const Gid> participants);
-  /// Tells all of the last frame once more.
+  /// Publishes all messages of the last frame again.
   void publish_again();
 
-  /// Returns whether the last frame published something that a command of one of these participants answers. That is
-  /// the topic `reply_to`, or the rarest of the topics to which they subscribe.
+  /// Returns whether the last frame had a message that these participants answer with a command. That is a message of
+  /// the topic `reply_to`, or of the subscribed topic with the longest period.
   bool asks(std::span<const Gid> participants) const;
 
-  /// Returns messages that were dropped because subscribers did not keep up.
+  /// Returns the number of messages that were dropped because subscribers did not keep up.
   std::uint64_t dropped() const { return dropped_; }
-  /// Returns whether all reliable subscribers have received what was told.
+  /// Returns whether all reliable subscribers have received the messages of the last frame.
   bool is_received() const;
   struct PublishedTopic {
-    std::string name;  ///< in ROS
+    std::string name;  ///< name in ROS
     std::string type;
     std::uint32_t subscriptions = 0;
   };
@@ -72,16 +72,15 @@ class Publications {
     std::string name;  // in the list of topics
     PublishedTopic in_ros;
     std::string frame_id;        // for the header
-    PeriodicTicks measurements;  // among the frames
-    PeriodicTicks messages;      // among the measurements
+    PeriodicTicks measurements;  // frames with a measurement
+    PeriodicTicks messages;      // measurements that are published
     Fill fill;
     RosWriter writer;
     messages::Bytes last{};   // message of the last frame; empty: none
-    std::vector<Gid> told{};  // participants that subscribed then and have not left since
+    std::vector<Gid> told{};  // participants that have subscribed when it was published, and have not left since
     bool counts_for_reply = true;
 
-    /// Returns whether it has a message at a frame.
-    /// `before`: the frame before it.
+    /// Returns whether a message is due at a frame. `before` is the previous frame.
     bool is_due(std::uint64_t frame, std::uint64_t before) const {
       return frame == 0 || messages.count(measurements.count(frame)) != messages.count(measurements.count(before));
     }
@@ -109,7 +108,7 @@ class Publications {
   FrameTree frames_;
   std::vector<Topic> topics_;
   std::optional<RosWriter> static_frames_;
-  std::optional<messages::ros::Odometry> odometry_;  // odometry of the frame, without its header
+  std::optional<messages::ros::Odometry> odometry_;  // odometry at the last frame, without its header
   std::optional<std::chrono::nanoseconds> last_time_;
   std::optional<std::uint64_t> last_frame_;
   std::optional<PublishedTopic> static_topic_;
@@ -117,7 +116,7 @@ class Publications {
   std::uint64_t dropped_ = 0;
 };
 
-/// Returns channels as the server's code has them.
+/// Converts channels to the type that the server uses.
 std::vector<Channel> channels_of(const std::vector<ChannelInfo>& infos);
 
 }  // namespace cohort::ros2

@@ -8,11 +8,12 @@
 
 namespace cohort::ros2 {
 
-/// Notifications from threads of DDS to the bridge's thread. All calls but the constructor's are safe on any thread.
+/// Notifications from DDS threads to the bridge's thread. All members except the constructor and destructor are
+/// thread-safe.
 class RosInbox {
  public:
   struct Message {
-    std::size_t input = 0;  ///< which the bridge numbers
+    std::size_t input = 0;  ///< number that the bridge gave to the topic
     std::vector<std::byte> bytes{};
     std::uint64_t writer = 0;  ///< RosGraph::endpoint
   };
@@ -27,15 +28,15 @@ class RosInbox {
   /// Wakes the thread that waits.
   void wake();
 
-  /// Returns what has come since the last call, in the order in which it came.
+  /// Returns the messages since the last call, in the order of arrival.
   std::vector<Message> take();
-  /// Returns how many messages were dropped because too many waited.
+  /// Returns how many messages were dropped because `most_messages` were waiting.
   std::uint64_t dropped() const;
-  /// Waits until something has come or `wake` was called, for `at_most`.
+  /// Waits until a message has arrived or `wake` was called, for at most `at_most`.
   void wait(std::chrono::milliseconds at_most);
-  /// A descriptor that poll(2) reports as readable while `wait` would return at once.
+  /// Returns a descriptor that poll(2) reports as readable while `wait` would return at once.
   int descriptor() const { return descriptor_; }
-  /// Takes back calls of `wake`, as `wait` does.
+  /// Clears earlier calls of `wake`, as `wait` does.
   void clear();
 
   static constexpr std::size_t most_messages = 10'000;

@@ -20,9 +20,10 @@ class Trajectory {
   };
   explicit Trajectory(std::vector<Target> targets) : targets_(std::move(targets)) {}
 
-  /// Begins another trajectory, in place of the former one. Throws std::invalid_argument that says what is wrong in it.
+  /// Begins a trajectory, which replaces the former one. Throws std::invalid_argument that says what is wrong in the
+  /// message.
   void begin(const messages::ros::JointTrajectory& message, std::span<const double> command);
-  /// Ends it where it is.
+  /// Ends the trajectory at the present positions.
   void end() { points_.clear(); }
   /// Sets the commanded positions of the joints for this time.
   void advance(std::chrono::nanoseconds time, std::span<double> command);
@@ -35,7 +36,7 @@ class Trajectory {
 
   std::vector<Target> targets_;
   std::vector<std::size_t> offsets_;
-  std::vector<Point> points_;  // the first: where they were; empty: none
+  std::vector<Point> points_;  // the first has the initial positions; empty: no trajectory
   bool has_begun_ = false;
   std::chrono::nanoseconds begin_{0};
 };

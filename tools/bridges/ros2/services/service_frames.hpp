@@ -9,25 +9,25 @@
 #include <variant>
 #include <vector>
 
-/// Messages between the bridge of ROS 2 and its helper `cohort-ros2-services` say to each other. The helper has the
-/// endpoints of services for clients on Fast DDS, and knows no service: requests and replies pass as they are on the
-/// wire.
+/// Messages between the ROS 2 bridge and its helper `cohort-ros2-services`. The helper has the endpoints of services
+/// for clients on Fast DDS. It does not interpret requests and replies, but passes them on as on the wire.
 ///
 /// The bridge starts the helper with a socket as its standard input and output. Each direction is a sequence of frames:
 ///
 ///     uint32 size | uint8 kind | fields, size − 1 bytes in all
 ///
-/// Numbers have the byte order of the machine, on which both run. A string, a list and a sequence of bytes begin with a
-/// uint32, the number of what follows. The bridge sends OpenDomain first and once. It ends the helper by closing the
-/// socket. A helper that cannot go on says why on standard error and ends; the bridge sees the end of the stream.
+/// Numbers have the byte order of the machine, because both processes run on one machine. A string, a list and a
+/// sequence of bytes begin with a uint32, the number of elements. The bridge sends OpenDomain first, and only once. It
+/// ends the helper by closing the socket. A helper that cannot go on says why on standard error and ends; the bridge
+/// sees the end of the stream.
 namespace cohort::bridges::ros2 {
 
-/// The most bytes that a frame may have, without the four that tell its size.
+/// Limit of a frame's size without its first four bytes, which contain the size [bytes].
 inline constexpr std::size_t largest_frame = std::size_t{16} << 20;
 
 /// The identifier that DDS gives to a participant, a reader or a writer.
 using Guid = std::array<std::uint8_t, 16>;
-/// CDR with its four bytes of encapsulation, and text in USER_DATA.
+/// CDR with its four bytes of encapsulation, or the text of USER_DATA.
 using Bytes = std::string;
 
 /// Bridge to helper: join a domain.
@@ -36,7 +36,7 @@ struct OpenDomain {
   std::uint32_t domain = 0;
   Bytes user_data{};                 ///< user data of the participant
   bool multicast = true;             ///< looks for participants by multicast, and answers it
-  std::vector<std::string> peers{};  ///< IPv4 addresses where participants may be besides
+  std::vector<std::string> peers{};  ///< IPv4 addresses at which to look for further participants
   void visit(auto&& field) { field(domain), field(user_data), field(multicast), field(peers); }
 };
 
@@ -51,8 +51,8 @@ struct OfferService {
   std::string reply_type{};
   Bytes reply_user_data{};
   /// The bridge has endpoints of this service too, with one more writer than readers. The helper then has one more
-  /// reader than writers. Clients take a service for available when they see as many readers of requests as writers of
-  /// replies, so not before they see both.
+  /// reader than writers. Clients consider a service available when they see as many readers of requests as writers of
+  /// replies. Therefore they wait until they see the endpoints of both.
   bool is_shared = false;
   void visit(auto&& field) {
     field(service), field(request_topic), field(request_type), field(request_user_data), field(reply_topic),
@@ -64,14 +64,14 @@ struct OfferService {
 struct SendReply {
   static constexpr std::uint8_t kind = 3;
   std::uint32_t service = 0;
-  Guid client{};  ///< as the request had it
+  Guid client{};  ///< as in the request
   std::int64_t sequence = 0;
   Bytes reply{};
   void visit(auto&& field) { field(service), field(client), field(sequence), field(reply); }
 };
 
-/// Bridge to helper: publish a sample to those who are there and those who come later, in place of the last one on this
-/// topic. Tells the graph of ROS which endpoints belong to which node.
+/// Bridge to helper: publish a sample that replaces the last one on this topic, for present and future subscribers. It
+/// tells the ROS graph which endpoints belong to which node.
 struct Announce {
   static constexpr std::uint8_t kind = 4;
   std::string topic{};
@@ -113,14 +113,14 @@ using FrameToBridge = std::variant<DomainOpened, ServiceOffered, RequestReceived
 std::string encode(const FrameToHelper& frame);
 std::string encode(const FrameToBridge& frame);
 
-/// Takes a stream of bytes apart into frames of one direction.
+/// Splits a stream of bytes into frames of one direction.
 template <typename Frame>
 class FrameStream {
  public:
   void append(std::string_view bytes) { bytes_.append(bytes); }
-  /// Returns the next frame if all of it is there. Throws std::runtime_error if what is there is none.
+  /// Returns the next frame if it is complete. Throws std::runtime_error if the bytes are not a valid frame.
   std::optional<Frame> next();
-  /// Returns whether a frame has begun that is not whole.
+  /// Returns whether the stream ends inside a frame.
   bool is_inside_frame() const { return begin_ < bytes_.size(); }
 
  private:

@@ -12,21 +12,23 @@
 
 namespace cohort::bridges::ros2 {
 
-/// The helper `cohort-ros2-services` as its bridge has it: a process that ends with this. One thread.
+/// The process of the helper `cohort-ros2-services`, which the destructor ends. Not thread-safe.
 class ServiceProcess {
  public:
-  /// Starts `command`, the program's path first. Its standard error is ours. Throws std::system_error.
+  /// Starts `command`, which begins with the program's path. The program inherits standard error. Throws
+  /// std::system_error.
   explicit ServiceProcess(const std::vector<std::string>& command);
   ServiceProcess(const ServiceProcess&) = delete;
   ServiceProcess& operator=(const ServiceProcess&) = delete;
-  /// Closes the socket, by which the helper ends, and kills it if it does not within two seconds.
+  /// Closes the socket, which makes the helper end, and kills the helper if it has not ended after two seconds.
   ~ServiceProcess();
 
-  /// Sends a frame as soon as the helper takes it. Does nothing once the helper has ended. Throws std::length_error if
-  /// the frame is too large.
+  /// Sends a frame, and waits until the helper accepts it. Does nothing once the helper has ended. Throws
+  /// std::length_error if the frame is too large.
   void send(const FrameToHelper& frame);
 
-  /// Returns the next frame of the helper, if one comes within `patience`. Throws std::runtime_error if it is none.
+  /// Returns the next frame of the helper, if one arrives within `patience`. Throws std::runtime_error if it is not a
+  /// valid frame.
   std::optional<FrameToBridge> receive(std::chrono::milliseconds patience = {});
 
   /// Returns whether the helper has ended, as far as send() and receive() have seen.

@@ -18,20 +18,20 @@ namespace simulation = messages::ros::simulation;
 struct SpawnedRobot {
   std::string name;
   description::ParsedModelPtr model;  ///< null: a model of the experiment
-  bool is_driven = true;              ///< nodes are to drive it
+  bool is_driven = true;              ///< ROS nodes may drive it
 };
 
-/// Notified, on the thread of the services, when a service has changed what is in the world.
+/// Called on the thread of the services when a service has added or removed an entity.
 struct EntityListener {
   std::function<void(SpawnedRobot robot)> spawned;
   std::function<void(const std::string& entity)> deleted;
 };
 
-/// Answers of the services that are of what is in the world. One thread.
+/// Answers of the services for entities and the world. Not thread-safe.
 class EntityServices {
  public:
   using MakeExperiment = std::function<std::shared_ptr<const description::Experiment>()>;
-  /// `experiment` is called when a request needs it first. `run` must outlive this.
+  /// `experiment` is called at the first request that needs it. `run` must outlive this.
   EntityServices(RunControl& run, MakeExperiment experiment, EntityListener listener)
       : run_(run), make_experiment_(std::move(experiment)), listener_(std::move(listener)) {}
 
@@ -39,7 +39,7 @@ class EntityServices {
   simulation::SpawnEntities::Response answer(const simulation::SpawnEntities::Request& asked);
   simulation::DeleteEntity::Response answer(const simulation::DeleteEntity::Request& asked);
   simulation::GetEntities::Response answer(const simulation::GetEntities::Request& asked);
-  /// Each state is of a boundary of its own, which its stamp says, unless the run is paused.
+  /// Unless the run is paused, the states may be of different ticks, as their stamps say.
   simulation::GetEntitiesStates::Response answer(const simulation::GetEntitiesStates::Request& asked);
   simulation::GetEntityState::Response answer(const simulation::GetEntityState::Request& asked);
   simulation::SetEntityState::Response answer(const simulation::SetEntityState::Request& asked);
@@ -49,7 +49,7 @@ class EntityServices {
 
  private:
   const description::Experiment& experiment();
-  /// Returns the model of an entity, by its index in the experiment's world; nothing if it is not known here.
+  /// Returns the index of an entity's model in the experiment's world; nullopt if the entity is unknown.
   std::optional<std::size_t> model_of(const std::string& entity);
   simulation::EntityCategory category_of(const std::string& entity);
   bool is_selected(const std::string& entity, const simulation::EntityFilters& filters);
@@ -59,7 +59,7 @@ class EntityServices {
   MakeExperiment make_experiment_;
   EntityListener listener_;
   std::shared_ptr<const description::Experiment> experiment_;
-  std::map<std::string, std::size_t> models_;  // by entities of the experiment, and those that were spawned here
+  std::map<std::string, std::size_t> models_;  // by entity: of the experiment, or spawned here
 };
 
 }  // namespace cohort::ros2

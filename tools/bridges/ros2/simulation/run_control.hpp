@@ -9,19 +9,19 @@
 
 namespace cohort::ros2 {
 
-/// A client that controls a run, with answers also where no reply comes. One thread.
+/// A client that controls a run, and gives an answer even if the server does not reply. Not thread-safe.
 class RunControl {
  public:
   /// Waits end while `stop` is set. Throws ControlError.
   RunControl(const ControlOptions& options, const std::atomic<bool>& stop) : client_(attach(options)), stop_(stop) {}
 
-  /// Asks, and returns the reply. A reply that does not come has failed, and says why.
+  /// Requests an operation and returns the reply. If none arrives, returns a failed reply that says why.
   wire::Reply ask(const wire::Operation& operation, std::chrono::milliseconds at_most = usual_limit);
-  /// Returns whether a server was there that has gone.
+  /// Returns whether the server was connected and has disappeared.
   bool server_is_gone() const { return client_.server_is_gone(); }
 
   static constexpr std::chrono::milliseconds usual_limit{30'000};
-  /// For what takes as long as controllers and new worlds do.
+  /// For operations whose duration depends on controllers or on loading a world.
   static constexpr std::chrono::milliseconds no_limit = std::chrono::hours(24 * 365);
 
  private:
@@ -29,7 +29,7 @@ class RunControl {
   const std::atomic<bool>& stop_;
 };
 
-/// Returns the result of a request as services have it, with the server's words.
+/// Returns the result of a request in the format of the services, with the server's error message.
 messages::ros::simulation::Result result_of(const wire::Reply& reply);
 
 }  // namespace cohort::ros2

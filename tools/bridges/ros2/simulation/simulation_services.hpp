@@ -16,21 +16,21 @@ struct OfferedService {
   std::string name{};       ///< such as `/step_simulation`
   std::string type{};       ///< such as `simulation_interfaces/srv/StepSimulation`
   std::string type_hash{};  ///< `RIHS01_…`
-  /// Returns the reply to a request, both in CDR. Throws messages::CdrError if the request is none of this type.
+  /// Returns the reply to a request, both in CDR. Throws messages::CdrError if the request is not of this type.
   std::function<messages::Bytes(messages::ByteView request)> answer;
 };
 
-/// The layout of messages that changed between versions of simulation_interfaces and does not show by itself.
+/// The version of simulation_interfaces, which determines the layout of some messages and cannot be detected from them.
 enum class InterfaceVersion {
-  v1,  ///< as releases up to Kilted have it
+  v1,  ///< for ROS releases up to Kilted
   v2,
 };
 
-/// The services of simulation_interfaces for a run. Their results are the server's, as its operations have the same
-/// numbers. One thread.
+/// The services of simulation_interfaces for a run. Their result codes are the server's; codes that ROS 2 does not
+/// define become OPERATION_FAILED. Not thread-safe.
 class SimulationServices {
  public:
-  /// Waits end while `stop` is set. `experiment` is called when a request needs it first. Throws ControlError.
+  /// Waits end while `stop` is set. `experiment` is called at the first request that needs it. Throws ControlError.
   SimulationServices(const ControlOptions& options, EntityServices::MakeExperiment experiment, EntityListener listener,
                      InterfaceVersion version, const std::atomic<bool>& stop);
   SimulationServices(const SimulationServices&) = delete;

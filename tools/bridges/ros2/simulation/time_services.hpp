@@ -4,7 +4,7 @@
 #include "idl/messages/ros_simulation_services.hpp"
 #include "tools/bridges/ros2/simulation/run_control.hpp"
 
-/// Answers of the services that are of the run as a whole.
+/// Answers of the services for the run as a whole.
 namespace cohort::ros2 {
 
 namespace simulation = messages::ros::simulation;

@@ -4,8 +4,8 @@
 
 namespace cohort::tool {
 
-/// Returns the page of docs/reference about the elements of SDFormat, made from the rules that files are checked
-/// against.
+/// Returns the page of docs/reference about the elements of SDFormat, made from the rules against which files are
+/// checked.
 std::string sdf_elements();
 
 /// Returns the page of docs/reference about the elements of URDF.

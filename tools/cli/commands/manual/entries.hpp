@@ -15,7 +15,7 @@ struct Topic {
   std::string_view text;
 };
 
-/// The topics that group elements, and those that are an explanation alone.
+/// Returns the topics that group elements, and the topics that only consist of an explanation.
 std::span<const Topic> topics();
 
 /// Returns all elements, those of worlds first.
@@ -27,7 +27,7 @@ std::vector<const parsing::Extension*> entries_of(std::string_view topic);
 /// Returns whether the element is a part of an experiment and not of a world.
 bool is_of_experiments(const parsing::Extension& entry);
 
-/// Returns the element that `entry` stands in, with its prefix if it is one of ours.
+/// Returns the parent element of `entry`, with the prefix `cohort:` if it is an element of Cohort.
 std::string parent_of(const parsing::Extension& entry);
 
 }  // namespace cohort::tool

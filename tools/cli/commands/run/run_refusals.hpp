@@ -5,12 +5,12 @@
 #include "server/description/experiment.hpp"
 #include "tools/cli/running/run_options.hpp"
 
-/// Refusals of options and experiments that do not fit together. All throw std::invalid_argument or InputError.
+/// Checks that reject combinations of options and experiments. All throw std::invalid_argument or InputError.
 namespace cohort::tool {
 
-/// Refuses the controller `keyboard`, for a run in one process.
+/// Rejects the controller `keyboard`, for a run in one process.
 void refuse_keyboard(const description::Experiment& experiment);
-/// Refuses options for which there is no server, for a run in one process.
+/// Rejects options that need a server, for a run in one process.
 void refuse_what_needs_a_server(const RunCommand& command);
 void refuse_rewind_without_snapshots(const RunCommand& command, const description::Experiment& experiment);
 /// Checks options for a rosbag2 bag, which is a folder with one recording.

@@ -19,9 +19,10 @@ struct NewIdentity {
   bool may_control = false;
 };
 
-/// Creates the two sides of an identity in the folders `server` and `client`, which must not exist. It has its own
-/// certificate authority, which signs a certificate and the permissions of each side; its key is then deleted. Only the
-/// owner can read the files. Throws std::runtime_error, and then leaves no files behind.
+/// Creates the two sides of an identity in the folders `server` and `client`, which must not exist. The identity has
+/// its own certificate authority, which signs a certificate and the permissions of each side. The authority's key is
+/// then deleted. Only the owner can read the files. The certificates are valid for `days`. Throws std::runtime_error,
+/// and then leaves no files behind.
 void make_identity(const NewIdentity& identity, const std::filesystem::path& server,
                    const std::filesystem::path& client, unsigned days);
 

@@ -10,13 +10,13 @@
 
 namespace cohort::tool {
 
-/// Console output of a run. Progress, events and a final error go to the log; progress is rarer where lines cannot be
-/// rewritten. The summary goes to standard output.
+/// Console output of a run. Progress, events and a final error go to the log; progress is less frequent where lines
+/// cannot be rewritten. The summary goes to standard output.
 class Terminal {
  public:
   struct Options {
     bool quiet = false;            ///< no summary
-    bool shows_progress = true;    ///< or else tells events only
+    bool shows_progress = true;    ///< false: events only
     bool own_controllers = false;  ///< the starting process reports their deaths
   };
   Terminal(Log& log, Options options) : log_(log), options_(options) {}

@@ -9,8 +9,8 @@
 namespace cohort::film {
 
 /// A client of the Chrome DevTools Protocol (https://chromedevtools.github.io/devtools-protocol) over the pipe of
-/// `--remote-debugging-pipe`: JSON messages that end with a NUL. Only what a film needs: calls, one at a time, in one
-/// page.
+/// `--remote-debugging-pipe`: JSON messages, each terminated by a NUL. It supports only what films need: one call at a
+/// time, in one page.
 class DevTools {
  public:
   using Json = nlohmann::json;
@@ -23,8 +23,8 @@ class DevTools {
   Json call(const std::string& method, const Json& parameters = Json::object());
   /// Opens a page of this size [pixels], to which further calls refer.
   void open_page(const std::string& address, std::uint32_t width, std::uint32_t height);
-  /// Returns the value of a JavaScript expression, or of the promise that it is. Throws std::runtime_error with the
-  /// message of an exception.
+  /// Returns the value of a JavaScript expression, and waits for it if it is a promise. Throws std::runtime_error with
+  /// the message of a JavaScript exception.
   Json evaluate(const std::string& expression);
 
  private:

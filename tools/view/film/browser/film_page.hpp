@@ -14,7 +14,7 @@
 
 namespace cohort::film {
 
-/// The look of pictures, and what they show besides the world.
+/// The look of pictures, and the elements that they show in addition to the world.
 struct FilmLook {
   FilmSize size{};
   std::string theme = "light";
@@ -25,19 +25,19 @@ struct FilmLook {
   bool shows_contacts = false;
   bool has_shadows = true;
   bool from_above = false;
-  std::optional<double> distance{};  ///< distance of the camera from its target [m]; by default so that all is visible
+  std::optional<double> distance{};  ///< distance of the camera from its target [m]; by default, everything is visible
 };
 
-/// Where the camera is in a picture: at a viewpoint, or as at first, moved with what is followed.
+/// The camera of a picture: at a viewpoint, or at the initial one, moved with the followed objects.
 struct FilmCamera {
   std::optional<Viewpoint> viewpoint{};
   std::optional<FilmSource::Followed> followed{};
 };
 
-/// The page of the view in a headless browser, of which each picture is drawn when it is asked for.
+/// The page of the view in a headless browser, which draws a picture when requested.
 class FilmPage {
  public:
-  /// Returns the browser. Throws std::runtime_error that names the Debian package if there is none.
+  /// Returns the path of the browser. Throws std::runtime_error that names the Debian package if there is none.
   static std::filesystem::path find_browser();
 
   /// Opens the page. Throws std::runtime_error. `stop` must outlive this.
@@ -45,9 +45,9 @@ class FilmPage {
            const std::atomic<bool>& stop);
   ~FilmPage();
 
-  /// Returns when the page has taken these messages.
+  /// Waits until the page has processed these messages.
   void await(const std::vector<Stamp>& stamps);
-  /// Returns the picture (PNG) of the messages that the page has taken. `time`: in the recording [s].
+  /// Returns a picture (PNG) of the messages that the page has processed. `time` is the log time in the recording [s].
   std::string draw(double time, const FilmCamera& camera);
 
  private:

@@ -8,7 +8,7 @@ export function download(content: Blob, name: string): void {
 }
 
 export function screenshot(canvas: HTMLCanvasElement, draw: () => void): Promise<Blob> {
-  draw(); // the picture is there until the browser composes the page
+  draw(); // the picture is kept until the browser composes the page
   return new Promise((resolve, reject) =>
     canvas.toBlob(
       (blob) => (blob ? resolve(blob) : reject(new Error("the browser cannot create a picture"))),
@@ -17,7 +17,7 @@ export function screenshot(canvas: HTMLCanvasElement, draw: () => void): Promise
   );
 }
 
-/** Records the picture as WebM while it is on. */
+/** Records the picture as WebM from `start` to `stop`. */
 export class Film {
   private recorder: MediaRecorder | undefined;
 

@@ -13,8 +13,8 @@ export class Chosen {
   ) {}
 
   /**
-   * Selects and hides in another scene the entities that have the same names. Returns the entity that was selected last,
-   * or -1 if it is gone.
+   * Moves to another scene, and selects and hides the entities that have the same names there. Returns the entity that
+   * was selected last, or -1 if it is missing.
    */
   moveTo(scene: Scene): number {
     const nameOf = (entity: number): string | undefined => this.scene?.entities[entity].name;
@@ -50,7 +50,7 @@ export class Chosen {
     return new Set(robots.filter((robot) => robot !== none));
   }
 
-  /** Hides all that can move but the selection. */
+  /** Hides all movable entities except the selection. */
   isolate(): void {
     const { models, entities } = this.scene ?? { models: [], entities: [] };
     const isOther = (entity: number): boolean =>

@@ -1,15 +1,15 @@
 import { defaultSteering, readSteer } from "./hands/steering";
 
-/** Commands of the console. */
+/** A command of the console. */
 export interface Command {
   name: string;
-  usage: string; // its arguments
+  usage: string; // the arguments
   help: string;
   complete?: (index: number) => readonly string[]; // candidates for an argument
-  run: (args: string[]) => unknown; // its output, if that is a text or a promise of one
+  run: (args: string[]) => unknown; // returns the output, if it is a text or a promise of one
 }
 
-/** `line` is its name, and after it its arguments. */
+/** Returns a command. `line` is its name, followed by its arguments. */
 export function command(line: string, help: string, run: Command["run"], complete?: Command["complete"]): Command {
   const [name] = line.split(" ", 1);
   return { name, usage: line.slice(name.length + 1), help, complete, run };
@@ -48,12 +48,15 @@ export const defaultKeys: Record<string, string> = {
   "?": "keys",
 };
 
-/** Splits a line into words; quotes keep spaces. */
+/** Splits a line into words; spaces within quotes are kept. */
 export function words(line: string): string[] {
   return [...line.matchAll(/"([^"]*)"|'([^']*)'|(\S+)/g)].map(([, a, b, c]) => a ?? b ?? c);
 }
 
-/** Commands of a line or a script: `;` and new lines part them, `#` begins a remark; both not within quotes. */
+/**
+ * Splits a line or a script into commands. Outside quotes, `;` and line breaks separate commands, and `#` begins a
+ * comment.
+ */
 export function statements(text: string): string[] {
   const found: string[] = [];
   for (const line of text.split("\n")) {
@@ -75,7 +78,7 @@ export function statements(text: string): string[] {
   return found.map((each) => each.trim()).filter((each) => each !== "");
 }
 
-/** The commands that there are, aliases, scripts and what keys do; all but the first are kept in the browser. */
+/** All commands, aliases, scripts and key bindings. All except the commands are stored in the browser. */
 export class Commands {
   private readonly commands = new Map<string, Command>();
   private profile: Profile = { aliases: {}, keys: { ...defaultKeys }, scripts: {}, steering: { ...defaultSteering } };
@@ -102,12 +105,12 @@ export class Commands {
   keys(): Readonly<Record<string, string>> {
     return this.profile.keys;
   }
-  /** Effect of a held key on a driven robot. */
+  /** Returns the effect of a held key on a driven robot. */
   steeringOfKey(key: string): string | undefined {
     return this.profile.steering[key];
   }
 
-  /** Runs a line or a script. Throws Error with a sentence for what cannot be done. */
+  /** Runs a line or a script. Throws Error with a message to the user if a command fails. */
   async run(text: string, depth = 0): Promise<string> {
     if (depth > deepestAlias) throw new Error("the alias refers to itself");
     const lines = statements(text);
@@ -139,7 +142,7 @@ export class Commands {
     throw new Error(`there is no command '${name}'`);
   }
 
-  /** Returns what a line does: the help of its command, or the line itself if it has arguments. */
+  /** Returns a description of a line: the help of its command, or the line itself if it has arguments. */
   helpOf(line: string): string {
     const [name, ...args] = words(line);
     return args.length === 0 ? (this.commands.get(name)?.help ?? line) : line;
@@ -167,7 +170,7 @@ export class Commands {
     try {
       localStorage.setItem(storage, JSON.stringify(this.profile));
     } catch {
-      // It lasts until the page is closed.
+      // Storage is not available: the profile is lost when the page is closed.
     }
   }
 

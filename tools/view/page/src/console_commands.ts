@@ -33,14 +33,14 @@ function numberOf(text: string | undefined, what: string): number {
   return number;
 }
 
-/** Asks the server. Throws Error with what it said if it could not be done. */
+/** Sends a request, and returns the answer's text. Throws Error with the server's message if it fails. */
 async function ask(connection: Connection, request: ViewRequest): Promise<string> {
   const { done, text } = await connection.ask(request);
   if (!done) throw new Error(text);
   return text;
 }
 
-/** Adds the commands of the console beside those of Commands itself. */
+/** Adds the commands of the console to those of Commands itself. */
 export function addConsoleCommands(parts: Parts): void {
   for (const each of [
     ...playbackCommands(parts),
@@ -308,7 +308,7 @@ function worldCommands({ viewer, connection }: Parts): Command[] {
 
 const isCameraMode = (command: string): boolean => ["orbit", "follow", "top", "eye", "fly"].includes(command);
 
-/** Which of the tools are on. */
+/** Shows which tools are switched on. */
 export function showPressed(viewer: Viewer): void {
   for (const button of document.querySelectorAll<HTMLButtonElement>("#tools [data-command]")) {
     const { command = "" } = button.dataset;
@@ -318,13 +318,13 @@ export function showPressed(viewer: Viewer): void {
   }
 }
 
-/** Returns the theme that was chosen before, or else the one that the system prefers. */
+/** Returns the theme that the user has chosen before, or otherwise the one that the system prefers. */
 export function preferredTheme(): "light" | "dark" {
   try {
     const kept = localStorage.getItem(themeKey);
     if (kept === "light" || kept === "dark") return kept;
   } catch {
-    // A page in a frame of another one may keep nothing in some browsers.
+    // Some browsers offer no storage to a page that is embedded in a frame.
   }
   return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 }

@@ -23,13 +23,16 @@ interface Moment {
 }
 
 const filmLayers: readonly Layer[] = ["labels", "trails", "contacts", "rays", "shadows"];
-const margin = 0.4; // [m] around what is followed
+const margin = 0.4; // [m] around the followed objects
 const pastBlend = 1000; // [ms] after which poses are those of the last frame
 
 const boxAround = (centre: readonly number[], radius: number): Box3 =>
   new Sphere(new Vector3(...centre), radius).getBoundingBox(new Box3());
 
-/** Draws the pictures of `cohort film`, each when it is asked for. The page is in this mode with `#film`. */
+/**
+ * Draws the pictures of `cohort film` on request. The page is in this mode if its address has the parameter `film`
+ * after `#`.
+ */
 export class FilmMode {
   readonly isOn = new URLSearchParams(location.hash.slice(1)).has("film");
   private readonly picture = document.createElement("canvas");
@@ -51,7 +54,7 @@ export class FilmMode {
     Object.assign(canvas.style, { position: "fixed", left: "0", top: "0", width, height });
     Object.assign(this.picture, { width: look.width, height: look.height });
     viewer.isExact = true;
-    Object.assign(viewer.stage.quality, { level: 0, isHeld: true }); // the finest, before a theme is chosen
+    Object.assign(viewer.stage.quality, { level: 0, isHeld: true }); // the finest level, set before a theme is chosen
     viewer.stage.renderer.setPixelRatio(1);
     viewer.stage.resize(look.width, look.height);
     viewer.wear(look.theme);
@@ -74,7 +77,7 @@ export class FilmMode {
     if (!look || !context) throw new Error("the film is not prepared");
     viewer.cameras.look(moment.viewpoint ?? this.viewpoint(moment, look));
     viewer.draw(performance.now() + pastBlend);
-    context.drawImage(this.canvas, 0, 0, picture.width, picture.height); // it lasts until this task ends
+    context.drawImage(this.canvas, 0, 0, picture.width, picture.height); // the picture is kept until this task ends
     this.drawLabels(context);
     const size = Math.max(12, Math.round(picture.height / 36));
     context.font = `${size}px ${getComputedStyle(document.body).fontFamily}`;
@@ -83,7 +86,7 @@ export class FilmMode {
     return picture.toDataURL("image/png");
   }
 
-  // The camera as it was at first, moved with what is followed.
+  // Returns the initial viewpoint, moved with the followed objects.
   private viewpoint({ followed }: Moment, look: FilmLook): Viewpoint {
     const { cameras, stage } = this.viewer;
     if (!this.offset) {
@@ -111,7 +114,7 @@ export class FilmMode {
     }
   }
 
-  // In a lower corner.
+  // Draws a text in a lower corner.
   private drawText(context: CanvasRenderingContext2D, text: string, size: number, side: "left" | "right"): void {
     const { width, height } = this.picture;
     const space = 0.6 * size;
@@ -122,7 +125,7 @@ export class FilmMode {
     context.fillText(text, left + space, height - 1.9 * size, textWidth);
   }
 
-  // Leaves the colour of text set.
+  // Draws the background of a text, and sets the colour for the text.
   private drawPill(context: CanvasRenderingContext2D, x: number, y: number, width: number, height: number): void {
     const style = getComputedStyle(document.body);
     context.fillStyle = style.getPropertyValue("--card");

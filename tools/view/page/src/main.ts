@@ -22,10 +22,10 @@ import { Viewer } from "./viewer";
 
 const canvas = element("canvas") as HTMLCanvasElement;
 const mostWatched = 256; // robots; also in tools/view/web/client_session.hpp
-const clickSlack = 4; // [pixels] that a mouse may move in a click
+const clickSlack = 4; // [pixels] by which the mouse may move during a click
 
 let bytes = 0;
-let unrecorded = ""; // why the recording of the run has ended, once it has
+let unrecorded = ""; // reason why the recording of the run has ended; empty while it records
 let notes: readonly string[] = []; // from the last status
 
 const viewer: Viewer = new Viewer(canvas, (robots) => {
@@ -181,13 +181,13 @@ canvas.addEventListener(
   ({ clientX: x, clientY: y, shiftKey, pointerId }) => {
     pressed = { x, y };
     const isGrabbed = shiftKey && objects.grab(x, y);
-    if (isGrabbed) canvas.setPointerCapture(pointerId); // a release over a card counts too
+    if (isGrabbed) canvas.setPointerCapture(pointerId); // so that a release over a card is noticed too
     viewer.cameras.controls.enabled = !isGrabbed && viewer.cameras.mode !== "eye";
   },
   { capture: true },
 );
 canvas.addEventListener("pointermove", ({ clientX: x, clientY: y }) => objects.hover(x, y));
-// With Ctrl an entity is added to the selection, or taken out of it.
+// Selects the entity under the mouse. With Ctrl, adds it to the selection or removes it.
 function pick(x: number, y: number, isAdded: boolean): void {
   const entity = viewer.pickAt(x, y);
   if (!isAdded) viewer.chosen.select(entity);
@@ -245,7 +245,7 @@ setInterval(() => {
   bytes = 0;
 }, 1000);
 
-/** For tests and for the browser's console. */
+/** Exports for tests and for the browser's console. */
 Object.assign(window, {
   cohort: { viewer, commands, connection, driving, objects, plots, film, run: (line: string) => commands.run(line) },
 });

@@ -35,8 +35,8 @@ import { Textures } from "./picture/textures";
 export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sound" | "collisions";
 
 const mostTold = 5; // selected entities
-const manyEntities = 1500; // above, shadows are off unless asked for
-const boundsShare = 12; // the times that finding where everything is takes, between two of them
+const manyEntities = 1500; // above this number, shadows are off unless requested
+const boundsShare = 12; // minimum interval between searches of bounds, as a multiple of a search's duration
 
 /** The picture and sound of the world. */
 export class Viewer {
@@ -53,9 +53,9 @@ export class Viewer {
   );
   signals: SceneSignals | undefined;
   framesDrawn = 0;
-  /** Finds in each picture where everything is, however long that takes, such as for a film. */
+  /** True if bounds are computed for each picture, regardless of the time this takes, such as for a film. */
   isExact = false;
-  /** Is called when the page itself switches a layer. */
+  /** Called when the page itself switches a layer. */
   onLayers: () => void = () => undefined;
 
   /** The images of the scene. */
@@ -77,7 +77,7 @@ export class Viewer {
   private nextBounds = 0; // [ms]
   private lastAspect = 0;
   private lastDrawn = performance.now();
-  private lastPicture: number | undefined; // [ms] of the page's clock; nothing if the page was hidden since
+  private lastPicture: number | undefined; // [ms] of the page's clock; undefined if the page was hidden since
   private world = "";
 
   constructor(
@@ -183,7 +183,10 @@ export class Viewer {
     return pick(this.poses, this.instances, this.stage.camera, this.inPicture(x, y));
   }
 
-  /** Where the picture shows a height of the world [m] at a place of the page; nothing above the horizon. */
+  /**
+   * Returns the x and y in the world [m] that the picture shows at a point of the page, at this height [m]. Returns
+   * undefined above the horizon.
+   */
   placeAt(x: number, y: number, height: number): [number, number] | undefined {
     const raycaster = new Raycaster();
     raycaster.setFromCamera(this.inPicture(x, y), this.stage.camera);
@@ -191,7 +194,7 @@ export class Viewer {
     return at ? [at.x, at.y] : undefined;
   }
 
-  // Returns a place of the page in the picture: from -1 at its left and lower edges to 1.
+  // Converts a point of the page to the picture: from -1 at its left and lower edges to 1.
   private inPicture(x: number, y: number): Vector2 {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     return new Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height);
@@ -222,7 +225,7 @@ export class Viewer {
     if (panel) showLegend(panel, this.legend());
   }
 
-  /** Says in a few sentences what is seen. */
+  /** Returns a description of the picture in a few sentences. */
   describe(): string {
     const { poses } = this;
     if (!poses?.frame) return "There is no world yet.";
@@ -275,7 +278,7 @@ export class Viewer {
   /** Draws a picture, but only a few times a second while nothing moves. */
   drawIfDue(now: number): void {
     if (this.stillness.isDue(now, this.lastDrawn, this.poses)) this.draw(now);
-    else this.lastPicture = undefined; // the time until the next one tells nothing about the speed of drawing
+    else this.lastPicture = undefined; // the time to the next picture is not the speed of drawing
   }
 
   draw(now: number): void {
@@ -312,7 +315,7 @@ export class Viewer {
     this.stillness.take(poses, stage.camera);
   }
 
-  /** Draws at full resolution, for a picture that is kept. */
+  /** Draws at full resolution, such as for a screenshot. */
   drawFinely(): void {
     this.draw(performance.now());
     this.stage.drawFinely(this.cameras.target);
@@ -345,7 +348,7 @@ export class Viewer {
     this.areBoundsStale = true;
   }
 
-  // Looks where everything is: for the camera that keeps it in the picture, and for shadows.
+  // Computes the bounds of everything, for the camera that keeps them in the picture, and for shadows.
   private findBounds(): void {
     const begin = performance.now();
     const { aspect } = this.stage.camera;
@@ -359,7 +362,7 @@ export class Viewer {
     this.nextBounds = performance.now() + boundsShare * (performance.now() - begin);
   }
 
-  /** Draws coarser if the pictures come slowly, and finer again, by the time since the picture before [ms]. */
+  /** Adapts the quality to the time since the previous picture [ms]. */
   adapt(elapsed: number): void {
     if (!this.stage.adapt(elapsed)) return;
     this.switchShadows();
@@ -367,7 +370,7 @@ export class Viewer {
     this.onLayers();
   }
 
-  // As the page chooses, unless the user has chosen.
+  // The page decides, unless the user has chosen.
   private switchShadows(): void {
     if (this.areShadowsByHand || !this.poses) return;
     const isOn = this.poses.scene.entities.length <= manyEntities && levels[this.stage.quality.level].shadows;

@@ -1,6 +1,6 @@
 import type { SceneChannel } from "./messages";
 
-/** Where a channel's values begin among those of all channels. */
+/** Returns the index of a channel's first value among the values of all channels. */
 export function firstValue(channels: readonly SceneChannel[], name: string): number | undefined {
   let first = 0;
   for (const channel of channels) {
@@ -10,7 +10,7 @@ export function firstValue(channels: readonly SceneChannel[], name: string): num
   return undefined;
 }
 
-/** Each value with a name of its own: that of its channel, and its place if there are several. */
+/** Returns a unique name for each value: that of its channel, with its index if the channel has several values. */
 export function valueNames(channels: readonly SceneChannel[]): string[] {
   return channels.flatMap(({ name, size }) =>
     size === 1 ? [name] : Array.from({ length: size }, (_, i) => `${name}[${i}]`),
@@ -22,10 +22,10 @@ export const commandedPrefix = "→ ";
 
 /** A value of a robot. */
 export interface Value {
-  name: string; // name of its channel, with its place if there are several
+  name: string; // name of its channel, with its index if there are several
   unit: string;
   isCommanded: boolean;
-  index: number; // among the observed or the commanded ones
+  index: number; // among the observed or the commanded values
 }
 
 function valuesOf(channels: readonly SceneChannel[], isCommanded: boolean): Value[] {
@@ -34,14 +34,14 @@ function valuesOf(channels: readonly SceneChannel[], isCommanded: boolean): Valu
   return valueNames(channels).map((name, index) => ({ name: prefix + name, unit: units[index], isCommanded, index }));
 }
 
-/** All values of a robot: the observed ones, then the commanded ones. */
+/** Returns all values of a robot: the observed ones, then the commanded ones. */
 export function valuesOfRobot(observation: readonly SceneChannel[], command: readonly SceneChannel[]): Value[] {
   return [...valuesOf(observation, false), ...valuesOf(command, true)];
 }
 
 /**
- * The values that a text of the console means: one by its name, which its unit may follow (`motor/0/velocity [rad/s]`),
- * or all those of a unit.
+ * Returns the values that a text of the console selects: one by its name, optionally followed by its unit
+ * (`motor/0/velocity [rad/s]`), or all values with a unit.
  */
 export function valuesMeant(values: readonly Value[], text: string): Value[] {
   const wanted = text.trim().replace(/\s+/g, " ");

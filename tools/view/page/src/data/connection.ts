@@ -20,11 +20,11 @@ export interface Answer {
 
 export type Handlers = { [T in Topic]?: (message: Messages[T], bytes: number) => void };
 
-/** The source of what the page shows. */
+/** The source of the data that the page shows. */
 export interface Connection {
   /** The time of the last message of each topic of a server [ns]. */
   readonly received: ReadonlyMap<Topic, bigint>;
-  /** Passes messages of a topic to its handler from now on, or no longer; also after the connection was lost. */
+  /** Starts or stops passing messages of a topic to its handler. Also holds after the connection was lost. */
   want(topic: Topic, isWanted?: boolean): void;
   ask(request: ViewRequest): Promise<Answer>;
 }

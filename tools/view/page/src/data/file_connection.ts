@@ -4,12 +4,12 @@ import type { Answer, Connection, Handlers, ViewRequest } from "./connection";
 import type { SceneRobot, Topic, ViewStatus } from "./messages";
 import { RecordedFrames } from "./recorded_frames";
 
-const interval = 16; // [ms] between looks at the clock
+const interval = 16; // [ms] between checks of the clock
 const greatestSpeed = 1e6;
 const mostSteps = 1e6;
 const smoothing = 0.05;
 
-/** Plays the recording that the document contains, with the requests of a recording in a view (RecordingSource). */
+/** Plays the recording that the document contains, with the same requests as RecordingSource. */
 export class FileConnection implements Connection {
   readonly received: ReadonlyMap<Topic, bigint> = new Map();
   private readonly wanted = new Set<Topic>();
@@ -21,13 +21,13 @@ export class FileConnection implements Connection {
   private speed = 1;
   private factor = 1; // simulated seconds per second, measured
   private time = 0; // log time [ns]
-  private at = 0; // the frame to show
+  private at = 0; // index of the frame to show
   private lastLook = performance.now();
   // State of the page.
   private shownFrame = -1;
   private shownScene = -1;
   private shownSignals: Uint8Array | undefined;
-  private sent = new Set<Topic>(); // topics that have had this frame
+  private sent = new Set<Topic>(); // topics to which this frame was passed
   private isShowing = false;
 
   constructor(
@@ -96,7 +96,7 @@ export class FileConnection implements Connection {
     this.time = this.frames?.times[frame] ?? 0;
   }
 
-  // To the nearest frame that is at least so many ticks away. Ticks begin again with each world of a recording.
+  // Goes to the nearest frame that is at least this many ticks away. Ticks restart with each world of a recording.
   private step(ticks: number): void {
     const { frames } = this;
     this.isPlaying = false;
@@ -156,7 +156,7 @@ export class FileConnection implements Connection {
     this.at = frames.notAfter(this.time);
   }
 
-  // Passes on what the page does not show yet.
+  // Passes on the messages that the page does not show yet.
   private async show(frames: RecordedFrames): Promise<void> {
     const index = this.at;
     const scene = frames.sceneOf(index);
@@ -188,7 +188,7 @@ export class FileConnection implements Connection {
     return true;
   }
 
-  // Handlers may change what they get, so it is decoded from a copy.
+  // The message is decoded from a copy, because handlers may change it.
   private pass(topic: Topic, data: Uint8Array): void {
     let reader = this.readers.get(topic);
     if (!reader) {

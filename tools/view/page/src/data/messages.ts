@@ -1,5 +1,5 @@
-// The messages of server/viewing/scene_messages.hpp and tools/view/messages/view_messages.hpp, as rosmsg2-serialization
-// decodes them.
+// The messages of server/viewing/scene_messages.hpp and tools/view/messages/view_messages.hpp, as decoded by
+// rosmsg2-serialization.
 
 export const none = 0xffffffff;
 

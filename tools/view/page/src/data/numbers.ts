@@ -1,10 +1,10 @@
-/** Returns a number with so many digits after the point, and never a negative zero. */
+/** Returns a number with this many decimals, and never a negative zero. */
 export function fixed(value: number, digits: number): string {
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text;
 }
 
-/** Returns a number for people: with three digits after the point as long as these say something. */
+/** Returns a number as text for the user: with three decimals as long as these are significant. */
 export function numberText(value: number | null | undefined): string {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
@@ -13,5 +13,5 @@ export function numberText(value: number | null | undefined): string {
   return fixed(value, 3);
 }
 
-/** Returns a unit behind a number; nothing for numbers without unit. */
+/** Returns the text of a unit after a number; empty for numbers without a unit. */
 export const unitAfter = (unit: string): string => (unit === "1" || unit === "" ? "" : ` ${unit}`);

@@ -1,4 +1,4 @@
-// Unpacks the data of a page that contains a recording. tools/view/html/ packs it.
+// Unpacks the data of a page that contains a recording, which tools/view/html/ has packed.
 
 export interface Packed {
   topic: number; // index in the page's table
@@ -11,16 +11,16 @@ export interface Table {
   name: string;
   seed: string;
   note: string;
-  events: number; // block
+  events: number; // index of their block
   contacts: boolean;
-  robots: number[]; // ids of the robots whose channels the file has
+  robots: number[]; // ids of the robots whose channels the file contains
   topics: { name: string; schema: string }[];
   chunks: { block: number; scene: number; times: number[]; ticks: number[] }[]; // times [ns]
 }
 
 const blockSelector = 'script[type="application/x-cohort"]';
 
-/** Returns the blocks of this document; there are none in the page of a server. */
+/** Returns the blocks of this document; none for the page of a server. */
 export const blocksOf = (page: Document): HTMLElement[] => [...page.querySelectorAll<HTMLElement>(blockSelector)];
 
 async function inflated(block: HTMLElement): Promise<ArrayBuffer> {

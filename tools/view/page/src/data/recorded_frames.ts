@@ -3,16 +3,16 @@ import { type Packed, readMessages, readTable, type Table } from "./packed";
 /** Messages of a frame by topic, packed as CDR. */
 export type Frame = ReadonlyMap<string, Uint8Array>;
 
-const mostChunks = 4; // that are kept unpacked
+const mostChunks = 4; // number of unpacked chunks to keep
 
-/** The frames of the recording that a document contains. A frame is unpacked when it is wanted. */
+/** The frames of the recording that a document contains. A frame is unpacked when it is requested. */
 export class RecordedFrames {
   /** Log times [ns] and ticks of all frames. */
   readonly times: number[] = [];
   readonly ticks: number[] = [];
   private readonly chunkOfFrame: number[] = [];
   private readonly firstOfChunk: number[] = [];
-  private readonly chunks = new Map<number, Promise<Frame[]>>(); // the last one that was wanted is at the end
+  private readonly chunks = new Map<number, Promise<Frame[]>>(); // in the order of the last request
 
   private constructor(
     private readonly blocks: readonly HTMLElement[],

@@ -12,7 +12,7 @@ interface Subscribed {
 const firstWait = 250; // [ms]
 const longestWait = 4000;
 
-/** A client of the server that the page came from; connects again when the connection is lost. */
+/** A client of the server from which the page was loaded. It reconnects when the connection is lost. */
 export class ServerConnection implements Connection {
   readonly received = new Map<Topic, bigint>();
   private client: FoxgloveClient | undefined;
@@ -83,7 +83,7 @@ export class ServerConnection implements Connection {
     });
     client.on("serviceCallFailure", ({ callId, message }) => this.answer(callId, { done: false, text: message }));
     client.on("status", ({ message }) => console.warn(message));
-    client.on("error", () => undefined); // close comes next
+    client.on("error", () => undefined); // "close" follows
     client.on("close", () => this.lost());
   }
 
@@ -119,7 +119,10 @@ export class ServerConnection implements Connection {
   }
 }
 
-/** The address of the WebSocket of this page; the token stands after its `#`, where no server sees it. */
+/**
+ * Returns the address of this page's WebSocket. The token is in the page's fragment, after `#`, which browsers do not
+ * send.
+ */
 export function addressOfServer(page: Location): string {
   const token = new URLSearchParams(page.hash.slice(1)).get("token");
   return `ws://${page.host}/${token ? `?token=${encodeURIComponent(token)}` : ""}`;

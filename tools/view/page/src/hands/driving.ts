@@ -7,8 +7,8 @@ import type { ConsolePanel } from "../panels/console";
 import type { Viewer } from "../viewer";
 import { commandOf, type Drive, neutralOf, padOf, readSteer, type Steer, sliderEnds, steerOfPad } from "./steering";
 
-const interval = 50; // [ms] from one request to the next at the least
-const longestSilence = 200; // [ms]; the view lets a robot stand that it hears nothing of for half a second
+const interval = 50; // [ms] between requests, at least
+const longestSilence = 200; // [ms]; after 500 ms without a request, the robot gets its neutral command
 
 interface Driven {
   name: string;
@@ -20,7 +20,7 @@ interface Driven {
 /** Drives one robot of a server by keys, a game pad and sliders. */
 export class Driving {
   private driven: Driven | undefined;
-  private readonly held = new Map<string, string>(); // keys by where they are on the keyboard
+  private readonly held = new Map<string, string>(); // keys by their position on the keyboard
   private isAsking = false;
   private isClaiming = false;
   private sent: number[] = [];
@@ -60,7 +60,7 @@ export class Driving {
     ];
   }
 
-  /** Throws Error with what the server says if it does not give the robot. */
+  /** Claims a robot. Throws Error with the server's message if the robot cannot be driven. */
   async drive(name?: string): Promise<string> {
     const scene = this.viewer.poses?.scene;
     const entity = name === undefined ? this.viewer.chosen.selected : this.viewer.find(name);
@@ -109,7 +109,7 @@ export class Driving {
     this.held.delete(code);
   }
 
-  /** The inspector shows something else, or the same of another scene. */
+  /** Called when the inspector shows another entity or another scene. */
   show(): void {
     const robot = this.selectedRobot();
     const driven = robot === this.driven?.name ? this.driven : undefined;
@@ -176,7 +176,7 @@ export class Driving {
     if (line.textContent !== text) line.textContent = text;
   }
 
-  // All values but those that the arrows drive.
+  // Returns sliders for all values except those that the arrow keys drive.
   private sliders(driven: Driven): HTMLElement[] {
     const byArrows = new Set(driven.drives.map(({ value }) => value));
     const owners = driven.channels.flatMap((channel) => Array.from({ length: channel.size }, () => channel));

@@ -18,7 +18,7 @@ interface Dragged {
   grabbed: [number, number];
 }
 
-/** Objects of a server by hand: add, drag, remove, switch. */
+/** Lets the user add, drag, remove and switch objects of a server. */
 export class Objects {
   private readonly ghost = new Ghost();
   private readonly card = element("adding");
@@ -69,7 +69,7 @@ export class Objects {
     this.ghost.hide();
   }
 
-  /** The scene or what is selected is another one. */
+  /** Called when the scene or the selection has changed. */
   show(): void {
     if (this.isAdding) this.offer(this.models.value);
     const lamps = this.lampsOfSelected();
@@ -81,7 +81,7 @@ export class Objects {
     element("light").textContent = isOn ? "light off" : "light on";
   }
 
-  // With the mouse. Each is told where it is in the picture.
+  // Mouse input, with positions in the picture.
 
   /** Returns whether there is an object to drag. */
   grab(x: number, y: number): boolean {
@@ -92,7 +92,7 @@ export class Objects {
     const { scene } = poses;
     const { name, model } = scene.entities[entity];
     const [position, turn] = [new Vector3(), new Quaternion()];
-    poses.read(poses.placeOf(entity), position, turn, 1); // the picture may still be on its way there
+    poses.read(poses.placeOf(entity), position, turn, 1); // the drawn pose may lag behind
     const grabbed = viewer.placeAt(x, y, position.z);
     if (!grabbed) return false;
     const { place, heading } = originOf(scene, model, position, turn);
@@ -125,7 +125,7 @@ export class Objects {
       await this.ask({ operation: "move", name: dragged.name, numbers: [...numbers, dragged.heading] });
   }
 
-  /** Handles a click; returns false if it is not for adding or dragging. */
+  /** Adds an object at the clicked place. Returns false if the user is not adding objects. */
   place(x: number, y: number): boolean {
     const scene = this.viewer.poses?.scene;
     if (!this.isAdding || !scene) return false;
@@ -156,7 +156,7 @@ export class Objects {
     this.suggestName();
   }
 
-  // Suggests the first name that no object has, nor had in this run.
+  // Suggests the first name that no object has or had in this run.
   private suggestName(): void {
     const taken = new Set(this.viewer.poses?.scene.entities.map(({ name }) => name));
     const kept = this.name.value.trim();
@@ -167,7 +167,7 @@ export class Objects {
     this.name.dataset.model = this.models.value;
   }
 
-  // Robots cannot come while it runs, and there is one ground.
+  // Leaves out robots, which cannot be added during the run, and the ground, of which there is only one.
   private modelNames(): string[] {
     const scene = this.viewer.poses?.scene;
     if (!scene) return [];

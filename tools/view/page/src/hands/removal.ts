@@ -3,7 +3,10 @@ import type { Viewer } from "../viewer";
 
 const graceTime = 5000; // [ms]
 
-/** Removes an object a few seconds after it was asked to, so that the user can undo it. It is hidden meanwhile. */
+/**
+ * Removes an object a few seconds after the user's request, so that the user can undo it. The object is hidden
+ * meanwhile.
+ */
 export class Removal {
   private pending: { name: string; timer: ReturnType<typeof setTimeout> } | undefined;
 
@@ -36,7 +39,7 @@ export class Removal {
     if (name !== undefined && !(await this.remove(name)) && found !== undefined) this.viewer.chosen.unhide(found);
   }
 
-  // Returns the entity that was to be removed, if it is still there.
+  // Ends the wait. Returns the entity that was to be removed, if it still exists.
   private end(): number | undefined {
     if (!this.pending) return undefined;
     clearTimeout(this.pending.timer);

@@ -1,9 +1,9 @@
 import { valueNames } from "../data/channels";
 import type { SceneChannel, SceneDrive } from "../data/messages";
 
-// Plain functions that turn held keys and a game pad into a robot's command.
+// Pure functions that convert held keys and a game pad's state to a robot's command.
 
-/** The effect of a held key: drives over the ground, as shares of full speed, or gives a channel a value. */
+/** The effect of a held key: drives on the ground, as fractions of full speed, or sets a channel to a value. */
 export type Steer = { ahead: number; turn: number } | { channel: string; value: number };
 
 const directions: Record<string, { ahead: number; turn: number }> = {
@@ -22,10 +22,10 @@ export const defaultSteering: Readonly<Record<string, string>> = {
   a: "left",
   d: "right",
 };
-const turningShare = 0.5; // share of full speed for turning on the spot
+const turningShare = 0.5; // fraction of full speed for turning on the spot
 const deadZone = 0.15;
 
-/** Parses a line of a profile. Throws Error with a sentence if it is invalid. */
+/** Parses a line of a profile. Throws Error with a message to the user if it is invalid. */
 export function readSteer(line: string): Steer {
   const direction = directions[line];
   if (direction) return direction;
@@ -35,17 +35,19 @@ export function readSteer(line: string): Steer {
   return { channel, value: Number(value) };
 }
 
-/** A value of the command that drives over the ground, at full speed forward and counter-clockwise. */
+/**
+ * A command value that drives on the ground, with its values at full speed forward and at full speed counter-clockwise.
+ */
 export type Drive = Pick<SceneDrive, "value" | "ahead" | "turn">;
 
 export const neutralOf = (channels: readonly SceneChannel[]): number[] =>
   channels.flatMap(({ size, neutral }) => Array.from({ length: size }, () => neutral));
 
-/** The ends of a channel's slider: its limits, or half a turn to each side for an angle without limits. */
+/** Returns the ends of a channel's slider: its limits, or half a turn to each side for an angle without limits. */
 export const sliderEnds = (unit: string, lower: number, upper: number): [number, number] =>
   unit === "rad" && !Number.isFinite(lower) && !Number.isFinite(upper) ? [-Math.PI, Math.PI] : [lower, upper];
 
-/** The command of a robot: `base` where nothing else says anything. */
+/** Returns the command of a robot. Values that no input sets are those of `base`. */
 export function commandOf(
   channels: readonly SceneChannel[],
   drives: readonly Drive[],
@@ -67,7 +69,7 @@ export function commandOf(
   if (ahead === 0 && turn === 0) return values;
   const driven = drives.map((each) => ahead * each.ahead + turningShare * turn * each.turn);
   const most = drives.map((each, i) => Math.abs(driven[i]) / Math.max(Math.abs(each.ahead), Math.abs(each.turn)));
-  const share = Math.max(1, ...most.filter(Number.isFinite)); // none goes faster than it can, and the curve stays
+  const share = Math.max(1, ...most.filter(Number.isFinite)); // within the limits, and on the same arc
   drives.forEach(({ value }, i) => {
     values[value] = driven[i] / share;
   });
@@ -79,11 +81,11 @@ const beyondDeadZone = (axis: number | undefined): number => {
   return (Math.sign(axis) * (Math.min(1, Math.abs(axis)) - deadZone)) / (1 - deadZone);
 };
 
-/** The first game pad that is there. */
+/** Returns the first connected game pad. */
 export const padOf = (pads: readonly (Gamepad | null)[]): Gamepad | undefined =>
   pads.find((each) => each?.connected) ?? undefined;
 
-/** Returns the command of its left stick; nothing while the stick is at rest. */
+/** Returns the effect of the left stick; undefined while the stick is at rest. */
 export function steerOfPad({ axes }: Pick<Gamepad, "axes">): Steer | undefined {
   const [turn, ahead] = [-beyondDeadZone(axes[0]), -beyondDeadZone(axes[1])];
   return turn === 0 && ahead === 0 ? undefined : { ahead, turn };

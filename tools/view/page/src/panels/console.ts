@@ -6,7 +6,7 @@ const historyKey = "cohort.view.history";
 const longestHistory = 200;
 const callTime = 6000; // [ms]
 
-/** Where commands are typed, with what they said, history and completion. */
+/** The console, where the user types commands, with output, history and completion. */
 export class ConsolePanel {
   private readonly lines = element("lines");
   private readonly input = element("command") as HTMLInputElement;
@@ -92,7 +92,7 @@ export class ConsolePanel {
     try {
       localStorage.setItem(historyKey, JSON.stringify(this.history));
     } catch {
-      // It lasts until the page is closed.
+      // Storage is not available: the history is lost when the page is closed.
     }
     this.say(`› ${line}`, "typed");
     await this.run(line);

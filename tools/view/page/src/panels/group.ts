@@ -15,7 +15,7 @@ export interface Statistics {
   sum: number;
 }
 
-/** Returns mean, population standard deviation and sum; nothing for no values. */
+/** Returns mean, population standard deviation and sum; undefined if there are no values. */
 export function statisticsOf(values: readonly number[]): Statistics | undefined {
   if (values.length === 0) return undefined;
   const sum = values.reduce((total, each) => total + each, 0);
@@ -24,7 +24,7 @@ export function statisticsOf(values: readonly number[]): Statistics | undefined 
   return { count: values.length, mean, spread: Math.sqrt(variance), sum };
 }
 
-/** Returns a number of three digits, never "-0". */
+/** Returns a number with three significant digits, never "-0". */
 export function shortNumber(value: number): string {
   if (!Number.isFinite(value)) return String(value);
   const size = Math.abs(value);
@@ -40,8 +40,8 @@ export class GroupPanel {
   private entities: readonly number[] = [];
   private models: readonly SceneModel[] = []; // by robot
   private modelOf = new Map<number, SceneModel>();
-  private robots: readonly SceneRobot[] = []; // as they were last
-  private next: ReturnType<typeof setTimeout> | undefined; // drawing
+  private robots: readonly SceneRobot[] = []; // latest states
+  private next: ReturnType<typeof setTimeout> | undefined; // timer of the next drawing
   private readonly panel = element("group");
   private readonly title = document.createElement("h2");
   private readonly place = document.createElement("p");
@@ -72,7 +72,7 @@ export class GroupPanel {
         : `${entities.length} objects, ${robots} of them robots`;
   }
 
-  /** Shows where their middle is and how far they are spread. */
+  /** Shows the centre of the robots and their spread. */
   showPoses(poses: Poses | undefined): void {
     if (!poses || this.panel.hidden) return;
     const [at, turn, sum] = [new Vector3(), new Quaternion(), new Vector3()];

@@ -5,19 +5,19 @@ import { element } from "../element";
 import { rayLength } from "../picture/overlays";
 
 const dialRadius = 54;
-const drawInterval = 100; // [ms]; nobody reads faster
+const drawInterval = 100; // [ms]; fast enough to read
 const mostRows = 80;
 
 /** Kind, pose, sensor readings and commands of the selected entity. */
 export class Inspector {
-  /** Called with the name of a value that is to be plotted. */
+  /** Called with the name of a value that the user wants to plot. */
   onPlot: (name: string) => void = () => undefined;
 
   private model: SceneModel | undefined;
-  private robot: SceneRobot | undefined; // as it was last
-  private next: number | undefined; // drawing
+  private robot: SceneRobot | undefined; // latest state
+  private next: number | undefined; // timer of the next drawing
   private values: readonly Value[] = [];
-  private numbers: HTMLTableCellElement[] = []; // in the table, of the first values
+  private numbers: HTMLTableCellElement[] = []; // table cells of the first values
   private readonly panel = element("inspector");
   private readonly title = element("inspected");
   private readonly pose = element("pose");
@@ -72,7 +72,7 @@ export class Inspector {
     this.drawDial(this.model, this.robot);
   }
 
-  // A row for each value: its name, which plots it, the number and the unit.
+  // Makes a row for each value: its name, which plots it when clicked, the number and the unit.
   private buildTable(): void {
     const summary = document.createElement("summary");
     summary.textContent = "values";
@@ -105,7 +105,7 @@ export class Inspector {
     });
   }
 
-  // Sensors as a ring seen from above, the robot's front upwards: the nearer something is, the longer the bar.
+  // Draws the sensors as a ring seen from above, with the robot's front upwards. A nearer obstacle gives a longer bar.
   private drawDial(model: SceneModel, robot: SceneRobot): void {
     const ring = model.sensors.find(({ kind }) => kind === "proximity_ring" || kind === "lidar");
     const first = ring && firstValue(model.observation, ring.channel);

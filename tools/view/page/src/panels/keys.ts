@@ -7,7 +7,7 @@ const mouse: readonly (readonly [string, string])[] = [
 ];
 const names: Record<string, string> = { " ": "space" };
 
-/** Returns the rows of the table of keys: what the mouse does, then all keys with their commands. */
+/** Returns the rows of the table of keys: the actions of the mouse, then all keys with their commands. */
 export function keyRows(commands: Commands): HTMLElement[] {
   const keys = Object.entries(commands.keys()).map(
     ([key, line]) => [names[key] ?? key, commands.helpOf(line)] as const,

@@ -2,7 +2,7 @@ import { element } from "../element";
 
 export type Panel = "left" | "right" | "dock";
 export type DockTab = "plotting" | "events" | "console";
-type Tab = DockTab | "left" | "right"; // on a phone, one sheet shows any of them
+type Tab = DockTab | "left" | "right"; // on a phone, a single sheet shows one of them
 
 const storage = "cohort.view.panels";
 const panels: readonly Panel[] = ["left", "right", "dock"];
@@ -17,7 +17,7 @@ interface Kept {
 const defaults: Kept = { sizes: { left: 230, right: 290, dock: 210 }, closed: ["dock"], tab: "plotting" };
 const smallest: Record<Panel, number> = { left: 150, right: 210, dock: 90 };
 
-/** The panels around the picture: which are open and how large. The browser keeps both. */
+/** The panels around the picture: which of them are open, and their sizes. Both are stored in the browser. */
 export class Panels {
   private kept: Kept = defaults;
   private sheet: Tab | undefined; // on a phone
@@ -81,7 +81,7 @@ export class Panels {
     try {
       localStorage.setItem(storage, JSON.stringify(this.kept));
     } catch {
-      // It lasts until the page is closed.
+      // Storage is not available: the layout is lost when the page is closed.
     }
     this.apply();
   }
@@ -103,7 +103,7 @@ export class Panels {
       button.setAttribute("aria-pressed", String(this.isOpen(button.dataset.panel as Panel)));
   }
 
-  // By the mouse, a finger, or the arrow keys.
+  // Makes a splitter movable by the mouse, a finger, or the arrow keys.
   private makeDraggable(splitter: HTMLElement): void {
     const panel = splitter.dataset.resizes as Panel;
     const isWide = panel === "dock";

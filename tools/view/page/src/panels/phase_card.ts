@@ -9,7 +9,7 @@ interface Card {
   recording?: string;
   canRunAgain?: boolean;
   isWrong?: boolean;
-  hasNumbers?: boolean; // the tick and the hash of the last state
+  hasNumbers?: boolean; // shows the tick and the hash of the last state
 }
 
 const ends: Record<string, string> = {
@@ -19,7 +19,7 @@ const ends: Record<string, string> = {
   shut_down: "The run was shut down",
 };
 
-/** Returns the card before a run, after it, and without a connection; nothing while it runs. */
+/** Returns the card before a run, after it, and without a connection; undefined during the run. */
 export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Card | undefined {
   const isOver = status?.phase === "ended" || status?.phase === "gone";
   if (!isConnected && !isOver)
@@ -80,7 +80,7 @@ export class PhaseCard {
   private closed = "";
   private readonly panel = element("phase");
 
-  /** `numbers` returns the tick and the state hash that are shown. */
+  /** `numbers` returns the tick and the state hash to show. */
   constructor(
     replay: () => void,
     runAgain: () => void,
@@ -108,7 +108,7 @@ export class PhaseCard {
     this.show();
   }
 
-  /** The numbers of the last state have changed. */
+  /** Called when the numbers of the last state have changed. */
   refresh(): void {
     if (!this.panel.hidden) this.show();
   }

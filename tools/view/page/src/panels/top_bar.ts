@@ -9,7 +9,7 @@ const endings: Record<string, string> = {
   shut_down: "shut down",
 };
 
-/** Returns the state of a run in words, and whether something is wrong. */
+/** Returns the state of a run as text, and whether it is an error. */
 export function stateOf(status: ViewStatus | undefined, isConnected: boolean): { text: string; isWrong: boolean } {
   const isOver = status?.phase === "ended" || status?.phase === "gone";
   if (!isConnected && !isOver) return { text: status ? "disconnected" : "connecting", isWrong: status !== undefined };
@@ -29,7 +29,7 @@ export function stateOf(status: ViewStatus | undefined, isConnected: boolean): {
   }
 }
 
-/** Shows the name and the state of what is shown; numbers for experts are behind a button. */
+/** Shows the name and the state of the run or recording. A button shows further numbers for experts. */
 export class TopBar {
   private status: ViewStatus | undefined;
   private isConnected = false;

@@ -3,9 +3,9 @@ import type { Viewer } from "../viewer";
 import { type Row, rowsOf } from "./tree_rows";
 
 const rowHeight = 22; // [px]; also in tree.css
-const searched = 150; // [ms] after the last letter
+const searched = 150; // [ms] from the last typed letter to the search
 
-/** The tree of the world: teams, robots, objects and their parts. Only the rows in sight are elements. */
+/** The tree of the world: teams, robots, objects and their parts. Only visible rows exist as elements. */
 export class Tree {
   private rows: Row[] = [];
   private readonly open = new Set<string>();
@@ -41,7 +41,7 @@ export class Tree {
     element("show-all").addEventListener("click", () => this.viewer.chosen.showAll());
   }
 
-  /** The scene, the selection, or what is hidden has changed. */
+  /** Called when the scene, the selection, or the hidden entities have changed. */
   show(): void {
     const scene = this.viewer.poses?.scene;
     if (!scene) return;
@@ -113,7 +113,7 @@ export class Tree {
     else this.choose(index, event);
   }
 
-  // With Ctrl beside what is chosen already, with Shift up to a row.
+  // Selects a row: with Ctrl in addition to the present selection, with Shift all rows from the anchor to it.
   private choose(index: number, { ctrlKey = false, metaKey = false, shiftKey = false } = {}): void {
     const { viewer } = this;
     this.active = index;

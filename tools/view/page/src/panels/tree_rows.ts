@@ -2,7 +2,7 @@ import { none, type Scene, type SceneModel } from "../data/messages";
 
 /** A row of the tree: a group of entities, an entity, or a part of one. */
 export interface Row {
-  key: string; // stays the same for the same thing
+  key: string; // identifies the row in later scenes
   text: string;
   detail: string;
   level: number; // from 1
@@ -28,7 +28,7 @@ const partsOf = (model: SceneModel): readonly (readonly [string, string])[] => {
   ];
 };
 
-// Teams in the order of their first robots, then objects that move, then what is fixed.
+// Returns teams in the order of their first robots, then movable objects, then static ones.
 function groupsOf(scene: Scene): Group[] {
   const groups = new Map<string, Group>();
   scene.entities.forEach(({ robot, team, model }, entity) => {
@@ -46,8 +46,10 @@ function groupsOf(scene: Scene): Group[] {
   return [...groups.values()].sort((a, b) => rank(a) - rank(b));
 }
 
-/** Returns the rows to show: those of open parents, or, if something is searched for, the entities that have it in their
- * name or kind, with their groups. */
+/**
+ * Returns the rows to show: those of open parents or, if `wanted` is not empty, the entities whose name or kind
+ * contains it, with their groups.
+ */
 export function rowsOf(scene: Scene, open: ReadonlySet<string>, wanted: string): Row[] {
   const rows: Row[] = [];
   const text = wanted.trim().toLowerCase();

@@ -4,11 +4,11 @@ import { growBy, unionOf } from "./framing";
 import type { Instances } from "./instances";
 import type { Poses } from "./poses";
 
-const mostOfStatic = 4; // a world that is larger than this ratio to what moves in it is not shown as a whole
+const mostOfStatic = 4; // largest ratio of the world's size to its movable part's, at which all is shown
 
-/** Boxes around the bodies of a scene, by the geometry that is drawn. */
+/** Boxes around the bodies of a scene, computed from the drawn geometry. */
 export class Bounds {
-  /** Around every body, as `boxes` has found them last. */
+  /** The boxes of all bodies at the last call of `boxes`. */
   all: readonly Box3[] = [];
   private readonly boxesOfModel = new Map<number, { link: number; box: Box3 }[]>();
   private readonly matrix = new Matrix4();
@@ -28,7 +28,7 @@ export class Bounds {
     }
   }
 
-  /** Returns the box around an entity as it is drawn; nothing if it is absent or has no shapes. */
+  /** Returns the box around an entity as it is drawn; undefined if it is absent or has no shapes. */
   boxOf(entity: number): Box3 | undefined {
     const { poses } = this;
     const parts = this.boxesOfModel.get(poses.scene.entities[entity].model);
@@ -41,7 +41,7 @@ export class Bounds {
     return box;
   }
 
-  /** Returns boxes around robots, movable objects and lamps, and around what is static unless it is much larger. */
+  /** Returns boxes around robots, movable objects and lamps, and around static objects unless these are much larger. */
   boxes(): Box3[] {
     const { scene, absent } = this.poses;
     const moving: Box3[] = [];

@@ -14,26 +14,26 @@ const flySpeed = 1.5; // [m/s]
 const longestFlight = 0.1; // [s] between two pictures
 const fromAbove = new Vector3(0, 1e-3, -1);
 const heading = 0.35; // [rad] of the first view, to the left of the y axis
-const elevations = [15, 22]; // [degrees] of the first view, of what is tall and of what is flat
+const elevations = [15, 22]; // [degrees] of the first view, for tall and for flat worlds
 const hasReducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
 
-/** Where people look from. */
+/** The camera and its modes. */
 export class Cameras {
   readonly controls: OrbitControls;
   mode: CameraMode = "orbit";
   /** Keys that are held and fly the camera: forward, back, left, right, up, down. */
   readonly held = new Set<string>();
-  /** Returns true while the camera must stand still, such as while the user aims. */
+  /** Returns true while the camera must not move, such as while the user aims. */
   isHeld: () => boolean = () => false;
   private followed: number | undefined;
-  private group: readonly number[] = []; // followed too
+  private group: readonly number[] = []; // further entities that are followed
   private readonly at = new Vector3();
   private readonly before = new Vector3();
   private readonly turn = new Quaternion();
   private isFirst = true;
   private readonly keeper = new Keeper();
   private boxes: readonly Box3[] = [];
-  private grabbed: Vector3[] | undefined; // the camera and its target, when the user began to hold it
+  private grabbed: Vector3[] | undefined; // the positions of the camera and its target when the user grabbed it
 
   constructor(
     private readonly camera: PerspectiveCamera,
@@ -68,7 +68,7 @@ export class Cameras {
     return this.mode === "follow" || this.mode === "eye" ? this.followed : undefined;
   }
 
-  /** `group`: entities whose middle is followed; by default `entity` alone. */
+  /** Chooses the mode. The camera follows the centre of the entities of `group`; by default, `entity` alone. */
   choose(mode: CameraMode, entity?: number, group: readonly number[] = []): void {
     const before = this.mode;
     this.mode = mode;
@@ -85,7 +85,10 @@ export class Cameras {
     }
   }
 
-  /** Shows all boxes, from above if the camera is there, and keeps them in the picture until the user moves it. */
+  /**
+   * Shows all boxes, from above if the camera looks from above, and keeps them in the picture until the user moves the
+   * camera.
+   */
   home(boxes: readonly Box3[]): void {
     if (boxes.length === 0) return;
     this.boxes = boxes;
@@ -97,7 +100,7 @@ export class Cameras {
     this.controls.update();
   }
 
-  /** Takes boxes that have moved, or a picture of another shape. */
+  /** Called with the present boxes, and when the shape of the picture has changed. */
   watch(boxes: readonly Box3[]): void {
     this.boxes = boxes;
     this.keeper.watch(boxes, { position: this.camera.position, target: this.target }, this.lens);
@@ -127,7 +130,7 @@ export class Cameras {
     return lensOf(this.camera.fov, this.camera.aspect);
   }
 
-  // A click that moves nothing leaves the camera to itself.
+  // If the user has not moved the camera, it stays in its automatic mode.
   private letGo(): void {
     if (!this.grabbed) return;
     const [position, target] = this.grabbed;
@@ -184,7 +187,7 @@ export class Cameras {
   }
 }
 
-// Looks at flat worlds from higher up, and at tall ones with the horizon behind them.
+// Returns the direction of the first view: from higher up for flat worlds, and with the horizon behind tall ones.
 function firstDirection(boxes: readonly Box3[]): Vector3 {
   const { x, y, z } = unionOf(boxes).getSize(new Vector3());
   const flatness = Math.min(1, Math.hypot(x, y) / Math.max(1e-6, 12 * z));

@@ -4,17 +4,17 @@ import { type Instances, placeDeclarations } from "./instances";
 import type { Poses } from "./poses";
 import { matrixOf } from "./shapes";
 
-const spread = 0.5; // how far a shadow goes beyond a body, as a ratio to the body's smaller half
+const spread = 0.5; // width of a shadow beyond a body, relative to the body's smaller half length
 const mostSpread = 0.12; // [m]
 const lift = 0.002; // [m] above the ground
-const lowPart = 0.35; // share of a body's height that may touch the ground
+const lowPart = 0.35; // fraction of a body's height that may touch the ground
 
-// A box of the body, flattened onto the ground. It fades with the height of the box above the ground.
+// A box of the body, projected onto the ground. The shadow fades with the height of the box above the ground.
 const vertexShader = `
 ${placeDeclarations}
 attribute vec2 inBox;
 attribute vec3 boxSize; // half lengths, and the width of the shadow beyond them
-attribute vec3 boxCentre; // the middle of its lower face
+attribute vec3 boxCentre; // the centre of its lower face
 uniform float ground;
 varying vec2 at;
 varying vec3 size;
@@ -41,7 +41,7 @@ void main() {
   gl_FragColor = vec4(0.05, 0.07, 0.11, darkness * strength * shade * shade);
 }`;
 
-/** Soft shadows where bodies meet the ground, which need no shadow map and no pass of their own. */
+/** Soft shadows where bodies meet the ground, which need neither a shadow map nor a separate rendering pass. */
 export class ContactShadows {
   readonly group = new Group();
   private readonly material: ShaderMaterial;
@@ -97,7 +97,7 @@ export class ContactShadows {
   }
 }
 
-// One box around those that are low enough to touch the ground.
+// Returns one box around all boxes that are low enough to touch the ground.
 function lowBox(boxes: readonly Box3[]): Box3[] {
   const whole = boxes.reduce((sum, each) => sum.union(each), new Box3());
   const limit = whole.min.z + lowPart * (whole.max.z - whole.min.z);

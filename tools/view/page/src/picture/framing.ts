@@ -1,12 +1,12 @@
 import { Box3, type Matrix4, Vector3 } from "three";
 
-/** Where a camera is and what it looks at. */
+/** The position of a camera, and the point at which it looks. */
 export interface View {
   position: Vector3;
   target: Vector3;
 }
 
-/** The shape of a camera's picture: tangents of half its angles of view. */
+/** The shape of a camera's picture: tangents of half the angles of view. */
 export interface Lens {
   horizontal: number;
   vertical: number;
@@ -17,7 +17,7 @@ export const lensOf = (fov: number, aspect: number): Lens => {
   return { vertical, horizontal: vertical * aspect };
 };
 
-const narrowings = 14; // bisections, to a ten-thousandth of the picture
+const narrowings = 14; // number of bisections, for a precision of 1e-4 of the picture
 
 /** The unit vectors of a camera that looks along a direction. */
 interface Axes {
@@ -34,7 +34,7 @@ function axesAlong(direction: Vector3): Axes {
   return { right, up: right.clone().cross(ahead), ahead };
 }
 
-// How far boxes reach along a direction.
+// Returns the maximum coordinate of boxes along a direction.
 function reach(boxes: readonly Box3[], { x, y, z }: Vector3): number {
   let most = -Infinity;
   for (const { min, max } of boxes)
@@ -42,7 +42,10 @@ function reach(boxes: readonly Box3[], { x, y, z }: Vector3): number {
   return most;
 }
 
-/** The distance before the origin at which two opposite edges touch the boxes, and the middle between the edges. */
+/**
+ * The distance before the origin at which two opposite edges of the picture touch the boxes, and the middle between the
+ * edges.
+ */
 interface Touch {
   depth: number;
   middle: number;
@@ -55,7 +58,8 @@ function touch(boxes: readonly Box3[], axis: Vector3, ahead: Vector3, tangent: n
   return { depth: -(high + low) / (2 * tangent), middle: 0.5 * (high - low) };
 }
 
-// The middle for a camera that is farther back than where the edges touch: between narrower edges, which do touch.
+// Returns the middle for a camera that is farther back than where the edges touch: that between narrower edges, which
+// touch there.
 function middleAt(boxes: readonly Box3[], axis: Vector3, ahead: Vector3, tangent: number, depth: number): number {
   let [low, high] = [0, tangent];
   for (let i = 0; i < narrowings; ++i) {
@@ -67,8 +71,8 @@ function middleAt(boxes: readonly Box3[], axis: Vector3, ahead: Vector3, tangent
 }
 
 /**
- * Returns the nearest view along `direction` that shows all boxes in the middle of the picture. `margin` is the share of
- * each half of the picture that stays free, from 0 to less than 1.
+ * Returns the nearest view along `direction` that shows all boxes in the middle of the picture. `margin` is the
+ * fraction of each half of the picture that stays free, from 0 to less than 1.
  *
  * Let x, y and z be coordinates to the right, upwards and ahead. A camera at (a, b, c) sees a point if |x - a| and
  * |y - b| are at most (z - c) times the tangent of half the angle of view. So each edge of the picture is a plane with
@@ -89,7 +93,7 @@ export function fit(boxes: readonly Box3[], direction: Vector3, lens: Lens, marg
   return { position, target: position.clone().addScaledVector(ahead, distance) };
 }
 
-/** Returns whether a view shows all boxes with a margin, as `fit` has it. */
+/** Returns whether a view shows all boxes with a margin, as defined in `fit`. */
 export function shows(boxes: readonly Box3[], { position, target }: View, lens: Lens, margin: number): boolean {
   const { right, up, ahead } = axesAlong(target.clone().sub(position));
   const isWithin = (axis: Vector3, sign: number, tangent: number): boolean => {
@@ -107,7 +111,7 @@ export function unionOf(boxes: readonly Box3[]): Box3 {
   return whole;
 }
 
-/** Grows `box` by a box of a link that is placed by a matrix. */
+/** Grows `box` by a link's box, which is transformed by a matrix. */
 export function growBy(box: Box3, part: Box3, matrix: Matrix4): void {
   const { elements: e } = matrix;
   const { min, max } = part;
@@ -121,13 +125,13 @@ export function growBy(box: Box3, part: Box3, matrix: Matrix4): void {
   }
 }
 
-const marginOf = (count: number): number => (count <= 2 ? 0.35 : 0.08); // free in a new view
-const leastMargin = 0.03; // below, it is a new view
-const mostRoom = 1.6; // above this ratio of distances, too
+const marginOf = (count: number): number => (count <= 2 ? 0.35 : 0.08); // margin of a new view
+const leastMargin = 0.03; // with a smaller margin, a new view is chosen
+const mostRoom = 1.6; // above this ratio of distances, a new view is chosen too
 const easing = 0.35; // [s]
-const hurriedEasing = 0.08; // [s]; while something is out of the picture
+const hurriedEasing = 0.08; // [s] while something is outside the picture
 
-/** Keeps boxes in the picture, until the user moves the camera. */
+/** Keeps boxes in the picture until the user moves the camera. */
 export class Keeper {
   isOn = false;
   private goal: View | undefined;
@@ -147,7 +151,7 @@ export class Keeper {
     this.goal = undefined;
   }
 
-  /** Chooses another view once the boxes leave the present one, or are small in it. */
+  /** Chooses a new view if the boxes leave the present one or become small in it. */
   watch(boxes: readonly Box3[], now: View, lens: Lens): void {
     if (!this.isOn || !this.goal) return;
     this.isOut = !shows(boxes, now, lens, 0);

@@ -2,7 +2,7 @@ import { Group, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
 import { type Scene, ShapeRole } from "../data/messages";
 import { linkGeometry, matrixOf } from "./shapes";
 
-/** Where an object would stand: its model, seen through. */
+/** A translucent preview of an object at its future place. */
 export class Ghost {
   readonly group = new Group();
   private readonly material = new MeshStandardMaterial({
@@ -18,7 +18,7 @@ export class Ghost {
     this.hide();
   }
 
-  /** With the origin of its model there, turned about the vertical [rad]. */
+  /** Shows the model with its origin at `place`, turned about the vertical by `heading` [rad]. */
   show(scene: Scene, model: number, place: readonly number[], heading: number): void {
     if (scene !== this.scene || model !== this.model) this.build(scene, model);
     this.group.position.set(place[0], place[1], place[2]);
@@ -47,7 +47,7 @@ export class Ghost {
   }
 }
 
-/** How high a model's origin is above the ground when it stands there upright [m]. */
+/** Returns the height of a model's origin above the ground when it stands upright [m]. */
 export function standingHeight(scene: Scene, model: number): number {
   let lowest = Infinity;
   for (const link of scene.models[model].links) {
@@ -64,7 +64,7 @@ export function standingHeight(scene: Scene, model: number): number {
   return Number.isFinite(lowest) ? -lowest : 0;
 }
 
-/** Where a model's origin is, and where it heads, by the pose of its root link. */
+/** Returns the position of a model's origin and its heading, given the pose of its root link. */
 export function originOf(
   scene: Scene,
   model: number,

@@ -34,7 +34,7 @@ function added<Name extends keyof SVGElementTagNameMap>(
   return parent.appendChild(element);
 }
 
-/** The directions of the axes, and a bar of a round length at the distance of what is looked at. */
+/** Shows the directions of the axes, and a scale bar of a round length at the distance of the camera's target. */
 export class Gizmo {
   private readonly svg: SVGSVGElement;
   private readonly arms: { group: SVGGElement; line: SVGLineElement; dot: SVGCircleElement; text: SVGTextElement }[];

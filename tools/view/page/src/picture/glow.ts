@@ -75,7 +75,7 @@ interface Lamp {
   circle: LineLoop | undefined;
 }
 
-/** Lights: LEDs as points with a halo, lamps as billboards with the circle that they reach. */
+/** Draws lights: LEDs as points with a halo, lamps as billboards with a circle at their range. */
 export class Glow {
   readonly group = new Group();
   private readonly points: Points<BufferGeometry, ShaderMaterial>;

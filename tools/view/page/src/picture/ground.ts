@@ -2,7 +2,7 @@ import { Color, Mesh, MeshLambertMaterial, PlaneGeometry, Quaternion, Vector3 } 
 
 const size = 400; // [m], at the least
 
-// Lines every 0.1, 1, 10 and 100 m, of which the finer ones fade with distance, on squares of 1 and 10 m.
+// Lines every 0.1, 1, 10 and 100 m, on squares of 1 and 10 m. Finer lines fade with distance.
 const gridShader = `
 float lineOf(vec2 at, float spacing, float width) {
   vec2 scaled = at / spacing;
@@ -30,10 +30,10 @@ diffuseColor.rgb = mix(diffuseColor.rgb, lineColor, line);
 diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.62, 0.11, 0.09), 0.55 * axisOf(at.y));
 diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.09, 0.42, 0.13), 0.55 * axisOf(at.x));`;
 
-/** A plane without end, with a grid and the axes x (red) and y (green) of the world. */
+/** An infinite plane, with a grid and the axes x (red) and y (green) of the world. */
 export class Ground {
   readonly mesh: Mesh<PlaneGeometry, MeshLambertMaterial>;
-  /** Where it is level. */
+  /** Height of the ground [m], if it is level. */
   readonly height: number | undefined;
   private readonly lineColor = { value: new Color() };
   private readonly up: Vector3;
@@ -69,7 +69,7 @@ export class Ground {
     this.lineColor.value.set(line);
   }
 
-  /** Lies around a place, as far as fog lets anyone see. */
+  /** Moves the drawn part around a place, as far as the visibility in fog. */
   surround(place: Vector3, sight: number): void {
     const height = place.clone().sub(this.point).dot(this.up);
     this.mesh.position.copy(place).addScaledVector(this.up, -height);

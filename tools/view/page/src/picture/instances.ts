@@ -32,7 +32,7 @@ vec4 linkTurn() {
 vec3 turned(vec3 v, vec4 q) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
 `;
 
-/** Lets a material draw each instance where its link is. */
+/** Makes a material draw each instance at the pose of its link. */
 function placeByLink(material: Material, blend: { value: number }): void {
   material.onBeforeCompile = (shader) => {
     shader.uniforms.blend = blend;
@@ -54,16 +54,16 @@ function placeByLink(material: Material, blend: { value: number }): void {
   };
 }
 
-/** Surfaces by what a body is: paint of robots shines a little, walls are matt. */
+/** Surfaces by the role of a body: the paint of robots is slightly glossy, walls are matt. */
 const surfaces = {
   robot: { roughness: 0.45, metalness: 0.08 },
   movable: { roughness: 0.65, metalness: 0.02 },
   static: { roughness: 0.9, metalness: 0 },
 };
-/** The least roughness of any surface. */
+/** The smallest roughness of any surface. */
 export const smoothest = Math.min(...Object.values(surfaces).map(({ roughness }) => roughness));
 
-/** Splits a geometry into one for each texture, whose attributes are those of `whole`. */
+/** Splits a geometry into one for each texture. The attributes are those of `whole`. */
 function partsByTexture(
   whole: InstancedBufferGeometry,
   textures: readonly number[],
@@ -93,7 +93,7 @@ interface Drawn {
   count: number;
 }
 
-/** One link of a model, to find out where a ray meets it. */
+/** One link of a model, for intersections with rays. */
 export interface LinkShape {
   model: number;
   link: number;
@@ -132,7 +132,7 @@ export class Instances {
     }
   }
 
-  /** The poses have a new frame. */
+  /** Called when the poses have a new frame. */
   update(): void {
     const { positions, orientations, positionsBefore, orientationsBefore } = this.poses;
     for (const { geometry, first, count } of this.drawn) {
@@ -148,7 +148,7 @@ export class Instances {
     }
   }
 
-  /** Returns the attributes that place a link, for other things that are drawn there. */
+  /** Returns the attributes that place a link, for other objects that are drawn there. */
   placesOf(model: number, link: number): InstancedBufferGeometry | undefined {
     return this.drawn.find((each) => each.model === model && each.link === link)?.geometry;
   }
@@ -211,7 +211,7 @@ export class Instances {
     this.drawn.push({ geometry, model, link, first: this.poses.firstPlace(model, link), count });
   }
 
-  // Red, green and blue of the team of each entity, and whether it has one.
+  // Returns the team's red, green and blue for each entity, and whether it has a team.
   private colorsOf(entities: readonly number[]): InstancedBufferAttribute {
     const values = new Float32Array(4 * entities.length);
     entities.forEach((entity, i) => {

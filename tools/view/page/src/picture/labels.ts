@@ -4,15 +4,15 @@ import type { Poses } from "./poses";
 export const mostLabels = 30;
 const above = 0.12; // [m]; height of a label above an entity
 const gap = 2; // [pixels] between labels
-const newGap = 8; // [pixels] around one that was not there before, so that labels do not come and go
-const keeping = 0.6; // ratio by which a label that is there counts as nearer
+const newGap = 8; // [pixels] around a new label, so that labels do not flicker
+const keeping = 0.6; // factor of the rank of labels that are already shown
 
 /** A name that may be shown, at a place of the picture in pixels: the middle of its lower edge. */
 export interface Candidate {
   entity: number;
   x: number;
   y: number;
-  /** The smaller, the sooner it is shown. */
+  /** Candidates with a smaller rank are shown first. */
   rank: number;
   isShown: boolean;
 }
@@ -66,7 +66,7 @@ export class Labels {
     this.measure.style.visibility = "hidden";
   }
 
-  /** `first` is shown in any case. */
+  /** Draws the labels. `first` is always shown. */
   draw(
     poses: Poses | undefined,
     entities: readonly number[],
@@ -128,7 +128,7 @@ export class Labels {
     return label;
   }
 
-  // Measures a name once, as it is drawn. Digits are of one width.
+  // Returns the size of a label, which is measured once for each name. All digits have the same width.
   private sizeOf(entityName: string): Size {
     const name = entityName.replace(/\d/g, "0");
     const known = this.sizes.get(name);

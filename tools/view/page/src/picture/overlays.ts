@@ -17,9 +17,9 @@ import type { Poses } from "./poses";
 const metresPerNewton = 0.02;
 const trailLength = 1500; // points
 const trailSpacing = 0.01; // [m]
-const leastHit = 0.05; // share of the range; less may be a sensor's noise
+const leastHit = 0.05; // fraction of the range; less may be sensor noise
 
-/** Colours of what is drawn over the picture, which the legend names. */
+/** Colours of the overlays, which the legend explains. */
 export const overlayColors = { contact: 0xe5484d, grip: 0x30a46c, rayFree: 0x2f8f6b, rayHit: 0xe5484d, lamp: 0xd9a11f };
 
 function segments(color: number, opacity = 1): LineSegments<BufferGeometry, LineBasicMaterial> {
@@ -31,7 +31,7 @@ function segments(color: number, opacity = 1): LineSegments<BufferGeometry, Line
   return lines;
 }
 
-// In the buffer that is there, as long as they fit.
+// Reuses the present buffer as long as the points fit.
 function setPoints(geometry: BufferGeometry, points: ArrayLike<number>): void {
   let attribute = geometry.getAttribute("position") as BufferAttribute | undefined;
   if (!attribute || attribute.array.length < points.length) {
@@ -44,7 +44,7 @@ function setPoints(geometry: BufferGeometry, points: ArrayLike<number>): void {
   geometry.setDrawRange(0, points.length / 3);
 }
 
-// In front of everything: what touches hides where it touches.
+// Draws dots in front of everything, because touching bodies hide their contact points.
 function dots(color: number, size: number): Points<BufferGeometry, PointsMaterial> {
   const material = new PointsMaterial({
     color,
@@ -57,7 +57,7 @@ function dots(color: number, size: number): Points<BufferGeometry, PointsMateria
   return new Points(new BufferGeometry(), material);
 }
 
-/** Contact points, the forces there, and what is gripped. */
+/** Contact points, contact forces, and grips. */
 export class Contacts {
   readonly group = new Group();
   private readonly points = dots(overlayColors.contact, 5);
@@ -84,7 +84,7 @@ export class Contacts {
   }
 }
 
-/** Rays of the selected robot's sensors: to their range, or to the first hit. */
+/** Rays of the selected robot's sensors, to the first hit or to their range. */
 export class Rays {
   readonly group = new Group();
   private readonly free = segments(overlayColors.rayFree, 0.55);
@@ -118,7 +118,7 @@ export class Rays {
   }
 }
 
-/** How far a ray goes, by its reading; its whole range if it has found nothing. */
+/** Returns the length of a ray, given the sensor's reading; the sensor's range if nothing was detected. */
 export function rayLength({ kind, range }: Pick<SceneSensor, "kind" | "range">, reading: number | undefined): number {
   if (reading === undefined) return range;
   if (kind === "lidar") return Math.min(range, reading);
@@ -150,7 +150,7 @@ function addRays(
   }
 }
 
-/** Where the selected entity, or every robot, has been. */
+/** The paths of the selected entity, or of all robots. */
 export class Trails {
   readonly group = new Group();
   private readonly trails = new Map<number, { line: Line; points: number[]; last: Vector3 }>();

@@ -2,19 +2,19 @@ import type { Quaternion, Vector3 } from "three";
 import type { Scene, SceneFrame } from "../data/messages";
 
 const full = 32767;
-const farAway = 1e9; // [m]; where nothing is drawn
+const farAway = 1e9; // [m]; place of hidden entities, which is never drawn
 const longestBlend = 250; // [ms]
 
-/** Where the links of a scene are, between the last two frames. */
+/** The poses of a scene's links, interpolated between the last two frames. */
 export class Poses {
   positions: Float32Array = new Float32Array();
   orientations: Int16Array = new Int16Array();
   positionsBefore: Float32Array = new Float32Array();
   orientationsBefore: Int16Array = new Int16Array();
-  /** Entities that are not drawn: those that have gone or not yet come, and those that are hidden. */
+  /** Entities that are not drawn because they are not in the world or are hidden. */
   absent = new Set<number>();
   frame: SceneFrame | undefined;
-  /** 0: at the frame before; 1: at the last one. */
+  /** 0 at the previous frame, 1 at the last one. */
   blend = 1;
 
   private hidden: ReadonlySet<number> = new Set();
@@ -55,7 +55,7 @@ export class Poses {
     return this.firstOfLink[this.scene.entities[entity].model][link] + this.placeInModel[entity];
   }
 
-  /** False if the frame is of another scene. */
+  /** Takes a frame. Returns false if the frame belongs to another scene. */
   take(frame: SceneFrame, now: number): boolean {
     if (frame.revision !== this.scene.revision || frame.positions.length !== 3 * this.linkCount) return false;
     const elapsed = now - this.arrival;
@@ -73,7 +73,7 @@ export class Poses {
   }
 
   advance(now: number): void {
-    // A picture may have begun before the frame came.
+    // The time of a picture may be earlier than the arrival of the frame.
     this.blend = Math.min(1, Math.max(0, now - this.arrival) / Math.max(1, this.interval));
   }
 
@@ -96,7 +96,7 @@ export class Poses {
       .normalize();
   }
 
-  /** Leaves out these entities from now on. */
+  /** Hides these entities from now on. */
   hide(entities: ReadonlySet<number>): void {
     this.hidden = entities;
     if (this.frame) this.positions = this.positionsBefore = this.withoutAbsent(this.frame);

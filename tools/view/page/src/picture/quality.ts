@@ -1,15 +1,15 @@
-/** How finely the picture is drawn. */
+/** A level of picture quality. */
 export interface Level {
-  /** Ratio to the pixels of the screen. */
+  /** Resolution relative to the screen's. */
   resolution: number;
   shadows: boolean;
-  /** Surfaces reflect the sky. */
+  /** True if surfaces reflect the sky. */
   reflections: boolean;
-  /** Time between pictures of which the page draws coarser [ms]. */
+  /** Time between pictures from which the page chooses a coarser level [ms]. */
   slow: number;
 }
 
-/** From the finest to the coarsest. */
+/** All levels, from the finest to the coarsest. */
 export const levels: readonly Level[] = [
   { resolution: 1, shadows: true, reflections: true, slow: 40 },
   { resolution: 1, shadows: true, reflections: false, slow: 55 },
@@ -19,20 +19,20 @@ export const levels: readonly Level[] = [
   { resolution: 0.35, shadows: false, reflections: false, slow: Infinity },
 ];
 
-const fast = 24; // [ms], of which it tries to draw finer
-const pause = 1000; // [ms]; longer without a picture is not slow drawing, unless it lasts
+const fast = 24; // [ms] between pictures, below which a finer level is tried
+const pause = 1000; // [ms]; a longer single gap does not count as slow drawing
 const leastTime = 700; // [ms] of slow pictures before it draws coarser
 const firstWait = 3000; // [ms] of fast pictures before it draws finer
 const longestWait = 60_000; // [ms]; each attempt that was too slow doubles the wait
 const smoothing = 0.25;
 
 /**
- * Chooses how finely to draw by the time between pictures. Drawing finer is an attempt: if it is too slow, the next
- * attempt waits twice as long.
+ * Chooses the level from the time between pictures. A finer level is an attempt: if it is too slow, the next attempt
+ * comes after twice the wait.
  */
 export class Quality {
   level: number;
-  /** No changes, such as while a film is recorded. */
+  /** The level is not changed, such as while a film is recorded. */
   isHeld = false;
   private average = fast;
   private slowFor = 0;
@@ -47,7 +47,7 @@ export class Quality {
     this.level = finest;
   }
 
-  /** Takes the time since the picture before [ms]; returns whether the level is another one. */
+  /** Takes the time since the previous picture [ms]. Returns whether the level has changed. */
   take(elapsed: number): boolean {
     if (this.isHeld || elapsed <= 0) return false;
     this.average += smoothing * (Math.min(elapsed, pause) - this.average);
@@ -62,7 +62,7 @@ export class Quality {
     return false;
   }
 
-  /** The page was not drawn: the time since the picture before says nothing. */
+  /** Ignores the time since the previous picture, because the page was not drawn. */
   forget(): void {
     this.slowFor = this.fastFor = 0;
     this.average = fast;

@@ -40,7 +40,7 @@ function leaveOutSharpLevels(generator: PMREMGenerator): void {
   };
 }
 
-/** Returns a picture of the sky and the ground all around, which surfaces reflect. */
+/** Returns the environment map of sky and ground, which surfaces reflect. */
 export function reflectionsOf(renderer: WebGLRenderer, { sky, ground }: Surroundings, sunDirection: Vector3): Texture {
   const geometry = new SphereGeometry(10, 32, 32).rotateX(Math.PI / 2);
   const [zenith, horizon, below] = [sky.zenith, sky.horizon, ground.color].map((each) => new Color(each));
@@ -61,7 +61,7 @@ export function reflectionsOf(renderer: WebGLRenderer, { sky, ground }: Surround
   surroundings.add(new Mesh(geometry, material));
   const generator = new PMREMGenerator(renderer);
   leaveOutSharpLevels(generator);
-  const { texture } = generator.fromScene(surroundings); // without a blur: no surface is smooth enough to show it
+  const { texture } = generator.fromScene(surroundings); // no blur: no surface is smooth enough to show it
   generator.dispose();
   geometry.dispose();
   material.dispose();

@@ -1,8 +1,8 @@
 import { none, type Scene, type SceneModel, type SceneShape } from "../data/messages";
 import { hasTexture } from "./textures";
 
-// As red, green and blue: light sand for objects that move, dark slate for those that do not. Colour-blind people can
-// tell them apart too.
+// Red, green and blue: light sand for movable objects, dark slate for static ones. Colour-blind users can distinguish
+// them.
 const roleColors = {
   robot: [0.27, 0.52, 0.75],
   movable: [0.89, 0.75, 0.48],
@@ -10,7 +10,7 @@ const roleColors = {
 };
 const uncoloured = 0.5; // red, green and blue of shapes whose file gives no colour
 
-/** Returns a scene in which shapes without a colour of their own have that of their role: robot, movable or wall. */
+/** Returns a scene in which shapes without a colour have the colour of their role: robot, movable object or wall. */
 export function withRoleColors(scene: Scene): Scene {
   const robots = new Set(scene.entities.filter(({ robot }) => robot !== none).map(({ model }) => model));
   const models = scene.models.map((model, i) => {

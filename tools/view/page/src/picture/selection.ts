@@ -17,7 +17,7 @@ import type { Poses } from "./poses";
 const outlineWidth = 1.06;
 const mostOutlined = 100;
 
-/** Which entity a ray from the camera meets first. */
+/** Returns the first entity on a ray from the camera. */
 export function pick(poses: Poses, instances: Instances, camera: Camera, at: Vector2): number | undefined {
   const raycaster = new Raycaster();
   raycaster.setFromCamera(at, camera);
@@ -47,7 +47,7 @@ export function pick(poses: Poses, instances: Instances, camera: Camera, at: Vec
   return found;
 }
 
-/** An outline around the selected entities, up to a number that can be drawn. */
+/** An outline around the selected entities, up to a limited number. */
 export class Outline {
   readonly group = new Group();
   private readonly material = new MeshBasicMaterial({ color: 0x1f8fff, side: BackSide, toneMapped: false });

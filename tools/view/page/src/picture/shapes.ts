@@ -15,9 +15,9 @@ import { mergeGeometries, toCreasedNormals } from "three/addons/utils/BufferGeom
 import { none, type Scene, type SceneMesh, type SceneShape, ShapeKind } from "../data/messages";
 import { coordinatesOf, texturesOf } from "./textures";
 
-/** Segments of what is round: fewer where there are many of it. */
+/** Returns the number of segments of round shapes: fewer if there are many instances. */
 const segmentsOf = (instances: number): number => (instances <= 500 ? 28 : instances <= 3000 ? 16 : 10);
-const crease = 0.6; // [rad]; edges that are sharper are seen as edges
+const crease = 0.6; // [rad]; sharper edges are drawn as edges
 
 function meshGeometry(mesh: SceneMesh): BufferGeometry {
   const geometry = new BufferGeometry();
@@ -55,7 +55,7 @@ export function matrixOf(pose: ArrayLike<number>): Matrix4 {
   );
 }
 
-/** Adds how much of a team's colour each vertex takes: nothing where it has a texture. */
+/** Adds the fraction of a team's colour for each vertex, which is 0 for textured ones. */
 function withTeamShare(geometry: BufferGeometry, share: number, textures?: Uint32Array): BufferGeometry {
   const shares = new Float32Array(geometry.getAttribute("position").count).fill(share);
   textures?.forEach((texture, triangle) => {
@@ -71,7 +71,7 @@ function triangleTextures(geometry: BufferGeometry, scene: Scene, shape: SceneSh
   return of ? textures.map((_, triangle) => of(triangle)) : textures;
 }
 
-/** Meshes have the texture coordinates of their file; three.js gives some to the other shapes. */
+/** Sets texture coordinates: meshes have those of their file, other shapes those of three.js. */
 function withCoordinates(geometry: BufferGeometry, scene: Scene, shape: SceneShape): BufferGeometry {
   if (shape.kind !== ShapeKind.mesh) return geometry;
   const count = geometry.getAttribute("position").count;
@@ -80,7 +80,7 @@ function withCoordinates(geometry: BufferGeometry, scene: Scene, shape: SceneSha
   return geometry.setAttribute("uv", new BufferAttribute(coordinates, 2));
 }
 
-/** `geometry` has three vertices for each triangle, in their order. */
+/** Sets the colours. `geometry` has three vertices for each triangle, in order. */
 function coloured(geometry: BufferGeometry, scene: Scene, shape: SceneShape): BufferGeometry {
   const count = geometry.getAttribute("position").count;
   const colors = new Float32Array(3 * count);
@@ -94,9 +94,9 @@ function coloured(geometry: BufferGeometry, scene: Scene, shape: SceneShape): Bu
 }
 
 /**
- * Returns the shapes of one link as one piece with colours, in the link's frame; nothing if there are none. `shareOf`
- * gives how much of a team's colour a shape takes. `userData.textures` has the texture of each triangle, or is empty if
- * there are none.
+ * Returns the shapes of one link as one geometry with colours, in the link's frame; undefined if there are none.
+ * `shareOf` returns the fraction of a team's colour in a shape. `userData.textures` has the texture of each triangle,
+ * or is empty if there are none.
  */
 export function linkGeometry(
   scene: Scene,

@@ -4,7 +4,7 @@ import { BufferAttribute, BufferGeometry, Mesh, ShaderMaterial } from "three";
 export interface SkyLook {
   zenith: number;
   horizon: number;
-  depth: number; // straight down, where there is no ground
+  depth: number; // straight down, if there is no ground
   glow: number; // around the sun
 }
 
@@ -22,7 +22,7 @@ varying vec3 direction;
 uniform vec3 zenith;
 uniform vec3 horizon;
 uniform vec3 depth;
-uniform vec4 glow; // with its strength
+uniform vec4 glow; // colour and strength
 uniform vec3 sun;
 void main() {
   vec3 ray = normalize(direction);
@@ -60,7 +60,7 @@ export class Sky {
     });
     this.mesh = new Mesh(geometry, material);
     this.mesh.frustumCulled = false;
-    this.mesh.renderOrder = 1; // after opaque bodies, before what is translucent
+    this.mesh.renderOrder = 1; // after opaque bodies, before translucent ones
     this.mesh.onBeforeRender = (_renderer, _scene, camera) => {
       const [x, , , , , y] = camera.projectionMatrix.elements;
       material.uniforms.toWorld.value = camera.matrixWorld;

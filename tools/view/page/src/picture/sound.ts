@@ -10,7 +10,7 @@ interface Voice {
   panner: PannerNode;
 }
 
-/** Loudspeakers in space, each with its frequency. Silent until it is switched on. */
+/** Plays the loudspeakers at their places, each with its frequency. Silent until the user switches it on. */
 export class Sound {
   private context: AudioContext | undefined;
   private readonly voices = new Map<number, Voice>();
@@ -35,7 +35,7 @@ export class Sound {
   }
 
   take(signals: SceneSignals): void {
-    if (signals.revision !== this.signals?.revision) this.silenceAll(); // its loudspeakers are others
+    if (signals.revision !== this.signals?.revision) this.silenceAll(); // it has other loudspeakers
     this.signals = signals;
   }
 

@@ -38,23 +38,23 @@ const looks = {
     reflections: 0.3,
   },
 };
-const fillWithoutReflections = 1.25; // ratio to the fill with them
+const fillWithoutReflections = 1.25; // intensity of the fill light relative to that with reflections
 const sunDirection = new Vector3(-0.45, -0.35, 1).normalize();
-const shadowReach = 1; // [m]; around what the camera looks at, at the least
+const shadowReach = 1; // [m]; smallest radius around the camera's target
 const shadowTexels = 2048;
 const mostPixelRatio = 2;
 
-/** The surroundings of everything: the renderer, sun, sky and ground. */
+/** The renderer, and the surroundings: sun, sky and ground. */
 export class Stage {
   readonly renderer: WebGLRenderer;
   readonly scene = new ThreeScene();
   readonly camera = new PerspectiveCamera(45, 1, 0.01, 2000);
-  /** A program draws, not a graphics card. */
+  /** True if pictures are rendered by software, not by a graphics card. */
   readonly isSoftware: boolean;
   readonly quality: Quality;
-  /** Around everything that casts shadows. */
+  /** A sphere around everything that casts shadows. */
   surroundings: Sphere | undefined;
-  /** Something that casts shadows is elsewhere. */
+  /** True if something that casts shadows has moved. */
   isShadowStale = true;
   theme: Theme = "light";
 
@@ -115,7 +115,7 @@ export class Stage {
     this.sun.castShadow = shadows;
   }
 
-  /** The plane of a scene, which is without end. */
+  /** Draws the plane of a scene as infinite ground. */
   lay(scene: Scene): void {
     this.ground?.dispose();
     if (this.ground) this.scene.remove(this.ground.mesh);
@@ -135,14 +135,14 @@ export class Stage {
     return this.ground?.height;
   }
 
-  /** Takes the time since the picture before [ms], and draws coarser or finer by it; returns whether it does. */
+  /** Takes the time since the previous picture [ms], and adapts the quality. Returns whether it has changed. */
   adapt(elapsed: number): boolean {
     if (!this.quality.take(elapsed)) return false;
     this.applyQuality();
     return true;
   }
 
-  /** Draws at full resolution until the next picture, such as for one that is kept. */
+  /** Draws one picture at full resolution, such as for a screenshot. */
   drawFinely(target: Vector3): void {
     this.setRatio(Math.min(window.devicePixelRatio, mostPixelRatio));
     this.draw(target);
@@ -170,8 +170,8 @@ export class Stage {
     this.scene.remove(...objects);
   }
 
-  // The shadow map covers everything, if that is not much more than is looked at; else what is looked at. It moves by
-  // whole texels, so that the edges of shadows stand still.
+  // The shadow map covers everything, unless that is much larger than the camera's view; then it covers the view. It
+  // moves by whole texels, so that the edges of shadows do not flicker.
   private aimSun(target: Vector3, distance: number): void {
     const around = Math.max(shadowReach, 0.8 * distance);
     const isAll = this.surroundings !== undefined && this.surroundings.radius <= 1.5 * around;
@@ -208,7 +208,7 @@ export class Stage {
     this.reflect();
   }
 
-  // A ratio that someone else has set stays.
+  // A ratio that other code has set is kept.
   private setRatio(ratio: number): void {
     if (this.renderer.getPixelRatio() !== this.chosenRatio || ratio === this.chosenRatio) return;
     this.chosenRatio = ratio;

@@ -2,12 +2,12 @@ import { Color, SRGBColorSpace } from "three";
 import { none, type Scene, type SceneModel, type SceneShape, ShapeKind, ShapeRole } from "../data/messages";
 import { hasTexture } from "./textures";
 
-/** The colours of Okabe and Ito, which colour-blind people can tell apart; those that differ most come first. */
+/** The palette of Okabe and Ito, which colour-blind users can distinguish. The colours that differ most come first. */
 const palette = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442"];
 
-const shareWithoutDominant = 0.55; // where files of meshes have the colours
+const shareWithoutDominant = 0.55; // for models whose mesh files define the colours
 
-/** Returns the colour of each team, in the order of its first robot; nothing if all robots are of one team. */
+/** Returns the colour of each team, in the order of its first robot; empty if all robots belong to one team. */
 export function teamColors(scene: Scene): Map<string, Color> {
   const names = new Set(
     scene.entities.filter(({ robot, team }) => robot !== none && team !== "").map(({ team }) => team),
@@ -21,12 +21,12 @@ export function teamColors(scene: Scene): Map<string, Color> {
   );
 }
 
-/** A colour of shapes, as their message has it: red, green, blue, alpha. */
+/** The colour of a shape in its message: red, green, blue, alpha. */
 type ShapeColor = Float32Array;
 const isSame = (a: ShapeColor, b: ShapeColor): boolean => [0, 1, 2].every((i) => Math.abs(a[i] - b[i]) < 0.01);
 const colorOf = ([r, g, b]: ShapeColor): Color => new Color().setRGB(r, g, b, SRGBColorSpace);
 
-// About the area of a shape's surface [m²].
+// Returns the approximate surface area of a shape [m²].
 function areaOf(scene: Scene, { kind, size, mesh }: SceneShape): number {
   const [a, b, c] = size;
   if (kind === ShapeKind.box) return 2 * (a * b + b * c + c * a);
@@ -45,7 +45,7 @@ function areaOf(scene: Scene, { kind, size, mesh }: SceneShape): number {
   return 2 * (x * y + y * z + z * x);
 }
 
-/** Returns the colour by which people recognise a model: that of most area, where vivid colours count more. */
+/** Returns the dominant colour of a model: that with the largest area, with more weight for vivid colours. */
 export function dominantColor(scene: Scene, model: SceneModel): ShapeColor | undefined {
   const found: { color: ShapeColor; weight: number }[] = [];
   for (const { shapes } of model.links)
@@ -61,7 +61,7 @@ export function dominantColor(scene: Scene, model: SceneModel): ShapeColor | und
   return found.sort((a, b) => b.weight - a.weight)[0]?.color;
 }
 
-/** Returns the share of a team's colour in a shape: all of it where it replaces the dominant colour of the model. */
+/** Returns the fraction of a team's colour in a shape: 1 where it replaces the dominant colour of the model. */
 export function teamShare(shape: SceneShape, dominant: ShapeColor | undefined): number {
   if (dominant === undefined) return shareWithoutDominant;
   return !shape.has_mesh_colors && isSame(shape.color, dominant) ? 1 : 0;

@@ -3,7 +3,7 @@ import { none, type Scene, type SceneMeshTexture, type SceneShape } from "../dat
 
 const mostTextures = 64;
 const mostPixels = 8192; // along an edge
-const sharpness = 4; // samples along a surface that is seen at a low angle
+const sharpness = 4; // anisotropy: samples along a surface that is seen at a low angle
 
 interface Uses {
   ofMeshes: Map<number, SceneMeshTexture>;
@@ -27,14 +27,14 @@ function usesOf(scene: Scene): Uses {
   return uses;
 }
 
-/** Returns u and v of each corner of each triangle of a mesh; nothing if it has none. */
+/** Returns u and v of each corner of each triangle of a mesh; undefined if it has none. */
 export const coordinatesOf = (scene: Scene, mesh: number): Float32Array | undefined =>
   usesOf(scene).ofMeshes.get(mesh)?.coordinates;
 
-/** Returns whether a shape has a texture as a whole. */
+/** Returns whether one texture applies to a whole shape. */
 export const hasTexture = (scene: Scene, shape: SceneShape): boolean => usesOf(scene).ofShapes.has(shape);
 
-/** Returns the index of the texture of a triangle of a shape, or `none`, by the index of the triangle. */
+/** Returns a function from the index of a shape's triangle to the index of its texture, or `none`. */
 export function texturesOf(scene: Scene, shape: SceneShape): ((triangle: number) => number) | undefined {
   const { ofShapes, ofMeshes } = usesOf(scene);
   const whole = ofShapes.get(shape);
@@ -45,7 +45,7 @@ export function texturesOf(scene: Scene, shape: SceneShape): ((triangle: number)
 
 /** The images of a scene, which are decoded in the background. An image that the browser cannot decode is ignored. */
 export class Textures {
-  /** Numbers of images that are shown, and that cannot be decoded. */
+  /** The numbers of images that are shown and that cannot be decoded. */
   readonly counts = { shown: 0, broken: 0 };
   /** Resolves when all images are decoded. */
   readonly ready: Promise<unknown>;
@@ -57,7 +57,7 @@ export class Textures {
     this.ready = Promise.all(this.decoded);
   }
 
-  /** Calls `show` with the image of an index once it is decoded. */
+  /** Calls `show` with the image of this index once it is decoded. */
   use(index: number, show: (texture: Texture) => void): void {
     void this.decoded[index]?.then((texture) => {
       if (texture && !this.isDisposed) show(texture);

@@ -1,10 +1,10 @@
-/** A value over time: times [s] ascend, values that there are not are NaN. */
+/** A value over time, with ascending times [s]. Missing values are NaN. */
 export interface Curve {
   times: number[];
   values: number[];
 }
 
-/** Index of the first time that is not before `time`. */
+/** Returns the index of the first time that is not before `time`. */
 export function firstAt(times: readonly number[], time: number): number {
   let low = 0;
   let high = times.length;
@@ -16,7 +16,7 @@ export function firstAt(times: readonly number[], time: number): number {
   return low;
 }
 
-/** The value that is nearest in time; nothing far beyond the ends of the curve. */
+/** Returns the value that is nearest in time; undefined far beyond the ends of the curve. */
 export function valueAt({ times, values }: Curve, time: number): number | undefined {
   if (times.length === 0) return undefined;
   const spacing = times.length > 1 ? (times[times.length - 1] - times[0]) / (times.length - 1) : 0;
@@ -27,7 +27,7 @@ export function valueAt({ times, values }: Curve, time: number): number | undefi
   return values[time - times[before] < times[after] - time ? before : after];
 }
 
-/** The part from one time to another one, both in it. */
+/** Returns the part from one time to another one, both inclusive. */
 export function between({ times, values }: Curve, from: number, to: number): Curve {
   const begin = firstAt(times, from);
   let end = firstAt(times, to);
@@ -35,13 +35,16 @@ export function between({ times, values }: Curve, from: number, to: number): Cur
   return { times: times.slice(begin, end), values: values.slice(begin, end) };
 }
 
-/** One curve before another one that begins later; where both have a time, the later one counts. */
+/** Returns curve `a` followed by curve `b`, which begins later. Where they overlap, `b` counts. */
 export function joined(a: Curve, b: Curve): Curve {
   const end = b.times.length > 0 ? firstAt(a.times, b.times[0]) : a.times.length;
   return { times: a.times.slice(0, end).concat(b.times), values: a.values.slice(0, end).concat(b.values) };
 }
 
-/** At most so many samples: the least and the greatest of equally long parts, as tools/view/history/reduction.hpp. */
+/**
+ * Reduces a curve to at most this many samples: minimum and maximum of equal parts, as in
+ * tools/view/history/reduction.hpp.
+ */
 export function reduced(curve: Curve, most: number): Curve {
   const { times, values } = curve;
   if (times.length <= most) return curve;

@@ -4,24 +4,24 @@ import { between, type Curve, firstAt, joined, reduced } from "./curve";
 
 const mostPoints = 4000; // in a series
 const mostAnswered = 16_000; // in all series of a request: HistoryRequest::most_points
-const gathering = 20; // [ms] in which values gather that are asked for together
+const gathering = 20; // [ms] during which requests are collected into one
 const mostRobots = 16;
 const mostNames = 32;
 const mostSeries = 128;
 
-/** A value of a robot and what is known of it. */
+/** A value of a robot, and its known samples. */
 export interface Track {
   robot: number;
   name: string;
   unit: string;
   whole: Curve;
   isReduced: boolean;
-  detail: { from: number; to: number; curve: Curve } | undefined; // samples of the interval that is zoomed to
+  detail: { from: number; to: number; curve: Curve } | undefined; // samples of the zoomed interval
 }
 
 export const keyOf = (robot: number, name: string): string => `${robot} ${name}`;
 
-/** The curve that is shown: all that is known, the zoomed part of it in detail. */
+/** Returns the curve to show: all known samples, with the zoomed part in detail. */
 export function shownCurve({ whole, detail }: Track): Curve {
   if (!detail) return whole;
   const before = between(whole, -Infinity, detail.from);
@@ -29,12 +29,12 @@ export function shownCurve({ whole, detail }: Track): Curve {
   return joined(joined(before, detail.curve), after);
 }
 
-/** The histories of values: asked for once, then continued by what comes. */
+/** The histories of values: requested once, then continued with arriving values. */
 export class Histories {
   private readonly tracks = new Map<string, Track>();
   private generation = 0;
   private pending = 0;
-  private readonly missing = new Set<Track>(); // asked for soon, all together
+  private readonly missing = new Set<Track>(); // to be requested together soon
   problem = "";
 
   constructor(
@@ -50,14 +50,14 @@ export class Histories {
     return this.tracks.get(keyOf(robot, name));
   }
 
-  /** Another run or recording is shown. */
+  /** Drops all histories, because another run or recording is shown. */
   forget(): void {
     ++this.generation;
     this.tracks.clear();
     this.problem = "";
   }
 
-  /** Asks for those that are not known yet, and forgets all others. */
+  /** Requests the wanted histories that are not known yet, and drops all others. */
   want(wanted: readonly { robot: number; name: string; unit: string }[]): void {
     const keys = new Set(wanted.map(({ robot, name }) => keyOf(robot, name)));
     for (const key of [...this.tracks.keys()]) if (!keys.has(key)) this.tracks.delete(key);
@@ -70,7 +70,7 @@ export class Histories {
     }
   }
 
-  /** Asks for the detail of an interval where values were left out; of none without one. */
+  /** Requests the detail of an interval in which values were left out. Without an interval, drops the details. */
   zoom(interval: [number, number] | undefined): void {
     for (const track of this.tracks.values()) track.detail = undefined;
     if (!interval) return;
@@ -83,7 +83,7 @@ export class Histories {
     });
   }
 
-  /** Takes values that come one after the other. If time goes back, later ones have not happened. */
+  /** Appends arriving values. If time goes back, drops later values. */
   append(
     robot: number,
     time: number,
@@ -121,7 +121,7 @@ export class Histories {
     return this.tracks.get(keyOf(track.robot, track.name)) === track;
   }
 
-  // Series of the same values are asked for together, in as many parts as the server answers.
+  // Requests series of the same values together, in as many parts as the server answers.
   private async read(
     tracks: readonly Track[],
     interval: [number, number] | undefined,
@@ -155,14 +155,14 @@ export class Histories {
 
 type IndexOf = (name: string) => number | undefined;
 
-// Values that came while their history was asked for are later than it.
+// Inserts a part of a history into a known curve, whose later values arrived while the history was requested.
 function insertedInto(known: Curve, part: Curve): Curve {
   if (part.times.length === 0) return known;
   const [from, to] = [part.times[0], part.times[part.times.length - 1]];
   return joined(joined(between(known, -Infinity, from), part), between(known, to, Infinity));
 }
 
-// Robots of which the same values are wanted, within the limits of a request.
+// Returns groups of robots with the same wanted values, within the limits of a request.
 function groupsOf(tracks: readonly Track[]): { robots: number[]; names: string[] }[] {
   const namesOf = new Map<number, string[]>();
   for (const { robot, name } of tracks) namesOf.set(robot, [...(namesOf.get(robot) ?? []), name]);

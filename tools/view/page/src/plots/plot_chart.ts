@@ -3,11 +3,12 @@ import { commandedPrefix } from "../data/channels";
 import { numberText, unitAfter } from "../data/numbers";
 import { type Curve, valueAt } from "./curve";
 
-// Colours of Okabe and Ito, which colour-blind people tell apart, on light and on dark. Dashes tell further ones apart.
+// The palette of Okabe and Ito, which colour-blind users can distinguish on light and dark backgrounds. Further lines
+// are dashed.
 const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a8a8a"];
 const dashes = [[], [6, 3], [2, 3]];
-const clickSlack = 4; // [pixels] that a mouse may move in a click
-const doubleClick = 250; // [ms] to wait whether a click becomes one
+const clickSlack = 4; // [pixels] by which the mouse may move during a click
+const doubleClick = 250; // [ms] to wait for a second click
 const retainNulls = 1; // mode of uPlot.join
 const mostEntries = 8; // in a legend
 const mostEntriesIfNarrow = 4;
@@ -31,17 +32,17 @@ export interface ChartActions {
 export const colorOf = (index: number): string => palette[index % palette.length];
 export const dashOf = (index: number): number[] => dashes[Math.floor(index / palette.length) % dashes.length];
 
-/** A little more than the values; around one that never changes, 1 to each side. */
+/** Returns a range slightly larger than that of the values; for a constant value, 1 to each side. */
 export function rangeAround(low: number | null, high: number | null): [number, number] {
   if (low === null || high === null) return [-1, 1];
   if (low === high) return [low - 1, high + 1];
   return [low - 0.08 * (high - low), high + 0.08 * (high - low)];
 }
 
-/** The units of lines, for their common axis; `1` if they have none. */
+/** Returns the units of lines, for their common axis; `1` if dimensionless. */
 export const unitsOf = (lines: readonly Line[]): string => [...new Set(lines.map(({ unit }) => unit))].join(", ");
 
-/** An element with properties and children. */
+/** Makes an element with properties and children. */
 export function make<Kind extends keyof HTMLElementTagNameMap>(
   kind: Kind,
   properties: Partial<HTMLElementTagNameMap[Kind]>,
@@ -52,7 +53,7 @@ export function make<Kind extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** One diagram: lines of one unit over the time that all diagrams share, and their legend with values. */
+/** One chart: lines of one unit over the common time axis, and a legend with values. */
 export class PlotChart {
   readonly root = make("section", { className: "plot" });
   private readonly legend = make("ul", { className: "plot-legend" });
@@ -76,7 +77,9 @@ export class PlotChart {
     this.root.append(this.head, this.place);
   }
 
-  /** Shows these lines, and returns whether they are others than before. `addable` are the names of further values. */
+  /**
+   * Shows these lines, and returns whether they differ from the former ones. `addable` are the names of further values.
+   */
   show(lines: Line[], addable: readonly string[]): boolean {
     const isSame = lines.length === this.lines.length && lines.every(({ key }, i) => key === this.lines[i].key);
     this.lines = lines;
@@ -91,7 +94,7 @@ export class PlotChart {
     return !isSame;
   }
 
-  /** Height of what is above the diagram [pixels]. */
+  /** Height of the area above the chart [pixels]. */
   get headHeight(): number {
     return this.head.offsetHeight;
   }
@@ -109,14 +112,14 @@ export class PlotChart {
     this.plot?.setScale("x", { min: range[0], max: range[1] });
   }
 
-  /** The vertical line at the present time. */
+  /** Moves the vertical line to the present time. */
   setNow(time: number): void {
     const [from, to] = this.range;
     this.now.hidden = !(time >= from && time <= to);
     this.now.style.left = `${(100 * (time - from)) / (to - from)}%`;
   }
 
-  /** Shows the values of a time in the legend. */
+  /** Shows the values at a time in the legend. */
   read(time: number): void {
     this.outputs.forEach((output, i) => {
       const { curve, unit } = this.lines[i];
@@ -152,7 +155,7 @@ export class PlotChart {
     );
   }
 
-  // Names the first lines, and says how many more there are.
+  // Shows the names of the first lines, and the number of further lines.
   private buildLegend(): void {
     this.outputs.length = 0;
     const most = this.size.width < narrow ? mostEntriesIfNarrow : mostEntries;
@@ -245,7 +248,7 @@ export class PlotChart {
 }
 
 function seriesOf({ label, name }: Line, index: number): uPlot.Series {
-  // A command holds from one tick to the next.
+  // A command is constant from one tick to the next.
   const paths = name.startsWith(commandedPrefix) ? uPlot.paths.stepped?.({ align: -1 }) : undefined;
   return { label, stroke: colorOf(index), width: 1.5, dash: dashOf(index), paths, points: { show: false } };
 }

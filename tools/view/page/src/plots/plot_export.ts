@@ -3,7 +3,10 @@ import { numberText } from "../data/numbers";
 import { between } from "./curve";
 import { colorOf, dashOf, type Line, rangeAround, unitsOf } from "./plot_chart";
 
-/** A table of RFC 4180: a row for each time in the range, a column for each line, empty where it has no value. */
+/**
+ * Returns a CSV table (RFC 4180): a row for each time in the range, and a column for each line, empty where it has no
+ * value.
+ */
 export function csvOf(lines: readonly Line[], [from, to]: readonly [number, number]): string {
   const cell = (text: string): string => (/[",\n\r]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
   const parts = lines.map(({ curve }) => between(curve, from, to));
@@ -22,7 +25,7 @@ export function csvOf(lines: readonly Line[], [from, to]: readonly [number, numb
 }
 
 const width = 900;
-const height = 230; // each plot's
+const height = 230; // per plot
 const margin = { left: 70, right: 20, top: 10, bottom: 36 };
 const rowHeight = 16; // in a legend
 const columns = 3;
@@ -30,7 +33,7 @@ const ticks = 6;
 
 const escaped = (text: string): string => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/"/g, "&quot;");
 
-// Round numbers in a range.
+// Returns round numbers in a range.
 function roundTicks([low, high]: readonly [number, number]): number[] {
   const rough = (high - low) / ticks;
   const power = 10 ** Math.floor(Math.log10(rough));
@@ -111,7 +114,7 @@ function penOf(index: number): string {
   return `fill="none" stroke="${colorOf(index)}" stroke-width="1.5"${dash}`;
 }
 
-/** All plots, one below the other, as a picture for papers. */
+/** Returns a picture of all plots, one below the other, for papers. */
 export function svgOf(plots: readonly (readonly Line[])[], range: readonly [number, number]): string {
   const inside = `<clipPath id="inside"><rect x="${margin.left}" y="${margin.top}" width="${width - margin.left - margin.right}" height="${height - margin.top - margin.bottom}"/></clipPath>`;
   let top = rowHeight;

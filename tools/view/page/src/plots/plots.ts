@@ -13,9 +13,9 @@ const mostRobots = 16;
 const mostCharts = 12;
 const mostLines = 24; // in a chart
 const mostAddable = 400; // names
-const leastHeight = 110; // each chart's [pixels]
-const drawInterval = 100; // [ms]; nobody reads faster, and without a graphics processor a plot takes longer than the scene
-const detailDelay = 200; // [ms] without zooming before the detail is asked for
+const leastHeight = 110; // per chart [pixels]
+const drawInterval = 100; // [ms]; without a graphics card, drawing a plot takes longer than drawing the scene
+const detailDelay = 200; // [ms] from the last zoom to the request for detail
 
 interface Robot {
   name: string;
@@ -32,7 +32,7 @@ export interface PlotsOptions {
   seek: (time: number) => void;
 }
 
-/** Plots of values of robots over the whole time that is known, all with the same time axis and cursor. */
+/** Plots of values of robots over all known time, with a common time axis and cursor. */
 export class Plots {
   private readonly container = element("plots");
   private readonly told = make("output", {});
@@ -46,7 +46,7 @@ export class Plots {
   private readonly removed = new Set<string>(); // lines of single robots
   private status: ViewStatus | undefined;
   private now = 0;
-  private first = 0; // time of the first value, of a server
+  private first = 0; // time of the first value from a server
   private zoomed: [number, number] | undefined;
   private hovered: number | undefined;
   private drawing: number | undefined;
@@ -54,7 +54,7 @@ export class Plots {
   private world = "";
 
   constructor(private readonly options: PlotsOptions) {
-    // A program that shows its world has no histories.
+    // A view of a program's own world has no histories.
     const ask = (request: ViewRequest): Promise<Answer> =>
       this.status?.source === "program" ? Promise.resolve({ done: true, text: "" }) : options.ask(request);
     this.histories = new Histories(ask, () => this.drawSoon());
@@ -99,7 +99,7 @@ export class Plots {
     if (!before || before.end_ns !== status.end_ns || before.begin_ns !== status.begin_ns) this.drawSoon();
   }
 
-  /** The present values of a server's robots; a recording has them in its history. */
+  /** Takes the present values of a server's robots. A recording has them in its history. */
   take(robots: readonly SceneRobot[]): void {
     if (this.status === undefined || this.status.source === "recording") return;
     for (const { robot, time_ns, observation, command } of robots) {
@@ -112,7 +112,7 @@ export class Plots {
     if (robots.length > 0) this.drawSoon();
   }
 
-  /** Drops all values: another run is shown, or the connection was lost. */
+  /** Drops all values, because another run is shown or the connection was lost. */
   forget(): void {
     this.histories.forget();
     this.zoomed = undefined;
@@ -121,7 +121,7 @@ export class Plots {
 
   // User input.
 
-  /** Plots the values of these robots: ids. */
+  /** Plots the values of the robots with these ids. */
   show(robots: readonly number[]): void {
     const known = robots.filter((robot) => this.robotOf.has(robot)).slice(0, mostRobots);
     if (known.length !== this.robots.length || known.some((robot, i) => robot !== this.robots[i])) this.removed.clear();
@@ -129,7 +129,10 @@ export class Plots {
     this.arrange();
   }
 
-  /** Plots a value by its name, which its unit may follow, or all values of a unit. False if there is none. */
+  /**
+   * Plots a value by its name, optionally followed by its unit, or all values with a unit. Returns false if there is
+   * none.
+   */
   add(text: string): boolean {
     const meant = valuesMeant(this.values(), text);
     for (const { name, unit } of meant.slice(0, mostLines)) {
@@ -158,17 +161,17 @@ export class Plots {
     );
   }
 
-  /** The plotted lines, by the label of each. */
+  /** Returns the plotted lines. */
   lines(): Line[] {
     return this.charts.flatMap(({ lines }) => lines);
   }
 
-  /** Names of the values that can be plotted. */
+  /** Returns the names of the values that can be plotted. */
   names(): string[] {
     return this.values().map(({ name }) => name);
   }
 
-  // Values that the robots have, each once.
+  // Returns the values that any of the robots have, each once.
   private values(): Value[] {
     const found = new Map<string, Value>();
     for (const robot of this.robots)
@@ -189,7 +192,7 @@ export class Plots {
     return this.valueOf(name)?.unit;
   }
 
-  // The names in each plot. By default the first two commands.
+  // Returns the names in each plot; by default, the first two commands.
   private plots(): string[][] {
     const chosen = this.wanted?.map((names) => names.filter((name) => this.valueOf(name)));
     const plots = chosen?.filter((names) => names.length > 0) ?? [];
@@ -219,7 +222,7 @@ export class Plots {
     return lines.slice(0, mostLines);
   }
 
-  // Makes the charts and asks for what they need.
+  // Makes the charts and requests their data.
   private arrange(): void {
     const plots = this.plots()
       .filter((names) => this.linesOf(names).length > 0)
@@ -341,7 +344,7 @@ export class Plots {
     if (isOther) this.resize();
   }
 
-  // Values of the time under the mouse, or else of the present one.
+  // Shows the values at the time under the mouse, or otherwise at the present time.
   private read(): void {
     const time = this.hovered ?? this.now;
     for (const { chart } of this.charts) chart.read(time);
@@ -354,7 +357,7 @@ export class Plots {
     this.all.hidden = this.zoomed === undefined;
   }
 
-  // Charts share a container of fixed height; one that grows with them has the least height for each.
+  // Charts share the height of a fixed container; in a container that grows with them, each has the minimum height.
   private resize(): void {
     const { container, list, charts } = this;
     if (charts.length === 0) return;

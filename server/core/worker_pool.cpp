@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ WorkerPool::WorkerPool(unsigned threads) : threads_(threads) {
 WorkerPool::~WorkerPool() = default;
 
 void WorkerPool::run(std::size_t count, std::size_t grain, Call call, void* body) {
+  assert(grain > 0);
   if (!pool_ || count <= grain) {
     for (std::size_t begin = 0; begin < count; begin += grain) call(body, begin, std::min(count, begin + grain), 0);
     return;

@@ -1,6 +1,7 @@
 #include "server/lockstep/barrier.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace cohort::lockstep {
 
@@ -33,6 +34,7 @@ void Barrier::set_driven(std::uint32_t robot, bool driven) {
 }
 
 void Barrier::open(std::uint64_t tick, Time now) {
+  assert(tick >= tick_);
   if (is_fresh_)
     for (Robot& robot : robots_) robot.heard_at = now;
   is_fresh_ = false;
@@ -88,6 +90,8 @@ Barrier::Verdict Barrier::judge(std::uint32_t robot, std::uint64_t frame_tick) c
 }
 
 void Barrier::answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<const double> values, Time now) {
+  assert(judge(robot, frame_tick) == Verdict::accepted);
+  assert(values.size() == robots_[robot].answers.front().values.size());
   if (Robot& r = robots_[robot]; is_free(r)) {
     std::ranges::copy(values, r.answers.front().values.begin());
     r.answered = frame_tick;
@@ -117,6 +121,7 @@ void Barrier::refuse(std::uint32_t robot, std::uint64_t frame_tick, Time now) {
 
 void Barrier::settle(Robot& robot) {
   if (!robot.awaited) return;
+  assert(awaited_count_ > 0);
   robot.awaited = false;
   --awaited_count_;
 }
@@ -125,6 +130,7 @@ std::vector<std::uint32_t> Barrier::awaited() const {
   std::vector<std::uint32_t> result;
   for (std::uint32_t robot = 0; robot < robots_.size(); ++robot)
     if (robots_[robot].awaited) result.push_back(robot);
+  assert(result.size() == awaited_count_);
   return result;
 }
 
@@ -175,6 +181,7 @@ std::vector<Barrier::Miss> Barrier::expire(Time now) {
 
 Barrier::Outcome Barrier::outcome(std::uint32_t robot) const {
   const Robot& r = robots_[robot];
+  assert(!r.awaited);
   if (r.detached || !r.driven) return {Outcome::Kind::neutral, {}};
   if (is_free(r)) {
     if (r.silent && r.policy.on_late != OnLate::hold) return {Outcome::Kind::neutral, {}};

@@ -1,6 +1,7 @@
 #include "server/lockstep/leases.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace cohort::lockstep {
@@ -29,7 +30,10 @@ void Leases::change(std::uint64_t client, std::vector<std::uint32_t> robots) {
   lease.epoch = next_epoch_++;
   for (const std::uint32_t robot : lease.robots) holder_[robot].reset();
   lease.robots = std::move(robots);
-  for (const std::uint32_t robot : lease.robots) holder_[robot] = client;
+  for (const std::uint32_t robot : lease.robots) {
+    assert(!holder_[robot]);
+    holder_[robot] = client;
+  }
 }
 
 bool Leases::decide_one(const Claim& claim, Time now, bool may_grant, Decisions& decisions) {
@@ -56,7 +60,10 @@ bool Leases::decide_one(const Claim& claim, Time now, bool may_grant, Decisions&
   for (const std::uint64_t client : superseded) end_lease(client);
   end_lease(claim.client);
   leases_[claim.client] = {.epoch = epoch, .robots = claim.robots};
-  for (const std::uint32_t robot : claim.robots) holder_[robot] = claim.client;
+  for (const std::uint32_t robot : claim.robots) {
+    assert(!holder_[robot]);
+    holder_[robot] = claim.client;
+  }
   decisions.granted.push_back({claim.client, std::move(superseded), again});
   return true;
 }
@@ -93,7 +100,10 @@ void Leases::release(std::uint64_t client) {
 void Leases::end_lease(std::uint64_t client) {
   const auto found = leases_.find(client);
   if (found == leases_.end()) return;
-  for (const std::uint32_t robot : found->second.robots) holder_[robot].reset();
+  for (const std::uint32_t robot : found->second.robots) {
+    assert(holder_[robot] == client);
+    holder_[robot].reset();
+  }
   leases_.erase(found);
   answers_.erase(client);
 }

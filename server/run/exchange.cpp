@@ -1,6 +1,7 @@
 #include "server/run/exchange.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace cohort::session {
 namespace {
@@ -44,12 +45,14 @@ void Exchange::open(lockstep::Time now) {
 
 std::span<const double> Exchange::kept(std::uint32_t robot, std::uint64_t tick) const {
   if (history_[robot].empty()) return simulation_.observation(robot);
+  assert(tick <= simulation_.tick() && simulation_.tick() - tick <= simulation_.policy(robot).delay);
   const std::size_t slots = simulation_.policy(robot).delay + 1;
   const std::size_t size = history_[robot].size() / slots;
   return {history_[robot].data() + size * (tick % slots), size};
 }
 
 void Exchange::fill_frame(Frame& frame, std::span<const std::uint32_t> robots, std::uint64_t tick) const {
+  assert(std::ranges::is_sorted(robots));
   frame.robots.clear();
   frame.values = {};
   bool in_a_row = true;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <sstream>
 
@@ -103,6 +104,7 @@ std::size_t Robots::add_observation(std::uint32_t slot, std::size_t size) {
   constexpr std::size_t nowhere = 0xffffffffffffffff;
   if (slot >= observation_offsets_.size()) observation_offsets_.resize(slot + 1, nowhere);
   std::size_t& offset = observation_offsets_[slot];
+  assert(offset == nowhere || offset + size <= observations_.size());
   if (offset == nowhere) {
     offset = observations_.size();
     observations_.resize(offset + size);
@@ -221,6 +223,7 @@ CommandFault Robots::unfit(std::uint32_t robot, const Channel& channel, double v
 bool Robots::set_command(std::uint32_t robot, std::span<const double> values) {
   if (is_released(robot)) return false;
   std::vector<double>& command = robots_[robot].command;
+  assert(values.size() == command.size());
   // Compares bits, as the hash does: 0.0 and -0.0 differ.
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
   if (std::ranges::equal(command, values, {}, bits, bits)) return false;
@@ -242,6 +245,7 @@ void Robots::actuate() {
       each.actuator->apply(values.first(each.size));
       values = values.subspan(each.size);
     }
+    assert(values.empty());
   }
 }
 
@@ -270,6 +274,7 @@ void Robots::sense(std::uint64_t tick) {
             observe(*each.sensor, each.signal_chain, tick, is_asked, values.first(each.size), scratch_[worker]);
             values = values.subspan(each.size);
           }
+          assert(values.empty());
         }
       });
 }

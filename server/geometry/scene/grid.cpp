@@ -1,5 +1,6 @@
 #include "server/geometry/scene/grid.hpp"
 
+#include <cassert>
 #include <cmath>
 
 namespace cohort::geometry {
@@ -35,8 +36,10 @@ void Grid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>
   for (const std::uint32_t item : items_) for_each_cell(item, [&](std::size_t bucket) { ++begin_[bucket]; });
   for (std::size_t i = 0; i < buckets; ++i) begin_[i + 1] += begin_[i];
   entries_.resize(begin_[buckets]);
+  assert(std::ranges::is_sorted(items));
   for (std::size_t i = items_.size(); i-- > 0;)
     for_each_cell(items_[i], [&](std::size_t bucket) { entries_[--begin_[bucket]] = items_[i]; });
+  assert(begin_.front() == 0 && begin_.back() == entries_.size());
 }
 
 }  // namespace cohort::geometry

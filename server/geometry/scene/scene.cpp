@@ -1,10 +1,12 @@
 #include "server/geometry/scene/scene.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 #include <vector>
 
 #include "server/core/infinity.hpp"
+#include "server/core/is_unit.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -98,6 +100,7 @@ void Scene::remove(std::uint32_t index) {
 }
 
 void Scene::put_back(std::uint32_t index) {
+  assert(is_removed_[index]);
   is_removed_[index] = 0;
   build();
 }
@@ -131,6 +134,7 @@ double Scene::improve(std::optional<RayHit>& best, std::uint32_t index, const Ei
 
 std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
                                       BodyId ignored_body) const {
+  assert(is_unit(direction_W) && range >= 0.0);
   std::optional<RayHit> best;
   const auto test = [&](std::uint32_t index) {
     const double reach = best ? best->distance : range;

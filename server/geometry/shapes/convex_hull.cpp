@@ -1,6 +1,7 @@
 #include "server/geometry/shapes/convex_hull.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -57,7 +58,10 @@ class Hull {
       if (!faces_[face].is_gone && !faces_[face].outside.empty()) add_furthest(face);
   }
 
-  std::vector<Face> faces() && { return std::move(faces_); }
+  std::vector<Face> faces() && {
+    assert(is_closed());
+    return std::move(faces_);
+  }
 
  private:
   void round(const std::vector<Eigen::Vector3d>& points) {
@@ -176,6 +180,17 @@ class Hull {
       faces_[made].neighbours[1] = next;
       faces_[next].neighbours[2] = made;
     }
+  }
+
+  // Returns whether each edge joins two faces that know each other.
+  bool is_closed() const {
+    for (Index face = 0; face < faces_.size(); ++face)
+      for (const Index neighbour : faces_[face].neighbours)
+        if (!faces_[face].is_gone &&
+            (faces_[neighbour].is_gone ||
+             std::ranges::find(faces_[neighbour].neighbours, face) == faces_[neighbour].neighbours.end()))
+          return false;
+    return true;
   }
 
   std::vector<LatticePoint> points_;

@@ -2,11 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 
 #include "server/core/infinity.hpp"
 #include "server/core/integer_floor.hpp"
+#include "server/core/is_unit.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -29,7 +31,9 @@ struct Slope {
 class Walk {
  public:
   Walk(const HeightGrid& grid, const Vector3d& origin, const Vector3d& direction)
-      : grid_(grid), origin_(origin), direction_(direction), half_(grid.half_size()) {}
+      : grid_(grid), origin_(origin), direction_(direction), half_(grid.half_size()) {
+    assert(is_unit(direction));
+  }
 
   RayEntry enter(double range) {
     double first = 0.0;

@@ -1,8 +1,11 @@
 #include "server/geometry/shapes/mass_properties.hpp"
 
 #include <array>
+#include <cassert>
 #include <numbers>
 #include <type_traits>
+
+#include "server/core/is_unit.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -89,6 +92,7 @@ MassProperties mass_properties(const description::Shape& shape, double density) 
 }
 
 MassProperties moved(const MassProperties& part, const Pose& X_AB) {
+  assert(is_unit(X_AB.orientation));
   const Eigen::Matrix3d R = X_AB.orientation.toRotationMatrix();
   return {part.mass, X_AB * part.centre, R * part.inertia * R.transpose()};
 }

@@ -1,6 +1,7 @@
 #include "server/physics/contact/collision.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "server/core/state_visitors.hpp"
@@ -74,6 +75,7 @@ bool Collision::makes_a_pair(std::uint32_t solid, std::uint32_t other) const {
 
 // Pairs that are still near keep their contact points.
 void Collision::find_pairs(std::uint32_t solid, std::span<const std::uint32_t> near) {
+  assert(std::ranges::is_sorted(near));
   std::vector<SolidPair>& pairs = moving_[place_[solid]].pairs;
   std::size_t same = 0;
   bool is_same = true;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 
+#include "server/core/is_unit.hpp"
 #include "server/geometry/shapes/shapes.hpp"
 
 namespace cohort::physics {
@@ -43,6 +45,7 @@ struct ContactPoints {
   Eigen::Vector3d friction_direction_W = Eigen::Vector3d::Zero();
 
   void add(const Eigen::Vector3d& position_W, const Eigen::Vector3d& normal_W, double gap) {
+    assert(is_unit(normal_W) && std::isfinite(gap));
     if (count < most) points[static_cast<std::size_t>(count++)] = {position_W, normal_W, gap, {}, {}, 0.0};
   }
   ContactPoint* begin() { return points.data(); }

@@ -1,6 +1,7 @@
 #include "server/physics/dynamics/mass_matrix.hpp"
 
 #include <array>
+#include <cassert>
 
 namespace cohort::physics {
 namespace {
@@ -84,6 +85,7 @@ void MassMatrix::factorise() {
   const std::vector<int>& parents = mechanism_->parents();
   for (int k = size_ - 1; k >= 0; --k) {
     double* row_k = matrix_.data() + k * stride_;
+    assert(row_k[k] != 0.0);
     const double inverse = 1.0 / row_k[k];
     for (int i = parents[at(k)]; i >= 0; i = parents[at(i)]) {
       double* row_i = matrix_.data() + i * stride_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "server/core/infinity.hpp"
+#include "server/core/is_unit.hpp"
 #include "server/core/state_visitors.hpp"
 #include "server/physics/world/corrections.hpp"
 
@@ -35,6 +36,15 @@ double reach_of(const Member& member) {
 }
 
 }  // namespace
+
+bool Member::is_valid() const {
+  const BodyMotion& motion = multibody->motion();
+  const double* const velocities = motion.velocities();
+  return std::all_of(velocities, velocities + motion.mechanism().dof_count(),
+                     [](double v) { return std::isfinite(v); }) &&
+         std::ranges::all_of(motion.segment_poses(),
+                             [](const Pose& X_WS) { return X_WS.position.allFinite() && is_unit(X_WS.orientation); });
+}
 
 Assembly::Assembly(const description::World& world)
     : step(std::chrono::duration<double>(world.step).count()),

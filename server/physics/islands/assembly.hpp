@@ -52,6 +52,8 @@ struct Member {
   std::vector<WeightlessLink> weightless{};
 
   bool is_awake() const { return is_active && !is_asleep; }
+  /// Returns whether its velocities and poses are finite, and its rotations are rotations. For assertions.
+  bool is_valid() const;
 };
 
 /// The data from which the solids of a model are created, for each collision in the order of the links.

@@ -1,6 +1,7 @@
 #include "server/physics/islands/island_parts.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace cohort::physics {
@@ -28,6 +29,7 @@ void IslandParts::find_neighbours() {
 void IslandParts::cut(std::uint32_t size) {
   find_neighbours();
   const auto count = static_cast<std::uint32_t>(part_of_.size());
+  assert(size > 0);
   bodies_.clear();
   begin_.assign(1, 0);
   std::vector<std::uint32_t> waiting;  // neighbours of full parts, in the order of discovery

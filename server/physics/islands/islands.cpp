@@ -1,6 +1,7 @@
 #include "server/physics/islands/islands.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace cohort::physics {
@@ -19,6 +20,7 @@ std::uint32_t Islands::find(std::uint32_t member) {
 }
 
 void Islands::link(std::uint32_t a, std::uint32_t b) {
+  assert(a < root_.size() && b < root_.size());
   const std::uint32_t root_a = find(a);
   const std::uint32_t root_b = find(b);
   root_[std::max(root_a, root_b)] = std::min(root_a, root_b);
@@ -38,6 +40,7 @@ void Islands::finish() {
     ++begin_[island_[root_[member]] + 1];
   }
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  assert(begin_.back() == count);
   members_.resize(count);
   std::vector<std::uint32_t>& fill = island_;  // reused, by root: index of the next member
   for (std::uint32_t member = 0; member < count; ++member)

@@ -1,6 +1,7 @@
 #include "server/physics/islands/multibody_world.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -205,6 +206,9 @@ void MultibodyWorld::step() {
   assembly_.pushes.clear();
   if (all_is_as_it_was) return;
   quarantine();
+  assert(std::ranges::all_of(awake_, [&](std::uint32_t index) {
+    return !assembly_.members[index].is_active || assembly_.members[index].is_valid();
+  }));
   assembly_.scene.update();
   sleep_.fall_asleep(islands_);
 }

@@ -1,6 +1,7 @@
 #include "server/physics/islands/sleep.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -71,6 +72,7 @@ void Sleep::fall_asleep(const Islands& islands) {
 void Sleep::put_to_sleep(std::span<const std::uint32_t> members) {
   for (std::size_t i = 0; i < members.size(); ++i) {
     Member& member = assembly_.members[members[i]];
+    assert(member.is_awake());
     member.multibody->motion().stop();
     member.next_asleep = members[(i + 1) % members.size()];
     assembly_.set_asleep(members[i], true);
@@ -78,6 +80,7 @@ void Sleep::put_to_sleep(std::span<const std::uint32_t> members) {
 }
 
 std::vector<std::uint32_t> Sleep::group_of(std::uint32_t index) const {
+  assert(assembly_.members[index].is_asleep);
   std::vector<std::uint32_t> group;
   do {
     group.push_back(index);

@@ -2,8 +2,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cassert>
 #include <span>
 #include <stdexcept>
+
+#include "server/core/is_unit.hpp"
 
 namespace cohort::physics {
 namespace {
@@ -66,6 +69,9 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
   sum_added_masses();
   if (has_kinematic_root()) make_root_immovable();
   find_outputs();
+  assert(std::ranges::all_of(segments_, [](const Segment& segment) {
+    return segment.mass >= 0.0 && segment.inertia_S.diagonal().minCoeff() >= 0.0 && is_unit(segment.X_PS.orientation);
+  }));
   swings_freely_ = dof_count() > 1 && !is_held_by_rows();
 }
 
@@ -224,6 +230,8 @@ void Mechanism::add_link(std::size_t link, const std::vector<char>& welded) {
 
 int Mechanism::add_segment(int parent, Motion motion, const Pose& X_PS, const Eigen::Vector3d& axis_S,
                            const description::JointAxis* axis) {
+  assert(parent < static_cast<int>(segments_.size()));
+  assert(dofs_of(motion) != 1 || is_unit(axis_S));
   Segment segment;
   segment.parent = parent;
   segment.motion = motion;

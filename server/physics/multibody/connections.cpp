@@ -1,6 +1,7 @@
 #include "server/physics/multibody/connections.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "server/core/state_visitors.hpp"
 
@@ -25,6 +26,8 @@ std::uint32_t Connections::add(const Connection::End& a, const Connection::End& 
 
 void Connections::add(std::uint32_t number, const Connection::End& a, const Connection::End& b,
                       const ConnectionLimits& limits) {
+  assert(connections_.empty() || connections_.back().number < number);
+  assert(a.member != b.member);
   connections_.push_back({number, Connection(a, b, limits)});
   if (of_member_.size() <= a.member) of_member_.resize(a.member + 1);
   of_member_[a.member].push_back(number);

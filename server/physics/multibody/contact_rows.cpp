@@ -1,8 +1,10 @@
 #include "server/physics/multibody/contact_rows.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
+#include "server/core/is_unit.hpp"
 #include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {
@@ -18,6 +20,7 @@ struct Tangents {
 constexpr double upright = 1e-3;
 
 Tangents tangents_of(const ContactPoints& contact, const Eigen::Vector3d& normal) {
+  assert(is_unit(normal));
   const Eigen::Vector3d& direction = contact.friction_direction_W;
   if (!direction.isZero(0.0)) {
     const Eigen::Vector3d along = direction - normal.dot(direction) * normal;
@@ -55,6 +58,7 @@ void share_friction(ContactPoints& contact, bool is_kept) {
 // A spring with a damper, as in Connection::add_yielding_rows. If there is a gap, it starts when the gap is closed.
 void soften(Row& push, double gap, const SurfacePair& surfaces, double step) {
   const double resistance = step * surfaces.stiffness + surfaces.damping;
+  assert(resistance > 0.0);
   push.target = gap > 0.0 ? -gap / step : -surfaces.stiffness * gap / resistance;
   push.soften(1.0 / (step * resistance));
 }

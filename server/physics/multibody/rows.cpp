@@ -1,5 +1,6 @@
 #include "server/physics/multibody/rows.hpp"
 
+#include <cassert>
 #include <cmath>
 
 namespace cohort::physics {
@@ -15,6 +16,7 @@ void Problem::clear() {
 }
 
 Row& Problem::begin_row(Anchor a, Anchor b, double* kept) {
+  assert(a.body >= 0 && a.body < body_count() && b.body < body_count());
   Row& row = rows_.emplace_back();
   row.kept = kept;
   row.impulse = kept == nullptr ? 0.0 : *kept;
@@ -34,6 +36,7 @@ Row& Problem::begin_row(Anchor a, Anchor b, double* kept) {
 }
 
 Row& Problem::finish_row(Row& row, Anchor a, Anchor b) {
+  assert(&row == &rows_.back());
   double* jacobian_a = numbers_.data() + row.numbers;
   double* response_a = jacobian_a + row.stride_a;
   equations(a.body).respond(jacobian_a, response_a);
@@ -88,8 +91,10 @@ Row& Problem::add_dofs_row(int body, int dof, int other, double share, double* k
 
 // The response to impulses in the plane is a symmetric matrix; this is its greater eigenvalue.
 void Problem::join_to_cone() {
+  assert(rows_.size() >= 2);
   Row& second = rows_.back();
   Row& first = rows_[rows_.size() - 2];
+  assert(first.body_a == second.body_a && first.body_b == second.body_b);
   first.limits = Row::Limits::cone;
   second.limits = Row::Limits::coned;
   const double* jacobian = numbers_.data() + first.numbers;

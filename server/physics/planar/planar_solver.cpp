@@ -2,7 +2,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cassert>
 
+#include "server/core/is_unit.hpp"
 #include "server/core/plane_vectors.hpp"
 #include "server/physics/world/corrections.hpp"
 
@@ -43,6 +45,7 @@ Vector3d PlanarSolver::joint_velocity(const Anchors::Part& part, const Vector3d&
 
 void PlanarSolver::add_contact(const Anchors::Part& part_a, const Anchors::Part& part_b, PlanarPoint& point, double z,
                                const SurfacePair& surfaces, double step) {
+  assert(is_unit(point.normal_W));
   ContactRows& rows = contacts_.emplace_back();
   rows.a = side_of(part_a.member);
   rows.b = side_of(part_b.member);

@@ -1,6 +1,7 @@
 #include "server/physics/solvers/block_cholesky.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 
@@ -42,6 +43,7 @@ void BlockCholesky::reset(const std::vector<int>& sizes) {
 }
 
 void BlockCholesky::couple(int a, int b) {
+  assert(a != b);
   const auto insert = [&](int body, int other) {
     std::vector<int>& around = neighbours_[at(body)];
     const auto place = std::lower_bound(around.begin(), around.end(), other);
@@ -99,8 +101,10 @@ bool BlockCholesky::order(double most_work) {
 void BlockCholesky::clear() { std::ranges::fill(values_, 0.0); }
 
 const BlockCholesky::Below& BlockCholesky::below(int column, int row) const {
-  return *std::ranges::lower_bound(below_[at(column)], rank_[at(row)], {},
-                                   [&](const Below& entry) { return rank_[at(entry.body)]; });
+  const auto found = std::ranges::lower_bound(below_[at(column)], rank_[at(row)], {},
+                                              [&](const Below& entry) { return rank_[at(entry.body)]; });
+  assert(found != below_[at(column)].end() && found->body == row);
+  return *found;
 }
 
 BlockCholesky::Block BlockCholesky::block(int a, int b) const {
@@ -145,6 +149,7 @@ void BlockCholesky::subtract_products(int column) {
     for (std::size_t i = j; i < rows.size(); ++i) {
       if (i > j)
         while (entry->body != rows[i].body) ++entry;
+      assert(i == j || entry < below_[at(later)].end());
       double* const into = values_.data() + (i == j ? diagonal_[at(later)] : entry->begin);
       const double* const of_row = values_.data() + rows[i].begin;
       for (int r = 0; r < sizes_[at(rows[i].body)]; ++r)

@@ -1,6 +1,7 @@
 #include "server/physics/solvers/linear_complementarity.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "server/core/infinity.hpp"
@@ -10,6 +11,8 @@ namespace cohort::physics {
 bool LinearComplementarity::solve(std::span<const double> matrix, std::span<const double> b,
                                   std::span<const double> lower, std::span<const double> upper, std::span<double> x) {
   size_ = b.size();
+  assert(matrix.size() == size_ * size_ && lower.size() == size_ && upper.size() == size_ && x.size() == size_);
+  assert(std::ranges::equal(lower, upper, std::ranges::less_equal()));
   matrix_ = matrix;
   lower_ = lower;
   upper_ = upper;

@@ -1,6 +1,7 @@
 #include "server/recording/mcap/writing/mcap_writer.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <stdexcept>
 
@@ -47,6 +48,7 @@ McapWriter::McapWriter(ByteSink sink, McapWriterOptions options)
 }
 
 void McapWriter::write(ByteView bytes) {
+  assert(!is_closed_);
   sink_(bytes);
   size_ += bytes.size();
   crc_ = crc32(bytes, crc_);
@@ -115,6 +117,7 @@ void McapWriter::append_message_indexes(Bytes& to, ChunkIndex& index) const {
 
 void McapWriter::flush_chunk() {
   if (pending_messages_ == 0) return;
+  assert(chunk_start_ <= chunk_end_);
   Bytes compressed;
   if (compressor_) compressor_->compress(chunk_, compressed);
   const ByteView records = compressor_ ? compressed : chunk_;

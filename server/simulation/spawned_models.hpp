@@ -20,7 +20,7 @@ class SpawnedModels {
   explicit SpawnedModels(SharedExperiment& experiment)
       : experiment_(experiment), described_(experiment->world.models.size()) {}
 
-  /// Returns the index of the model; a new text is added. Throws std::invalid_argument if the world has no model of
+  /// Returns the index of the model; a new text is added. Throws ActionError if the world has no model of
   /// that name.
   std::size_t find_or_add(const ModelChoice& choice);
   std::size_t size() const { return texts_.size(); }

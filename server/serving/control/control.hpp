@@ -73,6 +73,7 @@ class Control {
     std::string label;    // for people
     std::string account;  // account that its requests are charged to
     std::uint64_t writer = 0;
+    std::uint32_t minor = 0;  // minor version of the protocol
     wire::Writer<wire::Reply> replies;
   };
   // Returns a reply to the request that is not filled in yet.

@@ -12,6 +12,7 @@
 /// start at 100.
 namespace cohort::wire {
 
+/// The results of requests: docs/protocol.md, "Results", has their meaning.
 enum class ResultCode : std::uint32_t {
   feature_unsupported = 0,
   ok = 1,
@@ -24,6 +25,9 @@ enum class ResultCode : std::uint32_t {
   name_not_unique = 101,
   name_invalid = 102,
   no_resource = 104,
+  resource_parse_error = 106,
+  missing_assets = 107,
+  unsupported_assets = 108,
   // Result of SetEntityState. SpawnEntity has another number for it.
   invalid_pose = 101,
   invalid_spawn_pose = 109,
@@ -31,7 +35,32 @@ enum class ResultCode : std::uint32_t {
   malformed = 200,
   not_permitted = 201,
   forgotten = 202,
+  too_many_requests = 203,
+  cancelled = 204,
+  not_paused = 205,
+  time_not_held = 206,
+  unknown_model = 207,
+  invalid_team = 208,
+  too_many_objects = 209,
+  link_not_found = 210,
+  light_not_found = 211,
+  immovable = 212,
+  quarantined = 213,
+  too_large = 214,
+  invalid_snapshot = 215,
+  not_saved = 216,
+  already_recording = 217,
+  too_many_recordings = 218,
+  invalid_selection = 219,
 };
+
+/// Returns the result for a client with this minor version, which may only know a more general one.
+constexpr ResultCode known_to(std::uint32_t minor, ResultCode result) {
+  const bool is_new = (result >= ResultCode::resource_parse_error && result <= ResultCode::unsupported_assets) ||
+                      result >= ResultCode::too_many_requests;
+  if (!is_new || minor >= first_minor_with_reasons) return result;
+  return result == ResultCode::time_not_held ? ResultCode::incorrect_state : ResultCode::operation_failed;
+}
 
 struct Request {
   std::uint64_t client = 0;

@@ -10,10 +10,11 @@
 /// callback, and sent ones must stay valid until `write` returns.
 namespace cohort::wire {
 
-inline constexpr std::uint32_t minor_version = 3;
+inline constexpr std::uint32_t minor_version = 4;
 inline constexpr std::uint32_t first_minor_with_state = 1;  ///< the first version with ControllerState
 inline constexpr std::uint32_t first_minor_with_growing_leases =
-    3;  ///< the first version with StartReason::more_robots
+    3;                                                        ///< the first version with StartReason::more_robots
+inline constexpr std::uint32_t first_minor_with_reasons = 4;  ///< the first version in which each refusal has a code
 
 struct Channel {
   std::string name{};
@@ -63,7 +64,20 @@ struct AdmittedRobot {
   bool operator==(const AdmittedRobot&) const = default;
 };
 
-enum class AdmitStatus : std::uint32_t { admitted = 0, refused = 1 };
+/// The answer to a Join: docs/protocol.md, "Joining". All but `admitted` are reasons of a refusal.
+enum class AdmitStatus : std::uint32_t {
+  admitted = 0,
+  refused = 1,
+  unknown_robot = 2,
+  not_permitted = 3,
+  robot_taken = 4,
+  failed_in_start = 5,
+  too_many_selectors = 6,
+};
+/// Returns the status for a client with this minor version.
+constexpr AdmitStatus known_to(std::uint32_t minor, AdmitStatus status) {
+  return minor < first_minor_with_reasons && status != AdmitStatus::admitted ? AdmitStatus::refused : status;
+}
 enum class StartReason : std::uint32_t {
   first = 0,
   takeover = 1,

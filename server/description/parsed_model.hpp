@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,14 @@ struct ParsedModel {
 };
 using ParsedModelPtr = std::shared_ptr<const ParsedModel>;
 
-/// Reads the text of a model. Throws std::invalid_argument with all problems of the text. Callable from any thread.
+/// The error that the text of a model cannot be read, with all problems of the text.
+class ModelTextError : public std::invalid_argument {
+ public:
+  ModelTextError(const std::string& text, bool lacks) : std::invalid_argument(text), lacks_file(lacks) {}
+  bool lacks_file;  ///< a file to which the text refers is not there
+};
+
+/// Reads the text of a model. Throws ModelTextError. Callable from any thread.
 using ModelReader = std::function<ParsedModelPtr(const std::string& text)>;
 
 }  // namespace cohort::description

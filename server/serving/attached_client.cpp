@@ -31,15 +31,15 @@ void AttachedClient::begin_run() {
   state = {};
 }
 
-void AttachedClient::refuse(ServedRun& run, const std::string& reason) {
+void AttachedClient::refuse(ServedRun& run, const ClaimRefusal& refusal) {
   wire::Admit answer;
   answer.client = id();
-  answer.status = wire::AdmitStatus::refused;
-  answer.reason = reason;
+  answer.status = wire::known_to(join.minor, refusal.status);
+  answer.reason = refusal.text;
   answer.run = run.number;
   send(admit, answer, &run);
   claims = false;
-  run.monitor.add_event("refused", label + ": " + reason);
+  run.monitor.add_event("refused", label + ": " + refusal.text);
 }
 
 void AttachedClient::fill_frame(ServedRun& run, std::uint64_t tick, bool resent) {

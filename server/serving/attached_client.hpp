@@ -18,6 +18,12 @@
 
 namespace cohort::session {
 
+/// The reason why a client gets no robots.
+struct ClaimRefusal {
+  wire::AdmitStatus status = wire::AdmitStatus::refused;
+  std::string text{};  ///< sentence for people
+};
+
 /// A client of a server: its identity, the robots it asked for, and the messages it is sent. For the thread of the run.
 struct AttachedClient {
   /// `place`: position in the order in which clients arrived.
@@ -62,7 +68,7 @@ struct AttachedClient {
       if (run != nullptr) run->monitor.add_event("unsent", label + ": " + error.what());
     }
   }
-  void refuse(ServedRun& run, const std::string& reason);
+  void refuse(ServedRun& run, const ClaimRefusal& refusal);
   /// Fills in the client's frame of this tick, if any of its robots is due. Requires the lock.
   void fill_frame(ServedRun& run, std::uint64_t tick, bool resent);
   void write_frame(ServedRun& run, std::uint64_t tick, bool resent);

@@ -172,7 +172,7 @@ bool Clients::refuse_unfit(const wire::Report& report) {
     for (const std::uint32_t robot : client.drives_first) run_->was_driven[robot] = false;
     run_->leases.release(report.client);
   }
-  client.refuse(*run_, teams + ": " + report.text);
+  client.refuse(*run_, {wire::AdmitStatus::failed_in_start, teams + ": " + report.text});
   return true;
 }
 

@@ -59,19 +59,19 @@ std::set<std::uint32_t> Clients::take_matching(std::vector<std::string>& selecto
 void Clients::claim(AttachedClient& client, Arriving arriving) {
   const bool may_lack_robots = arriving == Arriving::in_a_former_run && client.has_growing_lease();
   std::set<std::uint32_t> robots;
-  std::string refusal;
+  std::string mismatch;
   std::vector<std::string> selectors = client.join.robots;
   if (selectors.size() > most_selectors)
-    refusal = too_many_selectors();
-  else
-    robots = take_matching(selectors, may_lack_robots ? most_without_robots : 0, refusal);
+    return client.refuse(*run_, {wire::AdmitStatus::too_many_selectors, too_many_selectors()});
+  robots = take_matching(selectors, may_lack_robots ? most_without_robots : 0, mismatch);
   if (may_lack_robots && !robots.empty()) {
     client.more = std::move(selectors);
-    refusal.clear();
+    mismatch.clear();
   }
-  if (robots.empty() && refusal.empty()) refusal = "the client requests no robot";
-  if (refusal.empty()) refusal = why_forbidden(client, robots);
-  if (!refusal.empty()) return client.refuse(*run_, refusal);
+  if (robots.empty() && mismatch.empty()) mismatch = "the client requests no robot";
+  if (!mismatch.empty()) return client.refuse(*run_, {wire::AdmitStatus::unknown_robot, mismatch});
+  if (const std::string forbidden = why_forbidden(client, robots); !forbidden.empty())
+    return client.refuse(*run_, {wire::AdmitStatus::not_permitted, forbidden});
   client.robots.assign(robots.begin(), robots.end());
   client.claims = true;
   const std::lock_guard lock(mutex_);
@@ -109,7 +109,8 @@ void Clients::decide_claims() {
   }
   for (const auto& refused : decisions.refused)
     clients_.at(refused.client)
-        .refuse(*run_, run_->simulation.robot_name(refused.robot) + " is driven by " + label_of(refused.holder));
+        .refuse(*run_, {wire::AdmitStatus::robot_taken,
+                        run_->simulation.robot_name(refused.robot) + " is driven by " + label_of(refused.holder)});
   for (const auto& granted : decisions.granted) admit(granted);
 }
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "server/core/names.hpp"
 #include "server/core/overloaded.hpp"
 #include "server/core/text.hpp"
+#include "server/simulation/action_error.hpp"
 
 namespace cohort {
 namespace {
@@ -17,7 +17,7 @@ constexpr double furthest = 1e6;  // a body farther away has left the world [m]
 constexpr double unit_tolerance = 1e-3;
 constexpr std::chrono::nanoseconds longest_push = std::chrono::hours(24 * 365);
 
-[[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument(why); }
+[[noreturn]] void refuse(ActionFault fault, const std::string& why) { throw ActionError(fault, why); }
 
 std::string quoted(const std::string& name) { return "'" + name + "'"; }
 
@@ -29,17 +29,20 @@ std::vector<std::string> names_in_world(const Objects& objects) {
   return names;
 }
 
-std::uint32_t find_object(const std::string& name, const ActionScope& scope) {
-  check_name(name, "the name of the object");
+std::uint32_t find_object(const std::string& name, const ActionScope& scope,
+                          ActionFault not_found = ActionFault::object_not_found) {
+  check_name(name, "the name of the object", not_found);
   const std::optional<std::uint32_t> object = scope.objects.find(name);
-  if (!object) refuse("there is no object " + quoted(name) + suggestion(name, names_in_world(scope.objects)));
-  if (!scope.objects.is_present(*object)) refuse(quoted(name) + " is not in the world");
+  if (!object)
+    refuse(not_found, "there is no object " + quoted(name) + suggestion(name, names_in_world(scope.objects)));
+  if (!scope.objects.is_present(*object)) refuse(not_found, quoted(name) + " is not in the world");
   return *object;
 }
 
-std::uint32_t find_working_object(const std::string& name, const ActionScope& scope) {
-  const std::uint32_t object = find_object(name, scope);
-  if (scope.objects.is_quarantined(object)) refuse(quoted(name) + " is quarantined");
+std::uint32_t find_working_object(const std::string& name, const ActionScope& scope,
+                                  ActionFault not_found = ActionFault::object_not_found) {
+  const std::uint32_t object = find_object(name, scope, not_found);
+  if (scope.objects.is_quarantined(object)) refuse(ActionFault::quarantined, quoted(name) + " is quarantined");
   return object;
 }
 
@@ -48,7 +51,7 @@ const description::Model& model_of(std::uint32_t object, const ActionScope& scop
 }
 
 void check_finite(const Eigen::Vector3d& vector, const std::string& what) {
-  if (!vector.allFinite()) refuse("the " + what + " is not finite");
+  if (!vector.allFinite()) refuse(ActionFault::invalid_value, "the " + what + " is not finite");
 }
 
 description::Event event_of_kind(const RemoveObject& remove, const ActionScope& scope) {
@@ -61,7 +64,8 @@ description::Event event_of_kind(const SetPose& set, const ActionScope& scope) {
 
 description::Event event_of_kind(const SetVelocity& set, const ActionScope& scope) {
   const std::uint32_t object = find_working_object(set.name, scope);
-  if (const char* const why = model_of(object, scope).why_fixed()) refuse(quoted(set.name) + " " + why);
+  if (const char* const why = model_of(object, scope).why_fixed())
+    refuse(ActionFault::immovable, quoted(set.name) + " " + why);
   check_finite(set.linear_W, "velocity");
   check_finite(set.angular_W, "angular velocity");
   return {{}, object, description::SetVelocity{set.linear_W, set.angular_W}, "set_velocity"};
@@ -70,19 +74,21 @@ description::Event event_of_kind(const SetVelocity& set, const ActionScope& scop
 description::Event event_of_kind(const ApplyForce& apply, const ActionScope& scope) {
   const std::uint32_t object = find_working_object(apply.name, scope);
   const description::Model& model = model_of(object, scope);
-  if (model.is_static) refuse(quoted(apply.name) + " is static");
+  if (model.is_static) refuse(ActionFault::immovable, quoted(apply.name) + " is static");
   check_finite(apply.force_W, "force");
   check_finite(apply.torque_W, "torque");
-  if (apply.duration.count() < 0 || apply.duration > longest_push) refuse("expected a duration from 0 s to one year");
+  if (apply.duration.count() < 0 || apply.duration > longest_push)
+    refuse(ActionFault::invalid_value, "expected a duration from 0 s to one year");
   std::size_t link = 0;
   if (!apply.link.empty()) {
-    check_name(apply.link, "the name of the link");
+    check_name(apply.link, "the name of the link", ActionFault::link_not_found);
     std::vector<std::string> names;
     names.reserve(model.links.size());
     for (const description::Link& each : model.links) names.push_back(each.name);
     link = static_cast<std::size_t>(std::ranges::find(names, apply.link) - names.begin());
     if (link == names.size())
-      refuse(quoted(apply.name) + " has no link " + quoted(apply.link) + suggestion(apply.link, names));
+      refuse(ActionFault::link_not_found,
+             quoted(apply.name) + " has no link " + quoted(apply.link) + suggestion(apply.link, names));
   }
   return {{}, object, description::ApplyForce{link, apply.force_W, apply.torque_W, apply.duration}, "apply_force"};
 }
@@ -109,7 +115,8 @@ std::optional<std::pair<std::uint32_t, std::size_t>> find_light(const std::strin
       if (model.emitters[light].name == wanted) return std::pair{*object, light};
       names.push_back(model.emitters[light].name);
     }
-    refuse(quoted(scope.objects.name(*object)) + " has no light " + quoted(wanted) + suggestion(wanted, names));
+    refuse(ActionFault::light_not_found,
+           quoted(scope.objects.name(*object)) + " has no light " + quoted(wanted) + suggestion(wanted, names));
   }
   return std::nullopt;
 }
@@ -127,27 +134,29 @@ std::vector<std::string> names_of_lights(const ActionScope& scope) {
 }
 
 description::Event event_of_kind(const SetLight& set, const ActionScope& scope) {
-  check_name(set.name, "the name of the light");
+  check_name(set.name, "the name of the light", ActionFault::light_not_found);
   description::SetEmitters effect;
   effect.change.is_on = set.on;
   effect.change.intensity = set.intensity;
   effect.change.color = set.color;
   if (set.intensity && !(*set.intensity >= 0.0 && std::isfinite(*set.intensity)))
-    refuse("expected an intensity of at least 0");
+    refuse(ActionFault::invalid_value, "expected an intensity of at least 0");
   if (set.color && !((set.color->array() >= 0.0).all() && (set.color->array() <= 1.0).all()))
-    refuse("expected red, green and blue from 0 to 1");
+    refuse(ActionFault::invalid_value, "expected red, green and blue from 0 to 1");
   std::string object = set.name;
   if (!scope.objects.find(set.name)) {
     const auto light = find_light(set.name, scope);
     if (!light)
-      refuse("there is no light or object " + quoted(set.name) + suggestion(set.name, names_of_lights(scope)));
+      refuse(ActionFault::light_not_found,
+             "there is no light or object " + quoted(set.name) + suggestion(set.name, names_of_lights(scope)));
     object = scope.objects.name(light->first);
     effect.emitters.push_back(light->second);
   }
-  const std::uint32_t index = find_working_object(object, scope);
+  const std::uint32_t index = find_working_object(object, scope, ActionFault::light_not_found);
   if (effect.emitters.empty()) effect.emitters = lights_of(model_of(index, scope));
   if (effect.emitters.empty())
-    refuse(quoted(set.name) + " has no light" + suggestion(set.name, names_of_lights(scope)));
+    refuse(ActionFault::light_not_found,
+           quoted(set.name) + " has no light" + suggestion(set.name, names_of_lights(scope)));
   return {{}, index, std::move(effect), "set_light"};
 }
 
@@ -155,22 +164,26 @@ description::Event event_of_kind(const SetLight& set, const ActionScope& scope) 
 
 Pose checked_pose(const Pose& X_WM) {
   const double norm = X_WM.orientation.norm();
-  if (!X_WM.position.allFinite() || !X_WM.orientation.coeffs().allFinite()) refuse("the pose is not finite");
-  if (X_WM.position.cwiseAbs().maxCoeff() > furthest) refuse("expected a position within 1,000 km of the origin");
-  if (std::abs(norm - 1.0) > unit_tolerance) refuse("expected a unit quaternion as the orientation of the pose");
+  if (!X_WM.position.allFinite() || !X_WM.orientation.coeffs().allFinite())
+    refuse(ActionFault::invalid_pose, "the pose is not finite");
+  if (X_WM.position.cwiseAbs().maxCoeff() > furthest)
+    refuse(ActionFault::invalid_pose, "expected a position within 1,000 km of the origin");
+  if (std::abs(norm - 1.0) > unit_tolerance)
+    refuse(ActionFault::invalid_pose, "expected a unit quaternion as the orientation of the pose");
   return {X_WM.position, norm == 1.0 ? X_WM.orientation : X_WM.orientation.normalized()};
 }
 
 std::string name_of_new(const SpawnObject& spawn, const std::string& model, const Objects& objects) {
   const std::string& wanted = spawn.name.empty() ? model : spawn.name;
-  check_name(wanted, "the name of the object");
-  if (!is_object_name(wanted)) refuse(quoted(wanted) + " is not a valid name: expected parts separated by slashes");
+  check_name(wanted, "the name of the object", ActionFault::name_invalid);
+  if (!is_object_name(wanted))
+    refuse(ActionFault::name_invalid, quoted(wanted) + " is not a valid name: expected parts separated by slashes");
   if (!objects.find(wanted)) return wanted;
   if (!spawn.allow_renaming)
-    refuse(objects.is_present(*objects.find(wanted))
-               ? "another object has the name " + quoted(wanted)
-               : "an object that has left the world, or is added later, has the name " + quoted(wanted) +
-                     "; names are not reused in a run");
+    refuse(ActionFault::name_not_unique, objects.is_present(*objects.find(wanted))
+                                             ? "another object has the name " + quoted(wanted)
+                                             : "an object that has left the world, or is added later, has the name " +
+                                                   quoted(wanted) + "; names are not reused in a run");
   for (std::size_t number = 1;; ++number)
     if (std::string name = wanted + "_" + std::to_string(number); !objects.find(name)) return name;
 }
@@ -179,9 +192,11 @@ std::optional<std::size_t> team_of_new(const SpawnObject& spawn, std::size_t mod
                                        const description::Experiment& experiment) {
   const description::World& world = experiment.world;
   const std::string& model_name = world.models[model].name;
-  check_name(spawn.team, "the name of the team");
+  check_name(spawn.team, "the name of the team", ActionFault::invalid_team);
   if (!world.models[model].is_robot()) {
-    if (!spawn.team.empty()) refuse("the model " + quoted(model_name) + " is not a robot, so it cannot join a team");
+    if (!spawn.team.empty())
+      refuse(ActionFault::invalid_team,
+             "the model " + quoted(model_name) + " is not a robot, so it cannot join a team");
     return std::nullopt;
   }
   std::vector<std::string> names;
@@ -194,15 +209,18 @@ std::optional<std::size_t> team_of_new(const SpawnObject& spawn, std::size_t mod
   }
   if (!spawn.team.empty()) {
     const auto found = std::ranges::find(names, spawn.team);
-    if (found == names.end()) refuse("there is no team " + quoted(spawn.team) + suggestion(spawn.team, names));
+    if (found == names.end())
+      refuse(ActionFault::invalid_team, "there is no team " + quoted(spawn.team) + suggestion(spawn.team, names));
     return static_cast<std::size_t>(found - names.begin());
   }
-  if (names.empty()) refuse(quoted(model_name) + " is a robot, but the experiment has no team that it can join");
+  if (names.empty())
+    refuse(ActionFault::invalid_team,
+           quoted(model_name) + " is a robot, but the experiment has no team that it can join");
   if (names.size() == 1) return 0;
   if (of_this_model.size() == 1) return of_this_model.front();
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  refuse(quoted(model_name) + " is a robot: expected one of the teams " + list);
+  refuse(ActionFault::invalid_team, quoted(model_name) + " is a robot: expected one of the teams " + list);
 }
 
 description::Event event_of(const Action& action, const ActionScope& scope) {

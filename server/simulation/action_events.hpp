@@ -20,19 +20,19 @@ struct ActionScope {
   const Objects& objects;
 };
 
-/// Converts an action that adds nothing into an immediate event. Throws std::invalid_argument with the reason if it is
-/// invalid: an unknown, absent or quarantined object, one that is not free to move, or a number that is not finite.
+/// Converts an action that adds nothing into an immediate event. Throws ActionError if it is invalid: an unknown,
+/// absent or quarantined object, one that is not free to move, or a number that is not finite.
 description::Event event_of(const Action& action, const ActionScope& scope);
 
-/// Returns the name of a new object. Throws std::invalid_argument if it is invalid or taken.
+/// Returns the name of a new object. Throws ActionError if it is invalid or taken.
 std::string name_of_new(const SpawnObject& spawn, const std::string& model, const Objects& objects);
 
 /// Returns the index of the team that a new object of `model` joins; nothing if it is not a robot. Throws
-/// std::invalid_argument if the team is ambiguous or unknown.
+/// ActionError if the team is ambiguous or unknown.
 std::optional<std::size_t> team_of_new(const SpawnObject& spawn, std::size_t model,
                                        const description::Experiment& experiment);
 
-/// Returns the pose with a normalized quaternion. Throws std::invalid_argument if it is invalid, or out of the
+/// Returns the pose with a normalized quaternion. Throws ActionError if it is invalid, or out of the
 /// simulated range.
 Pose checked_pose(const Pose& X_WM);
 

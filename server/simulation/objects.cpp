@@ -6,6 +6,7 @@
 #include "server/core/random.hpp"
 #include "server/core/state_visitors.hpp"
 #include "server/description/fingerprint.hpp"
+#include "server/simulation/action_error.hpp"
 
 namespace cohort {
 
@@ -55,9 +56,10 @@ std::uint64_t Objects::hash_of_gone(std::uint32_t object) {
 }
 
 std::uint32_t Objects::add(const std::string& name, std::size_t model, const Pose& X_WM) {
-  if (find(name)) throw std::invalid_argument("another object has the name '" + name + "'");
+  if (find(name)) throw ActionError(ActionFault::name_not_unique, "another object has the name '" + name + "'");
   if (size() - described_ == most_added)
-    throw std::invalid_argument("at most " + std::to_string(most_added) + " objects can be added in one run");
+    throw ActionError(ActionFault::too_many_objects,
+                      "at most " + std::to_string(most_added) + " objects can be added in one run");
   experiment_.edit();
   const BodyId body = world_.add_body(model, X_WM);
   add_instance({name, model, X_WM}, body);

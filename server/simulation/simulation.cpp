@@ -193,6 +193,8 @@ std::vector<ActionResult> Simulation::act(std::span<const Action> actions) {
     try {
       results.push_back({true, act_unsensed(action)});
       is_changed = true;
+    } catch (const ActionError& error) {
+      results.push_back({false, error.what(), error.fault});
     } catch (const std::invalid_argument& error) {
       results.push_back({false, error.what()});
     }
@@ -222,9 +224,12 @@ std::string Simulation::spawn_object(const SpawnObject& spawn) {
   const std::size_t models_before = spawned_models_.size();
   try {
     return add_new(spawn, spawned_models_.find_or_add(spawn.model));
-  } catch (const std::invalid_argument&) {
+  } catch (const ActionError&) {
     spawned_models_.shrink(models_before);
     throw;
+  } catch (const std::invalid_argument& error) {
+    spawned_models_.shrink(models_before);
+    throw ActionError(ActionFault::unsupported_model, error.what());
   }
 }
 

@@ -19,6 +19,7 @@
 #include "server/gripping/grippers.hpp"
 #include "server/physics/world/physics_world.hpp"
 #include "server/simulation/action.hpp"
+#include "server/simulation/action_error.hpp"
 #include "server/simulation/breakable_joints.hpp"
 #include "server/simulation/objects.hpp"
 #include "server/simulation/robots.hpp"
@@ -38,7 +39,8 @@ struct TouchCounts {
 /// The result of an action.
 struct ActionResult {
   bool is_done = false;
-  std::string text;  ///< a sentence: what was done, or why it cannot be done
+  std::string text;                        ///< a sentence: what was done, or why it cannot be done
+  ActionFault fault = ActionFault::other;  ///< why it cannot be done
 };
 
 /// A program's reaction to an action of robots. `value`: the action's command in the last step, from 0 to 1,

@@ -6,6 +6,7 @@
 #include "server/core/names.hpp"
 #include "server/core/random.hpp"
 #include "server/core/text.hpp"
+#include "server/simulation/action_error.hpp"
 
 namespace cohort {
 namespace {
@@ -22,20 +23,21 @@ std::uint32_t find_or_append(std::vector<std::string>& names, const std::string&
 std::size_t SpawnedModels::find_or_add(const ModelChoice& choice) {
   if (const auto* const name = std::get_if<std::string>(&choice)) return find(*name);
   const auto& parsed = std::get<description::ParsedModelPtr>(choice);
-  if (parsed == nullptr) throw std::invalid_argument("expected a model");
+  if (parsed == nullptr) throw ActionError(ActionFault::unknown_model, "expected a model");
   return find_or_add(*parsed);
 }
 
 std::size_t SpawnedModels::find(const std::string& name) const {
   const auto& models = experiment_->world.models;
-  if (name.empty()) throw std::invalid_argument("expected the name of one of the world's models, or a model");
-  check_name(name, "the name of the model");
+  if (name.empty())
+    throw ActionError(ActionFault::unknown_model, "expected the name of one of the world's models, or a model");
+  check_name(name, "the name of the model", ActionFault::unknown_model);
   const auto named = std::ranges::find(models, name, &description::Model::name);
   if (named != models.end()) return static_cast<std::size_t>(named - models.begin());
   std::vector<std::string> names;
   names.reserve(models.size());
   for (const description::Model& model : models) names.push_back(model.name);
-  throw std::invalid_argument("the world has no model '" + name + "'" + suggestion(name, names));
+  throw ActionError(ActionFault::unknown_model, "the world has no model '" + name + "'" + suggestion(name, names));
 }
 
 std::size_t SpawnedModels::find_or_add(const description::ParsedModel& parsed) {

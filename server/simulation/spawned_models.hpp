@@ -20,8 +20,8 @@ class SpawnedModels {
   explicit SpawnedModels(SharedExperiment& experiment)
       : experiment_(experiment), described_(experiment->world.models.size()) {}
 
-  /// Returns the index of the model; adds a parsed model that is new. Throws std::invalid_argument if the world has no
-  /// model of that name.
+  /// Returns the index of the model; adds a parsed model that is new. Throws ActionError if the world has no model of
+  /// that name.
   std::size_t find_or_add(const ModelChoice& choice);
   std::size_t size() const { return texts_.size(); }
   /// Removes all but the first `count` texts.

@@ -177,7 +177,7 @@ TEST(HeldTime, ARunLeavesATickOnlyWhenAllWhoHoldItsTimeHaveAskedForALaterOne) {
     }
     return ControlResult::bad_reply;
   };
-  EXPECT_EQ(refusal([&] { one.advance_time(); }), ControlResult::incorrect_state) << "it does not hold the time";
+  EXPECT_EQ(refusal([&] { one.advance_time(); }), ControlResult::time_not_held) << "it does not hold the time";
   EXPECT_EQ(refusal([&] { one.advance_time(0); }), ControlResult::malformed);
   EXPECT_EQ(refusal([&] { one.advance_time(~std::uint64_t{0}); }), ControlResult::malformed);
   one.hold_time();

@@ -164,8 +164,9 @@ TEST(ControlAtTickBoundariesOnly, RequestsOfADeadClientStayInEffect) {
 // A client that speaks the protocol itself, to do what the C++ client never does.
 class Stranger {
  public:
-  explicit Stranger(const ReservedDomain& domain, std::uint64_t id)
+  explicit Stranger(const ReservedDomain& domain, std::uint64_t id, std::uint32_t minor = wire::minor_version)
       : id_(id),
+        minor_(minor),
         participant_(wire::Participant::client(domain.number())),
         replies_(participant_,
                  {[this](const wire::Reply& reply, const wire::Sender&) {
@@ -178,7 +179,20 @@ class Stranger {
     while (requests_.matched() == 0) std::this_thread::sleep_for(1ms);
   }
   void send(const wire::Operation& operation, std::uint64_t number) {
-    requests_.write({.client = id_, .number = number, .operation = operation});
+    requests_.write({.client = id_, .minor = minor_, .number = number, .operation = operation});
+  }
+  /// Sends a request until its reply arrives.
+  wire::Reply ask(const wire::Operation& operation) {
+    const std::uint64_t number = ++last_number_;
+    wire::Reply reply;
+    EXPECT_TRUE(eventually([&] {
+      send(operation, number);
+      const std::lock_guard lock(mutex_);
+      const auto found = std::ranges::find(received_, number, &wire::Reply::number);
+      if (found != received_.end()) reply = *found;
+      return reply.number == number;
+    })) << wire::name_of(wire::code_of(operation));
+    return reply;
   }
   std::vector<wire::Reply> received(std::size_t at_least) {
     const auto replies = [&] {
@@ -191,6 +205,8 @@ class Stranger {
 
  private:
   const std::uint64_t id_;
+  const std::uint32_t minor_;
+  std::uint64_t last_number_ = 0;
   std::mutex mutex_;
   std::vector<wire::Reply> received_;
   wire::Participant participant_;
@@ -262,6 +278,84 @@ TEST(ControlAtTickBoundariesOnly, InvalidRequestsAreRejectedWithASentence) {
   const auto state = client.ask(wire::GetEntityState{"swarm/sbot_1"}, patience, never);
   ASSERT_TRUE(state && state->get<wire::EntityState>() != nullptr);
   EXPECT_EQ(state->get<wire::EntityState>()->pose.position.z, 0.0);
+  run.done({"shutdown"});
+  run.finish();
+}
+
+constexpr const char* including_another_file =
+    "<sdf version='1.9'><model name='m'><include><uri>model://nothing</uri></include></model></sdf>";
+
+TEST(ControlAtTickBoundariesOnly, EachReasonOfARefusalHasAResultAndOldClientsGetOneThatTheyKnow) {
+  const FieldOfRobots field(2, 1e4);
+  ControlledRun run(field, {"--paused"});
+  Stranger now(run.domain(), 0x44);
+  Stranger before(run.domain(), 0x33, wire::first_minor_with_reasons - 1);
+  const auto spawn = [](const std::string& uri, const std::string& text, const std::string& team = "") {
+    return wire::SpawnEntity{
+        .entity = "new", .uri = uri, .resource_string = text, .pose = {{2, 2, 1}, {}}, .team = team};
+  };
+  const std::string robot = "swarm/sbot_0";
+  const std::vector<std::pair<wire::Operation, ResultCode>> refused = {
+      {wire::AdvanceTime{.steps = 1}, ResultCode::time_not_held},
+      {spawn("sbit", ""), ResultCode::unknown_model},
+      {spawn("sbot", "", "nobody"), ResultCode::invalid_team},
+      {spawn("", "<sdf version='1.9'><model name='m'><link"), ResultCode::resource_parse_error},
+      {spawn("", including_another_file), ResultCode::missing_assets},
+      {wire::ApplyForce{.entity = robot, .link = "tail", .force = {1, 0, 0}}, ResultCode::link_not_found},
+      {wire::SetLight{.entity = "ground"}, ResultCode::light_not_found},
+      {wire::SetLight{.entity = "swarm/nobody"}, ResultCode::light_not_found},
+      {wire::SetEntityState{.entity = "ground", .twist = wire::Twist{{1, 0, 0}, {}}}, ResultCode::immovable},
+      {wire::StartRecording{"{posse: 1}"}, ResultCode::invalid_selection},
+  };
+  const auto expect_refusal = [&](const wire::Operation& operation, ResultCode result) {
+    const std::string what = wire::name_of(wire::code_of(operation));
+    const wire::Reply reply = now.ask(operation);
+    EXPECT_EQ(reply.result, result) << what << ": " << reply.error_message;
+    const wire::Reply old = before.ask(operation);
+    EXPECT_EQ(old.result,
+              result == ResultCode::time_not_held ? ResultCode::incorrect_state : ResultCode::operation_failed)
+        << what << ": " << old.error_message;
+    EXPECT_EQ(old.error_message, reply.error_message);
+  };
+  for (const auto& [operation, result] : refused) expect_refusal(operation, result);
+
+  for (Stranger* const each : {&now, &before}) {
+    EXPECT_EQ(each->ask(wire::StartRecording{}).result, ResultCode::ok);
+    EXPECT_EQ(each->ask(wire::PutData{.size = 1, .data = {7}}).result, ResultCode::ok);
+  }
+  expect_refusal(wire::StartRecording{}, ResultCode::already_recording);
+  expect_refusal(wire::LoadSnapshot{}, ResultCode::invalid_snapshot);
+  Stranger third(run.domain(), 0x55), fourth(run.domain(), 0x66), fifth(run.domain(), 0x88);
+  EXPECT_EQ(third.ask(wire::StartRecording{}).result, ResultCode::ok);
+  EXPECT_EQ(fourth.ask(wire::StartRecording{}).result, ResultCode::ok);
+  EXPECT_EQ(fifth.ask(wire::StartRecording{}).result, ResultCode::too_many_recordings);
+
+  EXPECT_EQ(now.ask(wire::SetEntityState{.entity = robot, .twist = wire::Twist{{1e9, 0, 0}, {}}}).result,
+            ResultCode::ok);
+  run.done({"step", "2"});
+  expect_refusal(wire::SetEntityState{.entity = robot, .pose = wire::Pose{{0, 0, 1}, {}}}, ResultCode::quarantined);
+  run.done({"resume"});
+  expect_refusal(wire::StepSimulation{1}, ResultCode::not_paused);
+  run.done({"shutdown"});
+  run.finish();
+}
+
+TEST(ControlAtTickBoundariesOnly, WaitingStepsAreLimitedAndAreCancelledByAChangeOfState) {
+  const FieldOfRobots field(2, 1e4);
+  ControlledRun run(field, {"--paused"}, false);  // steps wait for controllers
+  Stranger stranger(run.domain(), 0x77);
+  const auto has = [&](ResultCode result) {
+    const std::vector<wire::Reply> replies = stranger.received(0);
+    return std::ranges::find(replies, result, &wire::Reply::result) != replies.end();
+  };
+  std::uint64_t number = 0;
+  EXPECT_TRUE(eventually([&] {  // the server reads at most 16 requests at a time
+    stranger.send(wire::StepSimulation{1}, number++ % (wire::requests_under_way + 1) + 1);
+    return has(ResultCode::too_many_requests);
+  }));
+  EXPECT_FALSE(has(ResultCode::cancelled));
+  run.done({"pause"});
+  EXPECT_TRUE(eventually([&] { return has(ResultCode::cancelled); }));
   run.done({"shutdown"});
   run.finish();
 }

@@ -149,7 +149,7 @@ TEST(ControlAtTickBoundariesOnly, InvalidActionsAreRejectedWithTheReasonAndChang
   };
   EXPECT_EQ(result_of(spawn), ResultCode::no_resource);
   spawn.resource_string = "<sdf version='1.9'><model name='box'><link";
-  EXPECT_EQ(result_of(spawn), ResultCode::operation_failed);
+  EXPECT_EQ(result_of(spawn), ResultCode::resource_parse_error);
   spawn.resource_string = box;
   spawn.pose.orientation = {0, 0, 0, 0};
   EXPECT_EQ(result_of(spawn), ResultCode::invalid_spawn_pose);
@@ -166,9 +166,8 @@ TEST(ControlAtTickBoundariesOnly, InvalidActionsAreRejectedWithTheReasonAndChang
   EXPECT_EQ(result_of(wire::ApplyForce{.entity = nobody, .force = {1, 0, 0}}), ResultCode::not_found);
   EXPECT_EQ(result_of(wire::SetEntityState{.entity = nobody, .pose = wire::Pose{}}), ResultCode::not_found);
   EXPECT_EQ(result_of(wire::SetEntityState{.entity = "ground", .twist = wire::Twist{{1, 0, 0}, {}}}),
-            ResultCode::operation_failed)
-      << "it is static";
-  EXPECT_EQ(result_of(wire::SetLight{.entity = "ground"}), ResultCode::operation_failed);
+            ResultCode::immovable);
+  EXPECT_EQ(result_of(wire::SetLight{.entity = "ground"}), ResultCode::light_not_found);
   EXPECT_EQ(run.status()["state_hash"], hash);
 
   // Gives it another name if that is allowed, and the reply contains it.

@@ -105,7 +105,7 @@ TEST(ControlWhileATextIsRead, ReportsTheErrorInTheText) {
   ControlClient client = run.client();
   const auto reply = client.ask(spawn("<sdf version='1.9'>\n<modl/></sdf>"), patience, never);
   ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->result, ResultCode::operation_failed);
+  EXPECT_EQ(reply->result, ResultCode::resource_parse_error);
   EXPECT_EQ(reply->error_message.find("the text of the model: "), 0u) << reply->error_message;
 }
 

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <csignal>
 
+#include "idl/dds/transport.hpp"
 #include "tests/support/control.hpp"
 #include "tests/support/worlds/field_of_robots.hpp"
 
@@ -100,6 +102,55 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, AControllerThatFailsInStartIsRefusedAndTh
   const std::string text = refused[0]["text"];
   for (const char* said : {"Misbehaving (process", "team 'swarm'", "'swarm/sbot_2'", "a fault on purpose"})
     EXPECT_NE(text.find(said), std::string::npos) << text;
+}
+
+// A client that only joins and fails in start, and notes the answer.
+class Applicant {
+ public:
+  Applicant(const ReservedDomain& domain, std::uint32_t minor, const std::string& robots)
+      : join_{.client = ++last_id, .minor = minor, .controller = "applicant", .host = "here", .robots = {robots}},
+        participant_(wire::Participant::client(domain.number())),
+        admits_(participant_, {[this](const wire::Admit& admit, const wire::Sender&) { status_ = admit.status; }, {}},
+                wire::partition_of(join_.client)),
+        reports_(participant_),
+        joins_(participant_) {}
+  wire::AdmitStatus refusal() {
+    EXPECT_TRUE(eventually([&] {
+      joins_.write(join_);
+      if (status_ == wire::AdmitStatus::admitted)
+        reports_.write({.client = join_.client, .kind = wire::ReportKind::failed, .reason = wire::failed_in_start});
+      return status_ != none && status_ != wire::AdmitStatus::admitted;
+    }));
+    return status_;
+  }
+
+ private:
+  static constexpr auto none = static_cast<wire::AdmitStatus>(99);
+  static inline std::uint64_t last_id = 0x1000;
+  const wire::Join join_;
+  std::atomic<wire::AdmitStatus> status_ = none;
+  wire::Participant participant_;
+  wire::Reader<wire::Admit> admits_;
+  wire::Writer<wire::Report> reports_;
+  wire::Writer<wire::Join> joins_;
+};
+
+TEST(JoinAndLeaveAtTickBoundariesOnly, ARefusalHasACodeThatOldClientsKnow) {
+  const FieldOfRobots field(2, 1e5, ", required: false");
+  const ReservedDomain domain;
+  Process server(field.serve(domain));
+  Process holder(FieldOfRobots::host(domain, "0"));
+  ASSERT_TRUE(comes_to_drive(domain, 0)) << server.output();
+  const std::vector<std::pair<std::string, wire::AdmitStatus>> refused = {{"nobody", wire::AdmitStatus::unknown_robot},
+                                                                          {"0", wire::AdmitStatus::robot_taken},
+                                                                          {"1", wire::AdmitStatus::failed_in_start}};
+  for (const auto& [robots, status] : refused) {
+    EXPECT_EQ(Applicant(domain, wire::minor_version, robots).refusal(), status) << robots;
+    EXPECT_EQ(Applicant(domain, wire::first_minor_with_reasons - 1, robots).refusal(), wire::AdmitStatus::refused)
+        << robots;
+  }
+  control(domain, {"shutdown"});
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
 }
 
 TEST(JoinAndLeaveAtTickBoundariesOnly, ATakeoverThatFailsInStartKeepsTheBits) {

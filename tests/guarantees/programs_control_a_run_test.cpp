@@ -52,7 +52,7 @@ TEST(ProgramsControlARun, TheyPauseItStepItAndEndIt) {
   EXPECT_EQ(reset.state, SimulationState::paused);
   EXPECT_EQ(control.play().state, SimulationState::playing);
   EXPECT_TRUE(eventually([&] { return control.status().tick > 5; }));
-  EXPECT_EQ(refusal([&] { control.step(); }), ControlResult::operation_failed) << "it plays";
+  EXPECT_EQ(refusal([&] { control.step(); }), ControlResult::not_paused) << "it plays";
   EXPECT_EQ(control.stop().state, SimulationState::stopped);
 
   EXPECT_TRUE(eventually([&] { return !control.status().controllers.empty(); })) << "it is attached through all of it";
@@ -149,6 +149,9 @@ TEST(ProgramsControlARun, TheyChangeItsWorldAndReadIt) {
               control.spawn({.name = "new", .text = box, .pose = {{}, {0, 0, 0, 0}}});
             }),
             ControlResult::invalid_pose);
+  EXPECT_EQ(refusal([&] { control.spawn({.name = "new", .model = "sbit"}); }), ControlResult::unknown_model);
+  EXPECT_EQ(refusal([&] { control.spawn({.name = "new", .text = "<sdf"}); }), ControlResult::invalid_model);
+  EXPECT_EQ(refusal([&] { control.set_light("crate/bulb", {}); }), ControlResult::light_not_found);
   EXPECT_EQ(refusal([&] { control.set_pose("nobody", {}); }), ControlResult::not_found);
   EXPECT_EQ(refusal([&] { control.apply_force("crate", {.force = {NAN, 0, 0}}); }), ControlResult::malformed);
   EXPECT_EQ(refusal([&] { control.entities("("); }), ControlResult::malformed);
@@ -169,7 +172,7 @@ TEST(ProgramsControlARun, TheySaveItLoadItAndRecordIt) {
   Control control = control_of(run);
   const std::filesystem::path file = field / "run.mcap";
   EXPECT_EQ(control.start_recording("{poses: 100}").message, "recorded from tick 0 on");
-  EXPECT_EQ(refusal([&] { control.start_recording(); }), ControlResult::operation_failed) << "one at a time";
+  EXPECT_EQ(refusal([&] { control.start_recording(); }), ControlResult::already_recording);
   control.step(10);
   const std::vector<std::byte> snapshot = control.save_snapshot();
   EXPECT_EQ(control.last_reply().message, "saved at tick 10");
@@ -185,7 +188,7 @@ TEST(ProgramsControlARun, TheySaveItLoadItAndRecordIt) {
   control.step(10);
   EXPECT_EQ(control.status().state_hash, hash);
   EXPECT_EQ(refusal([&] { control.load_snapshot(std::as_bytes(std::span("nonsense"))); }),
-            ControlResult::operation_failed);
+            ControlResult::invalid_snapshot);
 
   const RunHistory history = control.history();
   EXPECT_EQ(history.run, 2u);

@@ -41,12 +41,13 @@ void cohort_control_set_time_limit(CohortControl* control, int64_t milliseconds)
  * be called from any thread or from a signal handler. */
 void cohort_control_cancel(CohortControl* control);
 
-/* The result of a request. Later versions may add values: treat unknown values as cohort_result_failed. */
+/* The result of a request. Servers of 0.2 and before send cohort_result_failed instead of the values from 16 on. Later
+ * versions may add values: treat unknown values as cohort_result_failed. */
 typedef enum CohortResult {
   cohort_result_ok = 0,
-  cohort_result_failed = 1, /* cohort_last_error gives the reason; the world is unchanged */
+  cohort_result_failed = 1, /* none of the other reasons; cohort_last_error gives it. The world is unchanged */
   cohort_result_feature_unsupported = 2,
-  cohort_result_not_found = 3,       /* no such object, light, link or data */
+  cohort_result_not_found = 3,       /* no such object or data */
   cohort_result_incorrect_state = 4, /* not possible now */
   cohort_result_name_not_unique = 5,
   cohort_result_name_invalid = 6,
@@ -55,10 +56,30 @@ typedef enum CohortResult {
   cohort_result_malformed = 9,      /* a value is not finite or out of range */
   cohort_result_not_permitted = 10, /* the client's identity does not have this right */
   cohort_result_forgotten = 11,
-  cohort_result_no_answer = 12,   /* no reply within the time limit; the request may still be executed */
-  cohort_result_server_gone = 13, /* the server has crashed or exited */
-  cohort_result_interrupted = 14, /* cohort_control_cancel was called */
-  cohort_result_bad_reply = 15    /* the server's reply does not match the request */
+  cohort_result_no_answer = 12,         /* no reply within the time limit; the request may still be executed */
+  cohort_result_server_gone = 13,       /* the server has crashed or exited */
+  cohort_result_interrupted = 14,       /* cohort_control_cancel was called */
+  cohort_result_bad_reply = 15,         /* the server's reply does not match the request */
+  cohort_result_too_many_requests = 16, /* too many requests of this client or its identity wait */
+  cohort_result_cancelled = 17,         /* a change of state cancelled the remaining steps */
+  cohort_result_not_paused = 18,        /* a run that plays cannot be stepped */
+  cohort_result_time_not_held = 19,     /* this client does not hold the run's time */
+  cohort_result_link_not_found = 20,    /* the object has no such link */
+  cohort_result_light_not_found = 21,   /* no such light, or its object is not in the world */
+  cohort_result_immovable = 22,         /* the object is static, or fixed to the world */
+  cohort_result_quarantined = 23,       /* the object has left the world, or its state is no longer finite */
+  cohort_result_unknown_model = 24,     /* the world has no model of this name */
+  cohort_result_invalid_model = 25,     /* the text of the model cannot be read */
+  cohort_result_missing_file = 26, /* the text of the model refers to a file that the server's world does not have */
+  cohort_result_unsupported_model = 27, /* the physics of this run cannot simulate the model, or not at this pose */
+  cohort_result_invalid_team = 28, /* no such team, or the robot needs the name of one, or the model is not a robot */
+  cohort_result_too_many_objects = 29,    /* no more objects can be added in this run */
+  cohort_result_too_large = 30,           /* the data exceed what can be sent */
+  cohort_result_invalid_snapshot = 31,    /* the snapshot is damaged, or of another experiment or version */
+  cohort_result_not_saved = 32,           /* the state of the run or of a controller cannot be saved */
+  cohort_result_already_recording = 33,   /* this client has a recording */
+  cohort_result_too_many_recordings = 34, /* the run has as many live recordings as it can have */
+  cohort_result_invalid_selection = 35    /* the selection of the recording's contents cannot be read */
 } CohortResult;
 
 /* Returns the result of the last request. */

@@ -42,24 +42,45 @@ struct ControlOptions {
 /// std::invalid_argument if the domain is not a number.
 void take_environment(ControlOptions& options);
 
-/// The reason why a request failed. The server sends the values up to `forgotten`; the client sets the others.
+/// The reason why a request failed. The client sets the values from `no_answer` to `no_attachment`; the server sends
+/// the others. Servers of 0.2 and before send `operation_failed` instead of those after `no_attachment`.
 enum class ControlResult {
   feature_unsupported,  ///< the server does not support this operation, or an option of it
-  not_found,            ///< no such object, light, link or data
+  not_found,            ///< no such object or data
   incorrect_state,      ///< not possible now, such as after the end of the run
-  operation_failed,     ///< the message gives the reason; the world is unchanged
+  operation_failed,     ///< none of the other reasons; the message gives it. The world is unchanged
   name_not_unique,      ///< another object has this name
   name_invalid,
-  no_resource,    ///< neither the name nor the text of a model was given
-  invalid_pose,   ///< the pose of a new object is invalid
-  malformed,      ///< a value is not finite or out of range
-  not_permitted,  ///< the client's identity does not have this right
-  forgotten,      ///< the request came too late
-  no_answer,      ///< no reply within the time limit, or no server; the request may still be executed
-  server_gone,    ///< the server has crashed or exited
-  interrupted,    ///< the flag of `stop_on` was set; the request may still be executed
-  bad_reply,      ///< the server's reply does not match the request
-  no_attachment,  ///< the server's address or the identity cannot be used
+  no_resource,          ///< neither the name nor the text of a model was given
+  invalid_pose,         ///< the pose of a new object is invalid
+  malformed,            ///< a value is not finite or out of range
+  not_permitted,        ///< the client's identity does not have this right
+  forgotten,            ///< the request came too late
+  no_answer,            ///< no reply within the time limit, or no server; the request may still be executed
+  server_gone,          ///< the server has crashed or exited
+  interrupted,          ///< the flag of `stop_on` was set; the request may still be executed
+  bad_reply,            ///< the server's reply does not match the request
+  no_attachment,        ///< the server's address or the identity cannot be used
+  too_many_requests,    ///< too many requests of this client or its identity wait
+  cancelled,            ///< a change of state cancelled the remaining steps
+  not_paused,           ///< a run that plays cannot be stepped
+  time_not_held,        ///< this client does not hold the run's time
+  link_not_found,       ///< the object has no such link
+  light_not_found,      ///< no such light, or its object is not in the world
+  immovable,            ///< the object is static, or fixed to the world
+  quarantined,          ///< the object has left the world, or its state is no longer finite
+  unknown_model,        ///< the world has no model of this name
+  invalid_model,        ///< the text of the model cannot be read
+  missing_file,         ///< the text of the model refers to a file that the server's world does not have
+  unsupported_model,    ///< the physics of this run cannot simulate the model, or not at this pose
+  invalid_team,         ///< no such team, or the robot needs the name of one, or the model is not a robot
+  too_many_objects,     ///< no more objects can be added in this run
+  too_large,            ///< the data exceed what can be sent
+  invalid_snapshot,     ///< the snapshot is damaged, or of another experiment or version
+  not_saved,            ///< the state of the run or of a controller cannot be saved
+  already_recording,    ///< this client has a recording
+  too_many_recordings,  ///< the run has as many live recordings as it can have
+  invalid_selection,    ///< the selection of the recording's contents cannot be read
 };
 
 /// The exception that a request failed. The functions of this header throw no other, except for memory and file errors.

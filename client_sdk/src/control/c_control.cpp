@@ -43,6 +43,26 @@ CohortResult result_in_c(ControlResult result) {
     case ControlResult::server_gone: return cohort_result_server_gone;
     case ControlResult::interrupted: return cohort_result_interrupted;
     case ControlResult::bad_reply: return cohort_result_bad_reply;
+    case ControlResult::too_many_requests: return cohort_result_too_many_requests;
+    case ControlResult::cancelled: return cohort_result_cancelled;
+    case ControlResult::not_paused: return cohort_result_not_paused;
+    case ControlResult::time_not_held: return cohort_result_time_not_held;
+    case ControlResult::link_not_found: return cohort_result_link_not_found;
+    case ControlResult::light_not_found: return cohort_result_light_not_found;
+    case ControlResult::immovable: return cohort_result_immovable;
+    case ControlResult::quarantined: return cohort_result_quarantined;
+    case ControlResult::unknown_model: return cohort_result_unknown_model;
+    case ControlResult::invalid_model: return cohort_result_invalid_model;
+    case ControlResult::missing_file: return cohort_result_missing_file;
+    case ControlResult::unsupported_model: return cohort_result_unsupported_model;
+    case ControlResult::invalid_team: return cohort_result_invalid_team;
+    case ControlResult::too_many_objects: return cohort_result_too_many_objects;
+    case ControlResult::too_large: return cohort_result_too_large;
+    case ControlResult::invalid_snapshot: return cohort_result_invalid_snapshot;
+    case ControlResult::not_saved: return cohort_result_not_saved;
+    case ControlResult::already_recording: return cohort_result_already_recording;
+    case ControlResult::too_many_recordings: return cohort_result_too_many_recordings;
+    case ControlResult::invalid_selection: return cohort_result_invalid_selection;
     case ControlResult::operation_failed:
     case ControlResult::no_attachment: break;
   }

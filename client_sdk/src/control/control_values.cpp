@@ -61,13 +61,33 @@ ControlResult from_wire(wire::ResultCode result, wire::OperationCode operation) 
     case ResultCode::name_invalid: return ControlResult::name_invalid;
     case ResultCode::no_resource: return ControlResult::no_resource;
     case ResultCode::invalid_spawn_pose: return ControlResult::invalid_pose;
+    case ResultCode::resource_parse_error: return ControlResult::invalid_model;
+    case ResultCode::missing_assets: return ControlResult::missing_file;
+    case ResultCode::unsupported_assets: return ControlResult::unsupported_model;
     case ResultCode::malformed: return ControlResult::malformed;
     case ResultCode::not_permitted: return ControlResult::not_permitted;
     case ResultCode::forgotten: return ControlResult::forgotten;
+    case ResultCode::too_many_requests: return ControlResult::too_many_requests;
+    case ResultCode::cancelled: return ControlResult::cancelled;
+    case ResultCode::not_paused: return ControlResult::not_paused;
+    case ResultCode::time_not_held: return ControlResult::time_not_held;
+    case ResultCode::unknown_model: return ControlResult::unknown_model;
+    case ResultCode::invalid_team: return ControlResult::invalid_team;
+    case ResultCode::too_many_objects: return ControlResult::too_many_objects;
+    case ResultCode::link_not_found: return ControlResult::link_not_found;
+    case ResultCode::light_not_found: return ControlResult::light_not_found;
+    case ResultCode::immovable: return ControlResult::immovable;
+    case ResultCode::quarantined: return ControlResult::quarantined;
+    case ResultCode::too_large: return ControlResult::too_large;
+    case ResultCode::invalid_snapshot: return ControlResult::invalid_snapshot;
+    case ResultCode::not_saved: return ControlResult::not_saved;
+    case ResultCode::already_recording: return ControlResult::already_recording;
+    case ResultCode::too_many_recordings: return ControlResult::too_many_recordings;
+    case ResultCode::invalid_selection: return ControlResult::invalid_selection;
     case ResultCode::ok:
     case ResultCode::operation_failed: break;
   }
-  return ControlResult::operation_failed;
+  return ControlResult::operation_failed;  // also for a code of a newer server
 }
 
 }  // namespace cohort

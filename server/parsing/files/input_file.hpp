@@ -61,6 +61,10 @@ class InputFiles {
   /// followed.
   std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder, const std::string& name) const;
 
+  /// Notes that a file to which another one refers is not there.
+  void note_missing() { lacks_file_ = true; }
+  bool lacks_file() const { return lacks_file_; }
+
   /// Returns whether files are read from the disk.
   bool is_disk() const { return !source_; }
 
@@ -86,6 +90,7 @@ class InputFiles {
   std::map<std::string, std::string> files_;  // by key
   std::set<std::string> folders_;             // keys, as the next
   std::set<std::string> expanded_;
+  bool lacks_file_ = false;
 };
 
 }  // namespace cohort::parsing

@@ -65,8 +65,11 @@ void SdfFiles::load(SdfFile& file) {
   file.sound = file.complete && problems_.size() == before;
 }
 
-fs::path SdfFiles::find_file(const Element* element) const {
+fs::path SdfFiles::find_file(const Element* element) const try {
   return search_.find_file(element->text(), element->node().file->path.parent_path());
+} catch (const std::runtime_error&) {
+  input_.note_missing();
+  throw;
 }
 
 Location SdfFiles::locate(const Element* element) {

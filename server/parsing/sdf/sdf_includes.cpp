@@ -261,6 +261,7 @@ std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const st
   try {
     found = search_.find(uri->text, file.path.parent_path());
   } catch (const std::runtime_error& error) {
+    input_.note_missing();
     return problem(*uri, error.what());
   }
   if (std::find(opening_.begin(), opening_.end(), found.file) != opening_.end())

@@ -26,6 +26,14 @@ World read_or_input_error(const std::filesystem::path& file, Read&& read) {
   }
 }
 
+std::string flaws_of(const InputError& error) {
+  std::string flaws;
+  for (const Problem& problem : error.problems())
+    flaws += (flaws.empty() ? "" : "; ") + (problem.line > 0 ? "line " + std::to_string(problem.line) + ": " : "") +
+             (problem.element.empty() ? "" : problem.element + ": ") + problem.message;
+  return flaws;
+}
+
 ParsedModelPtr read_model_text(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs,
                                const std::filesystem::path& folder) {
   InputFiles input(inputs);
@@ -34,20 +42,17 @@ ParsedModelPtr read_model_text(const std::string& text, const std::shared_ptr<co
   constexpr std::uint64_t no_seed = 0;  // nothing is drawn
   const std::vector<std::filesystem::path> folders(inputs->last_model_folders.begin(),
                                                    inputs->last_model_folders.end());
-  World alone = read_or_input_error(file, [&] { return WorldReader(input, file, no_seed, folders).read_model_file(); });
-  if (alone.models.size() > 1)
-    throw InputError(
-        {{file, 0, "", "the model has several root links, which are separate bodies; expected one root link"}});
-  return std::make_shared<const ParsedModel>(
-      ParsedModel{text, alone.models.front(), std::move(alone.materials), std::move(alone.warnings)});
-}
-
-std::string flaws_of(const InputError& error) {
-  std::string flaws;
-  for (const Problem& problem : error.problems())
-    flaws += (flaws.empty() ? "" : "; ") + (problem.line > 0 ? "line " + std::to_string(problem.line) + ": " : "") +
-             (problem.element.empty() ? "" : problem.element + ": ") + problem.message;
-  return flaws;
+  try {
+    World alone =
+        read_or_input_error(file, [&] { return WorldReader(input, file, no_seed, folders).read_model_file(); });
+    if (alone.models.size() > 1)
+      throw InputError(
+          {{file, 0, "", "the model has several root links, which are separate bodies; expected one root link"}});
+    return std::make_shared<const ParsedModel>(
+        ParsedModel{text, alone.models.front(), std::move(alone.materials), std::move(alone.warnings)});
+  } catch (const InputError& error) {
+    throw description::ModelTextError("the text of the model: " + flaws_of(error), input.lacks_file());
+  }
 }
 
 }  // namespace
@@ -85,11 +90,7 @@ World read_world_or_standing_model(InputFiles& input, const std::filesystem::pat
 ModelReader model_reader(std::shared_ptr<const KeptFiles> inputs, std::filesystem::path folder) {
   if (inputs == nullptr) inputs = std::make_shared<const KeptFiles>();
   return [inputs = std::move(inputs), folder = std::move(folder)](const std::string& text) {
-    try {
-      return read_model_text(text, inputs, folder);
-    } catch (const InputError& error) {
-      throw std::invalid_argument("the text of the model: " + flaws_of(error));
-    }
+    return read_model_text(text, inputs, folder);
   };
 }
 

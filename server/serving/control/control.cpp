@@ -87,7 +87,7 @@ void Control::begin(ControlledRun run) {
 
 void Control::end(RunResult::End how) {
   const std::string at = "the run ended at tick " + std::to_string(run_->simulation.tick());
-  answer_steps(playback_.set(PlaybackState::playing), ResultCode::operation_failed, at);
+  answer_steps(playback_.set(PlaybackState::playing), ResultCode::cancelled, at);
   for (const Request& request : std::exchange(ledger_.waiting(), {}))
     if (!is_query(request)) answer(request, ResultCode::incorrect_state, at);  // queries are repeated by their clients
   const bool goes_on = how == RunResult::End::reset || how == RunResult::End::restored;
@@ -126,6 +126,7 @@ Control::Requester* Control::requester_of(const ReceivedRequest& received) {
                            .label = received.request.label + (identity ? " ('" + identity->name + "')" : std::string()),
                            .account = identity ? identity->name : wire::partition_of(client),
                            .writer = received.sender.writer,
+                           .minor = received.request.minor,
                            .replies = wire::Writer<Reply>(*received.participant, wire::partition_of(client))})
               .first->second;
 }
@@ -169,8 +170,8 @@ void Control::receive(const Request& request) {
       return refuse(ResultCode::forgotten,
                     "request " + std::to_string(request.number) + " is too old: request numbers must increase");
     case RequestLedger::Receipt::too_many:
-      return refuse(ResultCode::operation_failed, "more than " + std::to_string(wire::requests_under_way) +
-                                                      " requests of this client are already waiting");
+      return refuse(ResultCode::too_many_requests, "more than " + std::to_string(wire::requests_under_way) +
+                                                       " requests of this client are already waiting");
     case RequestLedger::Receipt::fresh: break;
   }
   if (const auto* const advance = std::get_if<wire::AdvanceTime>(&request.operation))
@@ -191,7 +192,7 @@ void Control::put_off(const Request& request) {
   if (of_account >= most_waiting_of_account || bytes > most_waiting_bytes) {
     run_->monitor.add_event("rejected", "flood: too many requests of " + label_of(request.client));
     if (is_question) return;
-    return answer(request, ResultCode::operation_failed,
+    return answer(request, ResultCode::too_many_requests,
                   "too many requests: " + std::to_string(of_account) + " of " + account_of(request.client) +
                       " are already waiting");
   }
@@ -228,8 +229,9 @@ void Control::send(Reply reply, bool is_kept) {
   reply.error_message = printable(reply.error_message, longest_message, Lines::kept);
   if (is_kept) ledger_.keep(reply);
   const auto requester = requesters_.find(reply.client);
-  if (requester != requesters_.end())
-    requester->second.replies.write(reply);  // if the reply is lost, the client asks again
+  if (requester == requesters_.end()) return;
+  reply.result = wire::known_to(requester->second.minor, reply.result);
+  requester->second.replies.write(reply);  // if the reply is lost, the client asks again
 }
 
 void Control::answer(const Request& request, ResultCode result, const std::string& text) {

@@ -73,6 +73,7 @@ class Control {
     std::string label;    // human-readable
     std::string account;  // account that its requests are charged to
     std::uint64_t writer = 0;
+    std::uint32_t minor = 0;  // minor version of the protocol
     wire::Writer<wire::Reply> replies;
   };
   // Returns a reply to the request, without a result yet.

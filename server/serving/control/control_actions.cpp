@@ -5,8 +5,6 @@
 #include <utility>
 #include <variant>
 
-#include "server/core/names.hpp"
-
 namespace cohort::session {
 namespace {
 
@@ -95,20 +93,28 @@ std::optional<Refusal> refusal_of(const Request& request, const ModelTexts& text
     if (state->pose && !has_orientation(*state->pose)) return Refusal{ResultCode::invalid_pose, no_orientation};
   if (text_of_model(request) == nullptr) return std::nullopt;
   if (const ModelTexts::Reading& reading = *texts.find(key_of(request)); reading.model == nullptr)
-    return Refusal{ResultCode::operation_failed, reading.why_not};
+    return Refusal{reading.result, reading.why_not};
   return std::nullopt;
 }
 
-// Returns the reason of a failure as a result code of simulation_interfaces.
-ResultCode code_of_failure(const Request& request, const Objects& objects) {
-  const std::optional<std::uint32_t> object = objects.find(entity_of(request));
-  if (const auto* spawn = std::get_if<wire::SpawnEntity>(&request.operation)) {
-    if (!spawn->entity.empty() && !is_object_name(spawn->entity)) return ResultCode::name_invalid;
-    return object && !spawn->allow_renaming ? ResultCode::name_not_unique : ResultCode::operation_failed;
+ResultCode code_of(ActionFault fault, bool is_spawn) {
+  switch (fault) {
+    case ActionFault::object_not_found: return ResultCode::not_found;
+    case ActionFault::light_not_found: return ResultCode::light_not_found;
+    case ActionFault::link_not_found: return ResultCode::link_not_found;
+    case ActionFault::immovable: return ResultCode::immovable;
+    case ActionFault::quarantined: return ResultCode::quarantined;
+    case ActionFault::invalid_pose: return is_spawn ? ResultCode::invalid_spawn_pose : ResultCode::invalid_pose;
+    case ActionFault::invalid_value: return ResultCode::malformed;
+    case ActionFault::name_invalid: return ResultCode::name_invalid;
+    case ActionFault::name_not_unique: return ResultCode::name_not_unique;
+    case ActionFault::unknown_model: return ResultCode::unknown_model;
+    case ActionFault::unsupported_model: return ResultCode::unsupported_assets;
+    case ActionFault::invalid_team: return ResultCode::invalid_team;
+    case ActionFault::too_many_objects: return ResultCode::too_many_objects;
+    case ActionFault::other: break;
   }
-  const bool is_there = object && objects.is_present(*object);
-  return is_there || std::holds_alternative<wire::SetLight>(request.operation) ? ResultCode::operation_failed
-                                                                               : ResultCode::not_found;
+  return ResultCode::operation_failed;
 }
 
 }  // namespace
@@ -146,17 +152,17 @@ std::vector<ActionOutcome> act(Simulation& simulation, std::span<const Request> 
   }
   for (std::size_t i = 0; i < actions.size();) {
     const Request& request = *origins[i];
+    const bool is_spawn = std::holds_alternative<wire::SpawnEntity>(request.operation);
     ActionOutcome& outcome = outcomes.emplace_back(ActionOutcome{&request});
     for (; i < actions.size() && origins[i] == &request; ++i) {
       outcome.text += (outcome.text.empty() ? "" : "; ") + results[i].text;
       if (results[i].is_done)
         outcome.done.push_back({results[i].text, to_bytes(actions[i])});
       else
-        outcome.result = code_of_failure(request, objects);
+        outcome.result = code_of(results[i].fault, is_spawn);
     }
     outcome.entity = entity_of(request);
-    if (std::holds_alternative<wire::SpawnEntity>(request.operation) && outcome.result == ResultCode::ok)
-      outcome.entity = objects.name(spawned++);
+    if (is_spawn && outcome.result == ResultCode::ok) outcome.entity = objects.name(spawned++);
   }
   return outcomes;
 }

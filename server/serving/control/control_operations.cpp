@@ -5,6 +5,7 @@
 #include "server/serving/control/control.hpp"
 #include "server/serving/control/control_actions.hpp"
 #include "server/serving/control/control_texts.hpp"
+#include "server/serving/control/request_refusal.hpp"
 
 namespace cohort::session {
 namespace {
@@ -39,6 +40,11 @@ void Control::do_one(const Request& request) {
             answer(request, ResultCode::feature_unsupported, wire::name_of(request.code()) + " is not supported yet");
         },
         request.operation);
+  } catch (const RequestRefusal& refusal) {
+    answer(request, refusal.result, refusal.what());
+  } catch (const SnapshotError& error) {
+    const bool is_save = request.code() == wire::OperationCode::save_snapshot;
+    answer(request, is_save ? ResultCode::not_saved : ResultCode::invalid_snapshot, error.what());
   } catch (const std::exception& error) {
     answer(request, ResultCode::operation_failed, error.what());
   }
@@ -51,7 +57,7 @@ void Control::carry_out(const Request& request, const wire::SetSimulationState& 
       return answer(request, ResultCode::already_in_target_state, "the run is already " + word);
     const bool was_held = playback_.holds();
     const std::string at = word + " at tick " + std::to_string(run_->simulation.tick());
-    answer_steps(playback_.set(state), ResultCode::operation_failed, at);
+    answer_steps(playback_.set(state), ResultCode::cancelled, at);
     if (was_held) run_->monitor.resume();
     tell(request, at);
     answer(request, ResultCode::ok, at);
@@ -79,7 +85,7 @@ void Control::carry_out(const Request& request, const wire::ResetSimulation& ope
 
 void Control::carry_out(const Request& request, const wire::StepSimulation& operation) {
   if (playback_.state_without_steps() == PlaybackState::playing)
-    return answer(request, ResultCode::operation_failed, "the run is not paused: pause it before stepping");
+    return answer(request, ResultCode::not_paused, "the run is not paused: pause it before stepping");
   if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
   const bool was_held = playback_.holds();
   playback_.step(run_->simulation.tick(), operation.steps, request.client, request.number);
@@ -106,7 +112,7 @@ void Control::advance_time(const Request& request, const wire::AdvanceTime& oper
     return answer(request, ResultCode::ok, "the time is held" + at);
   }
   if (!time_holders_.has(request.client))
-    return answer(request, ResultCode::incorrect_state,
+    return answer(request, ResultCode::time_not_held,
                   "this client does not hold the run's time: request 0 steps first");
   if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
   time_holders_.ask(request.client, request.number, operation.steps);
@@ -154,7 +160,7 @@ void Control::carry_out(const Request& request, const wire::SaveSnapshot&) {
                    std::make_shared<const std::vector<std::byte>>(to_bytes(snapshot))};
   }
   if (saved_->bytes->size() > wire::largest_data)
-    return answer(request, ResultCode::operation_failed,
+    return answer(request, ResultCode::too_large,
                   "the snapshot has " + std::to_string(saved_->bytes->size()) +
                       " bytes; the maximum that can be sent is " + std::to_string(wire::largest_data));
   tell(request, saved_->text);

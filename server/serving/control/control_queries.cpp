@@ -5,8 +5,8 @@
 #include <utility>
 #include <variant>
 
-#include "server/messages/experiment_inputs.hpp"
 #include "idl/messages/run_history.hpp"
+#include "server/messages/experiment_inputs.hpp"
 #include "server/serving/control/entity_filter.hpp"
 
 namespace cohort::session {
@@ -198,9 +198,9 @@ void ControlQueries::fill(Reply& reply, const Request&, const wire::GetExperimen
         messages::encode(messages::experiment_files(*experiment.inputs, experiment.seed, experiment.duration));
   const std::uint64_t size = experiment_.size();
   if (size > wire::largest_data)
-    return refuse(ResultCode::operation_failed, "the experiment's files have " + std::to_string(size) +
-                                                    " bytes; the maximum that can be sent is " +
-                                                    std::to_string(wire::largest_data));
+    return refuse(ResultCode::too_large, "the experiment's files have " + std::to_string(size) +
+                                             " bytes; the maximum that can be sent is " +
+                                             std::to_string(wire::largest_data));
   if (operation.offset > size)
     return refuse(ResultCode::malformed, "offset " + std::to_string(operation.offset) + " is beyond the " +
                                              std::to_string(size) + " bytes of the experiment's files");

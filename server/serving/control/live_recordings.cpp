@@ -1,21 +1,28 @@
 #include "server/serving/control/live_recordings.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
-#include "idl/wire/control_messages.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/run/run_recorder.hpp"
+#include "server/serving/control/request_refusal.hpp"
 
 namespace cohort::session {
 namespace {
+
+using wire::ResultCode;
 
 constexpr std::size_t most_recordings = 4;
 // Limits for each recording: bytes of its file that are not fetched, and messages that wait to be written.
 constexpr std::size_t spool_size = std::size_t{16} << 20;
 constexpr std::size_t most_display_queued = std::size_t{16} << 20;
 constexpr std::size_t most_queued = std::size_t{64} << 20;
+
+description::Recorded selection_in(const std::string& text, const description::Experiment& experiment) try {
+  return parsing::read_recorded(text, experiment);
+} catch (const description::InputError& error) {
+  throw RequestRefusal(ResultCode::invalid_selection, error.what());
+}
 
 }  // namespace
 
@@ -57,12 +64,11 @@ LiveRecordings::One* LiveRecordings::find(std::uint64_t client) {
 void LiveRecordings::start(std::uint64_t client, const std::string& recorded) {
   forget_the_gone();
   if (const One* one = find(client); one != nullptr && !one->has_ended)
-    throw std::runtime_error("this client is already recording");
+    throw RequestRefusal(ResultCode::already_recording, "this client is already recording");
   if (ones_.size() + gone_.size() >= most_recordings)
-    throw std::runtime_error(std::to_string(most_recordings) +
-                             " recordings of this run are active, which is the limit");
-  description::Recorded holds =
-      recorded.empty() ? experiment_->recorded : parsing::read_recorded(recorded, *experiment_);
+    throw RequestRefusal(ResultCode::too_many_recordings,
+                         std::to_string(most_recordings) + " recordings of this run are active, which is the limit");
+  description::Recorded holds = recorded.empty() ? experiment_->recorded : selection_in(recorded, *experiment_);
   leave(client);  // also forgets why an earlier recording was dropped
   One& one = ones_.emplace_back(client, *experiment_, std::move(holds));
   one.recorder.begin(*experiment_, *simulation_, recording::Beginning::attached);

@@ -30,7 +30,7 @@ class LiveRecordings {
   void end(RunResult::End how, const std::string& reason);
 
   /// Starts a recording at this boundary, which has not been reported to any listener yet. `recorded`: the content to
-  /// record, in YAML (parsing::read_recorded); if empty, that of the experiment. Throws std::runtime_error.
+  /// record, in YAML (parsing::read_recorded); if empty, that of the experiment. Throws RequestRefusal.
   void start(std::uint64_t client, const std::string& recorded);
   /// Ends the client's recording here, at its request.
   void stop(std::uint64_t client);

@@ -5,6 +5,12 @@
 
 namespace cohort::session {
 
+namespace {
+
+using wire::ResultCode;
+
+}  // namespace
+
 ModelTexts::ModelTexts(std::function<void()> on_read)
     : on_read_(std::move(on_read)), thread_([this] { read_texts(); }) {}
 
@@ -86,11 +92,15 @@ ModelTexts::Reading ModelTexts::read(const Job& job) {
   const auto began = std::chrono::steady_clock::now();
   const auto took = [&] { return std::chrono::steady_clock::now() - began; };
   try {
-    if (!job.read_model) return {nullptr, "this experiment does not accept models as text"};
+    if (!job.read_model)
+      return {nullptr, ResultCode::feature_unsupported, "this experiment does not accept models as text"};
     description::ParsedModelPtr model = job.read_model(job.text);
-    return {std::move(model), "", took()};
+    return {std::move(model), ResultCode::ok, "", took()};
+  } catch (const description::ModelTextError& error) {
+    return {nullptr, error.lacks_file ? ResultCode::missing_assets : ResultCode::resource_parse_error, error.what(),
+            took()};
   } catch (const std::exception& error) {
-    return {nullptr, error.what(), took()};
+    return {nullptr, ResultCode::operation_failed, error.what(), took()};
   }
 }
 

@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "idl/wire/control_messages.hpp"
 #include "server/description/parsed_model.hpp"
 
 namespace cohort::session {
@@ -26,7 +27,8 @@ class ModelTexts {
   /// The result of reading a text.
   struct Reading {
     description::ParsedModelPtr model;  ///< null on failure
-    std::string why_not{};              ///< the reason of the failure
+    wire::ResultCode result = wire::ResultCode::ok;
+    std::string why_not{};  ///< the reason of the failure
     std::chrono::nanoseconds took{0};
   };
 

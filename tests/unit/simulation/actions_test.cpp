@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <tuple>
 
 #include "server/core/infinity.hpp"
 #include "server/simulation/simulation.hpp"
@@ -406,31 +407,42 @@ TEST_P(Actions, ReportWhyTheyFailAndChangeNothing) {
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   Pose skewed = at(0, 0, 1);
   skewed.orientation.coeffs() *= 2.0;
-  const std::vector<std::pair<Action, std::string>> refused = {
-      {RemoveObject{"thing/box"}, "there is no object 'thing/box'; did you mean 'things/box'?"},
-      {RemoveObject{"late"}, "'late' is not in the world"},
-      {RemoveObject{"a\nb"}, "the name of the object contains a control character"},
-      {RemoveObject{"\xc3("}, "the name of the object is not valid UTF-8"},
-      {RemoveObject{std::string(300, 'x')}, "the name of the object is longer than 255 bytes"},
-      {SetPose{"things/box", at(infinity, 0, 0)}, "the pose is not finite"},
-      {SetPose{"things/box", at(0, 2e6, 0)}, "expected a position within 1,000 km of the origin"},
-      {SetPose{"things/box", skewed}, "expected a unit quaternion as the orientation of the pose"},
-      {SetVelocity{"post", zero, zero}, "'post' is static"},
-      {SetVelocity{"things/box", {std::nan(""), 0, 0}, zero}, "the velocity is not finite"},
-      {ApplyForce{"post", "", zero, zero, 1s}, "'post' is static"},
-      {ApplyForce{"things/box", "lynk", zero, zero, 1s}, "'things/box' has no link 'lynk'; did you mean 'link'?"},
-      {ApplyForce{"things/box", "", {0, infinity, 0}, zero, 1s}, "the force is not finite"},
-      {ApplyForce{"things/box", "", zero, zero, -1ns}, "expected a duration from 0 s to one year"},
-      {SetLight{"post", true, -1.0}, "expected an intensity of at least 0"},
-      {SetLight{"post", true, {}, Eigen::Vector3d(2, 0, 0)}, "expected red, green and blue from 0 to 1"},
-      {SpawnObject{"/x", "box", at(0, 0, 1)}, "'/x' is not a valid name: expected parts separated by slashes"},
-      {SpawnObject{"", "", at(0, 0, 1)}, "expected the name of one of the world's models, or a model"},
-      {SpawnObject{"post", model_of_text(crate_sdf), at(0, 0, 1)}, "another object has the name 'post'"},
+  const std::vector<std::tuple<Action, std::string, ActionFault>> refused = {
+      {RemoveObject{"thing/box"}, "there is no object 'thing/box'; did you mean 'things/box'?",
+       ActionFault::object_not_found},
+      {RemoveObject{"late"}, "'late' is not in the world", ActionFault::object_not_found},
+      {RemoveObject{"a\nb"}, "the name of the object contains a control character", ActionFault::object_not_found},
+      {RemoveObject{"\xc3("}, "the name of the object is not valid UTF-8", ActionFault::object_not_found},
+      {RemoveObject{std::string(300, 'x')}, "the name of the object is longer than 255 bytes",
+       ActionFault::object_not_found},
+      {SetPose{"things/box", at(infinity, 0, 0)}, "the pose is not finite", ActionFault::invalid_pose},
+      {SetPose{"things/box", at(0, 2e6, 0)}, "expected a position within 1,000 km of the origin",
+       ActionFault::invalid_pose},
+      {SetPose{"things/box", skewed}, "expected a unit quaternion as the orientation of the pose",
+       ActionFault::invalid_pose},
+      {SetVelocity{"post", zero, zero}, "'post' is static", ActionFault::immovable},
+      {SetVelocity{"things/box", {std::nan(""), 0, 0}, zero}, "the velocity is not finite", ActionFault::invalid_value},
+      {ApplyForce{"post", "", zero, zero, 1s}, "'post' is static", ActionFault::immovable},
+      {ApplyForce{"things/box", "lynk", zero, zero, 1s}, "'things/box' has no link 'lynk'; did you mean 'link'?",
+       ActionFault::link_not_found},
+      {ApplyForce{"things/box", "", {0, infinity, 0}, zero, 1s}, "the force is not finite", ActionFault::invalid_value},
+      {ApplyForce{"things/box", "", zero, zero, -1ns}, "expected a duration from 0 s to one year",
+       ActionFault::invalid_value},
+      {SetLight{"post", true, -1.0}, "expected an intensity of at least 0", ActionFault::invalid_value},
+      {SetLight{"post", true, {}, Eigen::Vector3d(2, 0, 0)}, "expected red, green and blue from 0 to 1",
+       ActionFault::invalid_value},
+      {SpawnObject{"/x", "box", at(0, 0, 1)}, "'/x' is not a valid name: expected parts separated by slashes",
+       ActionFault::name_invalid},
+      {SpawnObject{"", "", at(0, 0, 1)}, "expected the name of one of the world's models, or a model",
+       ActionFault::unknown_model},
+      {SpawnObject{"post", model_of_text(crate_sdf), at(0, 0, 1)}, "another object has the name 'post'",
+       ActionFault::name_not_unique},
   };
   const std::uint64_t hash = simulation.state_hash();
   const std::vector<std::byte> saved = simulation.save();
-  for (const auto& [action, reason] : refused) {
+  for (const auto& [action, reason, fault] : refused) {
     EXPECT_EQ(why_not(simulation, action), reason);
+    EXPECT_EQ(simulation.act(std::span(&action, 1)).front().fault, fault) << reason;
     EXPECT_EQ(simulation.state_hash(), hash) << reason;
     EXPECT_TRUE(simulation.save() == saved) << reason;
   }

@@ -14,6 +14,7 @@
 
 #include "server/core/angle.hpp"
 #include "server/core/text.hpp"
+#include "tools/cli/commands/ctl/ctl_errors.hpp"
 #include "tools/cli/commands/ctl/ctl_spawn.hpp"
 #include "tools/cli/common/wording.hpp"
 
@@ -205,7 +206,7 @@ ControlReply set_light(Control& control, const std::string& light, const LightSe
   try {
     return control.set_light(light, setting);
   } catch (const ControlError& error) {
-    if (error.result != ControlResult::operation_failed) throw;
+    if (!may_mean(error, ControlResult::light_not_found)) throw;
     const std::vector<std::string> lights = lights_ending_in(control, light);
     if (lights.empty()) throw;
     return control.set_light(only_one_of(lights, light, "lights"), setting);

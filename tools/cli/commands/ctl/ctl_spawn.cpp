@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "server/core/bounded_file.hpp"
+#include "tools/cli/commands/ctl/ctl_errors.hpp"
 #include "tools/cli/common/installed_files.hpp"
 
 namespace cohort::tool {
@@ -47,8 +48,7 @@ void spawn_file(Control& control, Spawn what, const std::filesystem::path& file,
     control.spawn(what);
   } catch (const ControlError& error) {
     const std::string other_file = first_file_in(what.text);
-    const std::string_view why = error.what();
-    if (other_file.empty() || why.find("the text of the model") == why.npos || why.find("uri") == why.npos) throw;
+    if (other_file.empty() || error.result != ControlResult::missing_file) throw;
     throw ControlError(
         fmt::format("'{}' cannot be spawned here: it refers to '{}', which is not a file of the server's world{}. "
                     "Models of one file that are installed with Cohort can be spawned: {}",
@@ -73,9 +73,8 @@ ControlReply spawn_model(Control& control, Spawn what) {
   try {
     control.spawn(what);
   } catch (const ControlError& error) {
-    const bool is_unknown = !what.model.empty() && error.result == ControlResult::operation_failed &&
-                            std::string_view(error.what()).find("has no model") != std::string_view::npos;
-    const std::optional<std::filesystem::path> file = is_unknown ? installed_model(what.model) : std::nullopt;
+    const std::optional<std::filesystem::path> file =
+        may_mean(error, ControlResult::unknown_model) ? installed_model(what.model) : std::nullopt;
     if (!file) throw;
     spawn_file(control, what, *file, error.what());
   }

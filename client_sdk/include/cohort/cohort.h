@@ -197,7 +197,7 @@ typedef struct CohortMemory {
 
 /* The type of the symbol `cohort_plugin` that a plugin exports, with the same layout as in C++. COHORT_C_CONTROLLER
  * defines the symbol. */
-#define COHORT_PLUGIN_ABI 3u
+#define COHORT_PLUGIN_ABI 4u
 typedef struct CohortPlugin {
   uint32_t abi;
   const char* name;

@@ -103,6 +103,7 @@ Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
   start.period = robot.period;
   start.observation_channels = layout_of(description->observation);
   start.command_channels = layout_of(description->command);
+  start.tree = description->tree;
   return start;
 }
 

@@ -16,8 +16,8 @@
 #include "client_sdk/src/robot_descriptions.hpp"
 #include "client_sdk/src/standard_streams.hpp"
 #include "client_sdk/src/this_process.hpp"
-#include "idl/text/printable.hpp"
 #include "idl/dds/transport.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort {
 namespace {
@@ -79,7 +79,10 @@ class Attachment {
 
   // Called on DDS threads.
   void receive(const wire::Admit& admit, const wire::Sender& sender);
-  void receive(const wire::RobotDescription& description, const wire::Sender& sender);
+  template <class Described>  // a RobotDescription or a RobotTree
+  void describe(const Described& described, const wire::Sender& sender);
+  void note_trees(const wire::Sender& writer);
+  std::optional<wire::Reader<wire::RobotTree>> make_tree_reader();
   void receive(const wire::Observation& frame);
   void receive(const wire::Report& report);
   void note_server(const wire::Sender& writer, bool alive);
@@ -136,6 +139,7 @@ class Attachment {
   wire::Writer<wire::Join> joins_;
   wire::Writer<wire::Command> commands_;
   wire::Writer<wire::Report> own_reports_;
+  std::optional<wire::Reader<wire::RobotTree>> tree_reader_;  // none if the identity was made without the right to it
   wire::Reader<wire::RobotDescription> description_reader_;
   wire::Reader<wire::Admit> admit_reader_;
   wire::Reader<wire::Report> report_reader_;
@@ -155,8 +159,9 @@ Attachment::Attachment(FrameHandler& handler, const std::string& name, const Cli
       joins_(participant_),
       commands_(participant_),
       own_reports_(participant_),
+      tree_reader_(make_tree_reader()),
       description_reader_(participant_,
-                          {[this](const auto& message, const auto& sender) { receive(message, sender); }, nullptr}),
+                          {[this](const auto& message, const auto& sender) { describe(message, sender); }, nullptr}),
       admit_reader_(participant_,
                     {[this](const auto& message, const auto& sender) { receive(message, sender); },
                      [this](const auto& sender, bool alive) { note_server(sender, alive); }},
@@ -210,10 +215,31 @@ void Attachment::receive(const wire::Admit& admit, const wire::Sender& sender) {
   wake(std::move(lock));
 }
 
-void Attachment::receive(const wire::RobotDescription& description, const wire::Sender& sender) {
+template <class Described>
+void Attachment::describe(const Described& described, const wire::Sender& sender) {
   Lock lock(mutex_);
-  descriptions_.add(description, sender.participant);
+  descriptions_.add(described, sender.participant);
   wake(std::move(lock));
+}
+
+void Attachment::note_trees(const wire::Sender& writer) {
+  const Lock lock(mutex_);
+  descriptions_.expect_trees(writer.participant);
+}
+
+// Must exist before the reader of descriptions: docs/protocol.md, "Kinematic trees".
+std::optional<wire::Reader<wire::RobotTree>> Attachment::make_tree_reader() {
+  try {
+    return std::make_optional<wire::Reader<wire::RobotTree>>(
+        participant_, wire::Reader<wire::RobotTree>::Callbacks{
+                          [this](const auto& tree, const auto& sender) { describe(tree, sender); },
+                          [this](const auto& sender, bool alive) {
+                            if (alive) note_trees(sender);
+                          }});
+  } catch (const wire::WireError&) {
+    if (!participant_.identity()) throw;
+    return std::nullopt;
+  }
 }
 
 void Attachment::receive(const wire::Report& report) {

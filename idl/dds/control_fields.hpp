@@ -8,23 +8,13 @@
 #include <variant>
 
 #include "idl/dds/fields.hpp"
+#include "idl/dds/message_fields.hpp"
 #include "idl/dds/topic.hpp"
 #include "idl/wire/control_messages.hpp"
 
 /// Fields of the control messages in cohort.idl. A Request has the fields of all operations, and a Reply those of all
 /// results. Each operation uses some; the others are zero, empty or false.
 namespace cohort::wire {
-
-template <>
-struct OnWire<Vector3> : Between<Vector3, cohort_v1_Vector3> {
-  static constexpr std::tuple fields = {field(&M::x, &S::x), field(&M::y, &S::y), field(&M::z, &S::z)};
-};
-
-template <>
-struct OnWire<Quaternion> : Between<Quaternion, cohort_v1_Quaternion> {
-  static constexpr std::tuple fields = {field(&M::x, &S::x), field(&M::y, &S::y), field(&M::z, &S::z),
-                                        field(&M::w, &S::w)};
-};
 
 template <>
 struct OnWire<Pose> : Between<Pose, cohort_v1_Pose> {

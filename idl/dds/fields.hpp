@@ -236,6 +236,24 @@ constexpr Zero<Sample> zero(std::uint32_t Sample::*sampled) {
   return {sampled};
 }
 
+/// A member of a message that is not in its sample, because another message carries it.
+template <class Message, class Value>
+struct Apart {
+  static constexpr bool needs_room = false;
+  Value Message::*member;
+
+  template <class Sample, class AnyRoom>
+  void lend(const Message&, Sample&, AnyRoom&) const {}
+  template <class Sample>
+  void read(const Sample&, Message&) const {}
+  constexpr auto members() const { return std::tuple(member); }
+  constexpr auto samples() const { return std::tuple(); }
+};
+template <class Message, class Value>
+constexpr Apart<Message, Value> apart(Value Message::*member) {
+  return {member};
+}
+
 template <class Message, class Value, class Sample, class Sampled>
 struct OptionalField {
   static constexpr bool needs_room = value_needs_room<Value>();

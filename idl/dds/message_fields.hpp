@@ -66,7 +66,65 @@ struct OnWire<RobotDescription> : Between<RobotDescription, cohort_v1_RobotDescr
                                   .transient_local = true,
                                   .depth = 1};
   static constexpr std::tuple fields = {field(&M::description, &S::description), field(&M::model, &S::model),
-                                        field(&M::observation, &S::observation), field(&M::command, &S::command)};
+                                        field(&M::observation, &S::observation), field(&M::command, &S::command),
+                                        apart(&M::tree)};
+};
+
+template <>
+struct OnWire<Vector3> : Between<Vector3, cohort_v1_Vector3> {
+  static constexpr std::tuple fields = {field(&M::x, &S::x), field(&M::y, &S::y), field(&M::z, &S::z)};
+};
+
+template <>
+struct OnWire<Quaternion> : Between<Quaternion, cohort_v1_Quaternion> {
+  static constexpr std::tuple fields = {field(&M::x, &S::x), field(&M::y, &S::y), field(&M::z, &S::z),
+                                        field(&M::w, &S::w)};
+};
+
+template <>
+struct OnWire<LinkInfo> : Between<LinkInfo, cohort_v1_Link> {
+  static constexpr std::tuple fields = {field(&M::name, &S::name), field(&M::mass, &S::mass),
+                                        field(&M::center_of_mass, &S::center_of_mass)};
+};
+
+template <>
+struct OnWire<AxisInfo> : Between<AxisInfo, cohort_v1_Axis> {
+  static constexpr std::tuple fields = {field(&M::direction, &S::direction), field(&M::lower, &S::lower),
+                                        field(&M::upper, &S::upper), field(&M::max_velocity, &S::max_velocity),
+                                        field(&M::max_effort, &S::max_effort)};
+};
+
+template <>
+struct OnWire<FramePose> : Between<FramePose, cohort_v1_Pose> {
+  static constexpr std::tuple fields = {field(&M::position, &S::position), field(&M::orientation, &S::orientation)};
+};
+
+template <>
+struct OnWire<JointInfo> : Between<JointInfo, cohort_v1_Joint> {
+  static constexpr std::tuple fields = {field(&M::name, &S::name),      field(&M::type, &S::type),
+                                        field(&M::parent, &S::parent),  field(&M::child, &S::child),
+                                        field(&M::pose, &S::pose),      field(&M::frame, &S::frame),
+                                        field(&M::axes, &S::axes),      field(&M::thread_pitch, &S::thread_pitch),
+                                        field(&M::devices, &S::devices)};
+};
+
+template <>
+struct OnWire<SensorInfo> : Between<SensorInfo, cohort_v1_Sensor> {
+  static constexpr std::tuple fields = {field(&M::name, &S::name), field(&M::link, &S::link),
+                                        field(&M::pose, &S::pose)};
+};
+
+template <>
+struct OnWire<KinematicTree> : Between<KinematicTree, cohort_v1_KinematicTree> {
+  static constexpr std::tuple fields = {field(&M::links, &S::links), field(&M::joints, &S::joints),
+                                        field(&M::sensors, &S::sensors)};
+};
+
+template <>
+struct OnWire<RobotTree> : Between<RobotTree, cohort_v1_RobotTree> {
+  static constexpr Topic topic = {
+      .name = "cohort/v1/robot_tree", .type = &cohort_v1_RobotTree_desc, .transient_local = true, .depth = 1};
+  static constexpr std::tuple fields = {field(&M::description, &S::description), field(&M::tree, &S::tree)};
 };
 
 template <>

@@ -73,6 +73,7 @@ class Reader {
 extern template class Writer<Join>;
 extern template class Writer<Admit>;
 extern template class Writer<RobotDescription>;
+extern template class Writer<RobotTree>;
 extern template class Writer<Observation>;
 extern template class Writer<Command>;
 extern template class Writer<WorldState>;
@@ -85,6 +86,7 @@ extern template class Writer<Reply>;
 extern template class Reader<Join>;
 extern template class Reader<Admit>;
 extern template class Reader<RobotDescription>;
+extern template class Reader<RobotTree>;
 extern template class Reader<Observation>;
 extern template class Reader<Command>;
 extern template class Reader<WorldState>;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "idl/include/cohort/kinematic_tree.hpp"
+
 /// The messages of cohort.idl as C++ values. Messages with spans are views: received ones are valid only during the
 /// callback, and sent ones must stay valid until `write` returns.
 namespace cohort::wire {
@@ -106,7 +108,15 @@ struct RobotDescription {
   std::string model{};
   std::vector<Channel> observation{};
   std::vector<Channel> command{};
+  KinematicTree tree{};  ///< is sent as a RobotTree
   bool operator==(const RobotDescription&) const = default;
+};
+
+/// The tree of the robots with this description.
+struct RobotTree {
+  std::uint32_t description = 0;
+  KinematicTree tree{};
+  bool operator==(const RobotTree&) const = default;
 };
 
 struct Observation {

@@ -4,6 +4,7 @@
 
 #include "server/core/hash.hpp"
 #include "server/core/random.hpp"
+#include "server/run/model_tree.hpp"
 
 namespace cohort::session {
 namespace {
@@ -37,6 +38,49 @@ void add(StateHash& hash, const std::vector<wire::Channel>& channels) {
   }
 }
 
+void add(StateHash& hash, const Vector3& vector) {
+  for (const double value : {vector.x, vector.y, vector.z}) hash.add(value);
+}
+
+void add(StateHash& hash, const FramePose& pose) {
+  add(hash, pose.position);
+  const Quaternion& q = pose.orientation;
+  for (const double value : {q.x, q.y, q.z, q.w}) hash.add(value);
+}
+
+void add(StateHash& hash, const JointInfo& joint) {
+  add(hash, joint.name);
+  for (const std::uint32_t value : {static_cast<std::uint32_t>(joint.type), joint.parent, joint.child})
+    hash.add(std::uint64_t{value});
+  add(hash, joint.pose);
+  add(hash, joint.frame);
+  hash.add(std::uint64_t{joint.axes.size()});
+  for (const AxisInfo& axis : joint.axes) {
+    add(hash, axis.direction);
+    for (const double value : {axis.lower, axis.upper, axis.max_velocity, axis.max_effort}) hash.add(value);
+  }
+  hash.add(joint.thread_pitch);
+  hash.add(std::uint64_t{joint.devices.size()});
+  for (const std::string& device : joint.devices) add(hash, device);
+}
+
+void add(StateHash& hash, const KinematicTree& tree) {
+  hash.add(std::uint64_t{tree.links.size()});
+  for (const LinkInfo& link : tree.links) {
+    add(hash, link.name);
+    hash.add(link.mass);
+    add(hash, link.center_of_mass);
+  }
+  hash.add(std::uint64_t{tree.joints.size()});
+  for (const JointInfo& joint : tree.joints) add(hash, joint);
+  hash.add(std::uint64_t{tree.sensors.size()});
+  for (const SensorInfo& sensor : tree.sensors) {
+    add(hash, sensor.name);
+    hash.add(std::uint64_t{sensor.link});
+    add(hash, sensor.pose);
+  }
+}
+
 }  // namespace
 
 std::uint32_t number_of(const wire::RobotDescription& kind) {
@@ -44,6 +88,7 @@ std::uint32_t number_of(const wire::RobotDescription& kind) {
   add(hash, kind.model);
   add(hash, kind.observation);
   add(hash, kind.command);
+  add(hash, kind.tree);
   return static_cast<std::uint32_t>(hash.value());
 }
 
@@ -51,7 +96,7 @@ std::vector<wire::RobotDescription> describe_kinds(const Simulation& simulation)
   std::vector<wire::RobotDescription> descriptions;
   for (const RobotKind& kind : simulation.kinds())
     descriptions.push_back({static_cast<std::uint32_t>(descriptions.size()), kind.model, to_wire(kind.observation),
-                            to_wire(kind.command)});
+                            to_wire(kind.command), tree_of(simulation.description().models[kind.index])});
   return descriptions;
 }
 

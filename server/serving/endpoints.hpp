@@ -22,7 +22,8 @@ struct Endpoints {
     std::function<void(std::uint32_t)> foreign_version;  ///< major version of the protocol
   };
   Endpoints(wire::Participant& participant, Callbacks callbacks)
-      : descriptions(participant),
+      : trees(participant),
+        descriptions(participant),
         joins(participant, std::move(callbacks.joins)),
         commands(participant, std::move(callbacks.commands), "", answers_kept),
         reports(participant, std::move(callbacks.reports)),
@@ -32,7 +33,9 @@ struct Endpoints {
 
   static constexpr int answers_kept = 8;  ///< answers of each client that DDS keeps until they are taken
 
-  // Readers come last, so that all other members exist before the first callback.
+  // Readers come last, so that all other members exist before the first callback. Clients discover writers in this
+  // order: one that has discovered `descriptions` knows that there are `trees`.
+  wire::Writer<wire::RobotTree> trees;
   wire::Writer<wire::RobotDescription> descriptions;
   wire::Reader<wire::Join> joins;
   wire::Reader<wire::Command> commands;

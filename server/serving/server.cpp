@@ -340,13 +340,17 @@ void Server::publish_descriptions() {
   for (wire::RobotDescription& kind : describe_kinds(run_->simulation)) {
     kind.description = number_of(kind);
     const auto is_same = [&](const wire::RobotDescription& other) {
-      return other.model == kind.model && other.observation == kind.observation && other.command == kind.command;
+      return other.model == kind.model && other.observation == kind.observation && other.command == kind.command &&
+             other.tree == kind.tree;
     };
     auto known = descriptions_.find(kind.description);
     while (known != descriptions_.end() && !is_same(known->second)) known = descriptions_.find(++kind.description);
     run_->descriptions.push_back(kind.description);
     if (known != descriptions_.end()) continue;
-    for (Endpoints& endpoints : endpoints_) endpoints.descriptions.write(kind);
+    for (Endpoints& endpoints : endpoints_) {
+      endpoints.trees.write({kind.description, kind.tree});
+      endpoints.descriptions.write(kind);
+    }
     descriptions_.emplace(kind.description, std::move(kind));
   }
 }

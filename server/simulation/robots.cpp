@@ -143,7 +143,7 @@ Robots::DevicesOfRobot Robots::make_devices(const Robot& robot) {
 std::uint32_t Robots::find_or_add_kind(std::size_t model, const DevicesOfRobot& devices) {
   if (model < kinds_->of_model.size() && kinds_->of_model[model] != none) return kinds_->of_model[model];
   const description::World& description = around_.experiment.world;
-  RobotKind kind{description.models[model].name, {}, {}, 0, 0};
+  RobotKind kind{description.models[model].name, {}, {}, 0, 0, model};
   KindParts parts;
   for (const auto& [sensor, device] : devices.sensors) {
     const std::vector<Channel> channels = sensor->channels();

@@ -26,6 +26,7 @@ struct RobotKind {
   std::vector<Channel> command;
   std::size_t observation_size = 0;  ///< number of float64 values
   std::size_t command_size = 0;
+  std::size_t index = 0;  ///< index of the model in World::models
 };
 
 /// The reason why a command is invalid.

@@ -63,6 +63,29 @@ def write(tmp_path):
     return write
 
 
+TREE = """import cohort
+class Looker(cohort.Controller):
+    def start(self, start):
+        tree = start.tree
+        names = [link.name for link in tree.links]
+        turret = next(joint for joint in tree.joints if joint.devices.count("turret") > 0)
+        proximity = next(sensor for sensor in tree.sensors if sensor.name == "proximity")
+        axis = turret.axes[0]
+        found = [names[0], turret.type, names[turret.parent], names[turret.child], axis.direction, proximity.pose[3:]]
+        assert found == EXPECTED, found
+        assert axis.lower < 0 < axis.upper and tree.links[0].mass > 0
+    def step(self, observation, command):
+        pass
+"""
+
+
+@pytest.mark.parametrize("how", ["process", "inprocess"])
+def test_a_controller_receives_the_kinematic_tree_of_its_robot(cohort_program, write, how):
+    expected = ["chassis", "revolute", "chassis", "turret", (0.0, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0)]
+    experiment = write(TREE.replace("EXPECTED", repr(expected)), seconds=0.1)
+    assert hash_of(cohort_program, experiment, "--controllers", how) != 0
+
+
 def hash_of(cohort_program, experiment, *more):
     summary = experiment.with_suffix(".json")
     cohort_program("run", experiment, "--quiet", "--summary", summary, *more)

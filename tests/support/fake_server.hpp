@@ -54,6 +54,8 @@ class FakeServer {
   }
 
   std::uint32_t domain() const { return free_.domain; }
+  /// Makes it a server that sends trees, of minor version 4. Must be called before `accept`.
+  void send_trees() { sends_trees_ = true; }
 
   /// Waits for the Join of a client, returns it, and makes the writers to this client. Returns nullopt if none arrives.
   std::optional<wire::Join> accept() {
@@ -63,12 +65,14 @@ class FakeServer {
     admits_.emplace(free_.server, partition);
     frames_.emplace(free_.server, partition, 8);
     own_reports_.emplace(free_.server, partition);
+    if (sends_trees_) trees_.emplace(free_.server);
     descriptions_.emplace(free_.server);
     return join();
   }
 
   /// Disappears without a message. Keeps the domain, so that clients do not find another test's server instead.
   void leave() {
+    trees_.reset();
     descriptions_.reset();
     admits_.reset();
     frames_.reset();
@@ -76,6 +80,7 @@ class FakeServer {
   }
 
   void describe(const wire::RobotDescription& description) { descriptions_->write(description); }
+  void send(const wire::RobotTree& tree) { trees_->write(tree); }
 
   void admit(wire::Admit admit) {
     admit.client = client_;
@@ -124,6 +129,8 @@ class FakeServer {
   std::optional<wire::Join> heard_join_;
   std::optional<wire::Report> heard_report_;
   std::vector<Answer> answers_;
+  bool sends_trees_ = false;
+  std::optional<wire::Writer<wire::RobotTree>> trees_;
   std::optional<wire::Writer<wire::RobotDescription>> descriptions_;
   std::optional<wire::Writer<wire::Admit>> admits_;
   std::optional<wire::Writer<wire::Observation>> frames_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cohort/kinematic_tree.hpp>
 #include <cohort/parameters.hpp>
 #include <cohort/state.hpp>
 #include <cstddef>
@@ -80,6 +81,9 @@ class Start {
   std::uint32_t period = 1;          ///< number of ticks from one observation to the next
   std::vector<ChannelInfo> observation_channels;
   std::vector<ChannelInfo> command_channels;
+  /// The robot's links, joints and sensors. Empty if the server supports only version 1.3 of the protocol or older
+  /// ones, or if the client's identity was made by such a version.
+  KinematicTree tree;
 
   /// Returns the simulated time from one step of the controller to the next [s].
   double seconds_per_step() const { return std::chrono::duration<double>(step).count() * period; }
@@ -173,7 +177,7 @@ class StatelessController : public Controller {
 /// The symbol `cohort_plugin` that a plugin exports; COHORT_CONTROLLER defines it. A program loads every plugin whose
 /// `abi` it supports, even if it was compiled with another build of Cohort.
 struct Plugin {
-  static constexpr std::uint32_t current_abi = 3;
+  static constexpr std::uint32_t current_abi = 4;
   static constexpr std::uint32_t oldest_abi = 2;            ///< oldest version that is loaded
   static constexpr std::uint32_t first_abi_with_state = 3;  ///< first version whose controllers have `save` and `load`
   std::uint32_t abi = 0;                   ///< current_abi of the headers with which the plugin was built

@@ -58,6 +58,49 @@ Owned channels_of(const std::vector<ChannelInfo>& channels) {
   return list;
 }
 
+template <class Item, class ToPython>
+Owned list_of(const std::vector<Item>& items, const ToPython& to_python) {
+  Owned list = checked(PyList_New(0));
+  for (const Item& item : items) {
+    const Owned made = checked(to_python(item));
+    if (PyList_Append(list.get(), made.get()) != 0) throw_raised();
+  }
+  return list;
+}
+
+PyObject* tuple_of(const Vector3& vector) { return Py_BuildValue("(ddd)", vector.x, vector.y, vector.z); }
+
+PyObject* tuple_of(const FramePose& pose) {
+  const auto& [p, q] = pose;
+  return Py_BuildValue("(ddddddd)", p.x, p.y, p.z, q.w, q.x, q.y, q.z);
+}
+
+PyObject* tuple_of(const AxisInfo& axis) {
+  return Py_BuildValue("(Ndddd)", tuple_of(axis.direction), axis.lower, axis.upper, axis.max_velocity, axis.max_effort);
+}
+
+PyObject* tuple_of(const JointInfo& joint) {
+  const auto to_axis = [](const AxisInfo& axis) { return tuple_of(axis); };
+  return Py_BuildValue("(NINNNNNdN)", text(joint.name), static_cast<unsigned>(joint.type),
+                       joint.parent == JointInfo::world ? Py_NewRef(Py_None) : PyLong_FromUnsignedLong(joint.parent),
+                       PyLong_FromUnsignedLong(joint.child), tuple_of(joint.pose), tuple_of(joint.frame),
+                       list_of(joint.axes, to_axis).release(), joint.thread_pitch,
+                       list_of(joint.devices, text).release());
+}
+
+// The arguments of `cohort.kinematic_tree.KinematicTree`.
+Owned tree_of(const KinematicTree& tree) {
+  const auto to_link = [](const LinkInfo& link) {
+    return Py_BuildValue("(NdN)", text(link.name), link.mass, tuple_of(link.center_of_mass));
+  };
+  const auto to_joint = [](const JointInfo& joint) { return tuple_of(joint); };
+  const auto to_sensor = [](const SensorInfo& sensor) {
+    return Py_BuildValue("(NIN)", text(sensor.name), sensor.link, tuple_of(sensor.pose));
+  };
+  return checked(Py_BuildValue("(NNN)", list_of(tree.links, to_link).release(),
+                               list_of(tree.joints, to_joint).release(), list_of(tree.sensors, to_sensor).release()));
+}
+
 Owned parameters_of(const Parameters& parameters) {
   Owned dictionary = checked(PyDict_New());
   for (const Parameter& parameter : parameters.all()) {
@@ -106,6 +149,7 @@ Owned facts_of(const Start& start) {
   put(to, "period", PyLong_FromUnsignedLong(start.period));
   put(to, "observation_channels", channels_of(start.observation_channels).release());
   put(to, "command_channels", channels_of(start.command_channels).release());
+  put(to, "tree", tree_of(start.tree).release());
   return facts;
 }
 

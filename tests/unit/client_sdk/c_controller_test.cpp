@@ -97,6 +97,53 @@ TEST_F(CControllerTest, GetsTheSameStartAsAControllerInCpp) {
   start(wire::StartReason::takeover);
 }
 
+TEST_F(CControllerTest, GetsTheLinksJointsAndSensorsOfItsRobot) {
+  const FramePose pose{{1, 2, 3}, {0.5, 0.5, 0.5, -0.5}};
+  descriptions[0].tree = {.links = {{"hull", 0.4, {4, 5, 6}}, {}},
+                          .joints = {{.name = "wheel",
+                                      .type = JointInfo::Type::screw,
+                                      .parent = JointInfo::world,
+                                      .child = 1,
+                                      .pose = pose,
+                                      .frame = {},
+                                      .axes = {{{0, 1, 0}, -1.0, 2.0, 3.0, 4.0}},
+                                      .thread_pitch = 0.5,
+                                      .devices = {"encoder"}}},
+                          .sensors = {{"lidar", 1, pose}}};
+  script().start = [](const CohortStart* start) {
+    CohortLink link{};
+    EXPECT_TRUE(cohort_link(start, 0, &link));
+    EXPECT_STREQ(link.name, "hull");
+    EXPECT_EQ(link.mass, 0.4);
+    EXPECT_EQ(link.center_of_mass[2], 6.0);
+    EXPECT_FALSE(cohort_link(start, 2, &link));
+    CohortJoint joint{};
+    EXPECT_TRUE(cohort_joint(start, 0, &joint));
+    EXPECT_STREQ(joint.name, "wheel");
+    EXPECT_EQ(joint.type, cohort_joint_screw);
+    EXPECT_EQ(joint.parent, COHORT_WORLD);
+    EXPECT_EQ(joint.child, 1u);
+    EXPECT_EQ(joint.pose.position[1], 2.0);
+    EXPECT_EQ(joint.pose.orientation[3], -0.5);
+    EXPECT_EQ(joint.frame.orientation[3], 1.0);
+    EXPECT_EQ(joint.axis_count, 1u);
+    EXPECT_EQ(joint.axes[0].direction[1], 1.0);
+    EXPECT_EQ(joint.axes[0].lower, -1.0);
+    EXPECT_EQ(joint.axes[0].max_effort, 4.0);
+    EXPECT_EQ(joint.thread_pitch, 0.5);
+    EXPECT_STREQ(cohort_joint_device(start, 0, 0), "encoder");
+    EXPECT_EQ(cohort_joint_device(start, 0, 1), nullptr);
+    EXPECT_EQ(cohort_joint_device(start, 1, 0), nullptr);
+    CohortSensor sensor{};
+    EXPECT_TRUE(cohort_sensor(start, 0, &sensor));
+    EXPECT_STREQ(sensor.name, "lidar");
+    EXPECT_EQ(sensor.pose.position[2], 3.0);
+    EXPECT_FALSE(cohort_sensor(start, 1, &sensor));
+    return 0;
+  };
+  start();
+}
+
 TEST_F(CControllerTest, ReadsAndSetsTheChannelsThatItFinds) {
   CohortObservationChannel reading{};
   CohortCommandChannel doubled{};

@@ -207,6 +207,27 @@ TEST_F(ClientLoopTest, LeavesWithoutAnAnswerInTheMiddleOfATick) {
   EXPECT_EQ(told.text(), "");
 }
 
+TEST(ClientLoop, WaitsForTheTreesOfAServerThatSendsThem) {
+  FakeServer server;
+  server.send_trees();
+  Client client({.domain = server.domain(), .robots = {"0"}});
+  ASSERT_TRUE(server.accept());
+  server.describe(CountingController::description(7));
+  server.admit({.epoch = 1, .step_ns = 10'000'000, .robots = {{.robot = 0, .name = "r0", .description = 7}}});
+  const KinematicTree tree{.links = {{"hull", 0.4, {}}}, .joints = {}, .sensors = {}};
+  server.send(wire::RobotTree{8, tree});  // another description
+  EXPECT_FALSE(client.next(std::chrono::milliseconds(300)));
+  server.send(wire::RobotTree{7, tree});
+  const std::optional<ClientEvent> event = client.next(patience);
+  ASSERT_TRUE(event && std::holds_alternative<LeaseStart>(*event));
+  EXPECT_EQ(std::get<LeaseStart>(*event).robots[0].start.tree, tree);
+}
+
+TEST_F(ClientLoopTest, AServerOfAnOlderVersionGivesNoTree) {
+  admit();
+  EXPECT_EQ(next<LeaseStart>().robots[0].start.tree, KinematicTree{});
+}
+
 TEST(ClientLoop, EndsIfItsServerCannotBeFound) {
   const CapturedStderr told;
   Client client({.server = "no such host", .domain = 1});

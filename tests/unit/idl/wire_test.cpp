@@ -196,6 +196,25 @@ TEST_F(WireTest, ARobotDescriptionArrivesUnchanged) {
         .command = {channel}}});
 }
 
+TEST_F(WireTest, ARobotTreeArrivesUnchanged) {
+  const FramePose pose{{1.0, -0.0, 1e300}, {0.5, 0.5, -0.5, 0.5}};
+  const JointInfo joint{.name = "wheel",
+                        .type = JointInfo::Type::universal,
+                        .parent = JointInfo::world,
+                        .child = 1,
+                        .pose = pose,
+                        .frame = {{}, pose.orientation},
+                        .axes = {{{0, 0, 1}, -1.0, std::numeric_limits<double>::infinity(), 3.0, 4.0}, {}},
+                        .thread_pitch = -0.25,
+                        .devices = {"encoder", "", "motor"}};
+  expect_round_trip<RobotTree>(
+      free.server, client,
+      {{.description = 1,
+        .tree = {.links = {{"hull", 0.4, {1, 2, 3}}, {}}, .joints = {joint, {}}, .sensors = {{"lidar", 1, pose}}}},
+       {.description = 1},
+       {.description = 1, .tree = {.links = {}, .joints = std::vector<JointInfo>(500, joint), .sensors = {}}}});
+}
+
 TEST_F(WireTest, AnObservationArrivesUnchanged) {
   const std::vector<std::uint32_t> robots{0, 7, 4'000'000'000};
   const std::vector<double> values{0.1, -0.0, 5e-324, 1.7976931348623157e308};

@@ -4,6 +4,7 @@
 
 #include "server/run/exchange.hpp"
 #include "server/run/in_process.hpp"
+#include "server/run/model_tree.hpp"
 #include "server/run/roster.hpp"
 #include "server/run/run_events.hpp"
 #include "server/run/run_monitor.hpp"
@@ -209,6 +210,79 @@ TEST(Roster, ADescriptionsNumberIsMadeFromItsContents) {
   expect_another([](auto& other) { other.command.back().upper += 1e-9; });
   expect_another([](auto& other) { other.command.front().unit = "N"; });
   expect_another([](auto& other) { other.observation.pop_back(); });
+  expect_another([](auto& other) { other.tree.links.back().mass += 1e-9; });
+  expect_another([](auto& other) { other.tree.joints.back().axes.back().upper = 1e9; });
+  expect_another([](auto& other) { other.tree.joints.back().devices.pop_back(); });
+  expect_another([](auto& other) { other.tree.sensors.back().pose.position.z += 1e-9; });
+}
+
+TEST(Roster, ATreeHasTheLinksJointsAndSensorsOfTheModel) {
+  description::Model model = tracked_robot();
+  model.joints[0].axis.lower = -2.0;
+  model.joints[0].axis.upper = 3.0;
+  model.joints[0].axis.max_velocity = 1.5;
+  model.joints[0].axis.max_effort = 0.3;
+  model.joints[0].X_LJ.position = {0.0, 0.01, 0.0};
+  const KinematicTree tree = tree_of(model);
+  ASSERT_EQ(tree.links.size(), 2u);
+  EXPECT_EQ(tree.links[1], (LinkInfo{"turret", 0.3, {0, 0, 0.02}}));
+  const JointInfo turret_joint{.name = "turret_joint",
+                               .type = JointInfo::Type::revolute,
+                               .parent = 0,
+                               .child = 1,
+                               .pose = {{0, 0, figures::turret_height}, {}},
+                               .frame = {{0, 0.01, 0}, {}},
+                               .axes = {{{0, 0, 1}, -2.0, 3.0, 1.5, 0.3}},
+                               .devices = {"turret", "turret"}};  // a motor and an encoder
+  EXPECT_EQ(tree.joints, std::vector{turret_joint});
+  EXPECT_EQ(tree.sensors, (std::vector<SensorInfo>{{"proximity", 1, {{0, 0, 0.02}, {}}}}));
+}
+
+TEST(Roster, ATreeHasTheAxesThatEachJointMoves) {
+  const auto axes_of = [](description::JointType type) {
+    description::Model model = tracked_robot();
+    model.devices.clear();
+    model.joints[0].type = type;
+    model.joints[0].second_axis.direction = {0, 1, 0};
+    return tree_of(model).joints[0].axes;
+  };
+  EXPECT_TRUE(axes_of(description::JointType::ball).empty());
+  EXPECT_EQ(axes_of(description::JointType::screw).size(), 1u);
+  const auto both = axes_of(description::JointType::universal);
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[1].direction, (Vector3{0, 1, 0}));
+}
+
+TEST(Roster, ATreeIsRelativeToTheRootLinkAndHasTheWorldAsAParent) {
+  description::Model model = tracked_robot();
+  const Pose raised{{0, 0, 1}, Eigen::Quaterniond::Identity()};
+  for (description::Link& link : model.links) link.X_ML = raised * link.X_ML;
+  EXPECT_NEAR(tree_of(model).joints[0].pose.position.z, figures::turret_height, 1e-12);
+  description::Joint mount;
+  mount.name = "mount";
+  mount.parent = description::Joint::world;
+  model.joints.insert(model.joints.begin(), mount);
+  const JointInfo joint = tree_of(model).joints[0];
+  EXPECT_EQ(joint.parent, JointInfo::world);
+  EXPECT_EQ(joint.pose.position, (Vector3{0, 0, 1}));
+}
+
+class TreeReader final : public Controller {
+ public:
+  static inline KinematicTree read;
+  void start(const Start& start) override { read = start.tree; }
+  void step(const Observation&, Command&) override {}
+};
+
+TEST(InProcessRun, GivesControllersTheTreeOfTheirRobot) {
+  const auto experiment = experiment_of({{}});
+  Simulation simulation(experiment, 1);
+  const std::atomic<bool> stop = false;
+  const ControllerKind kind = {"TreeReader",
+                               [] { return OwnedController(new TreeReader, [](Controller* it) { delete it; }); }};
+  run_in_process(experiment, simulation, {kind}, {}, {}, stop);
+  EXPECT_EQ(TreeReader::read, tree_of(experiment.world.models[experiment.world.instances.back().model]));
+  EXPECT_FALSE(TreeReader::read.joints.empty());
 }
 
 TEST(Roster, SeedsOfControllersDependOnTheExperimentsSeedAndTheRobotsNameOnly) {

@@ -9,6 +9,7 @@ from typing import Any
 import numpy
 
 from cohort.channels import Channels
+from cohort.kinematic_tree import KinematicTree
 
 
 class ParameterError(ValueError):
@@ -110,6 +111,7 @@ class Start:
         step: simulated time between ticks [s].
         period: number of ticks from one observation to the next.
         observation_channels, command_channels: the robot's `Channels`, with units and bounds.
+        tree: the robot's links, joints and sensors, a `KinematicTree` (cohort.kinematic_tree).
     """
 
     def __init__(self, facts: dict[str, Any]) -> None:
@@ -126,6 +128,7 @@ class Start:
         self.period: int = facts["period"]
         self.observation_channels = Channels(facts["observation_channels"])
         self.command_channels = Channels(facts["command_channels"])
+        self.tree = KinematicTree(*facts["tree"])
 
     @property
     def seconds_per_step(self) -> float:

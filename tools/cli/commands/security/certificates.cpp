@@ -95,7 +95,7 @@ std::vector<Allowed> allowed_to(wire::Role role, bool may_control) {
           {"subscribe",
            {"cohort/v1/admit", "cohort/v1/observation", "cohort/v1/report", "cohort/v1/controller_state"},
            "c*"},
-          {"subscribe", {"cohort/v1/robot_description"}, ""}};
+          {"subscribe", {"cohort/v1/robot_description", "cohort/v1/robot_tree"}, ""}};
       if (may_control) {
         allowed[0].topics.push_back("cohort/v1/request");
         allowed[1].topics.push_back("cohort/v1/reply");
@@ -105,7 +105,7 @@ std::vector<Allowed> allowed_to(wire::Role role, bool may_control) {
   }
   return {{"publish", {"cohort/v1/request"}, ""},
           {"subscribe", {"cohort/v1/reply"}, "c*"},
-          {"subscribe", {"cohort/v1/robot_description"}, ""},
+          {"subscribe", {"cohort/v1/robot_description", "cohort/v1/robot_tree"}, ""},
           {"subscribe", {"cohort/v1/world_state", "cohort/v1/scene_description", "cohort/v1/scene_update"}, "view"}};
 }
 

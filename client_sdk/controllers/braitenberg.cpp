@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A Braitenberg vehicle ("Vehicles: Experiments in Synthetic Psychology", 1984; thesis, section 5.2): every command is
 // a weighted sum of the robot's observations, clamped to the range of its channel. The experiment defines the weights:
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Sends constant values to the command channels that the experiment names.
 //
 //   controller: constant

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Aggregation by sound, for the s-bot: every robot calls, drives towards louder sound, and stays where it is loud. A
 // robot in a small group leaves from time to time, so that small groups merge into large ones. Cockroaches and robot
 // swarms aggregate by this rule (Garnier et al., "Aggregation behaviour as a source of collective decision in a group

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Phototaxis and assembly (thesis, section 5.2.3), for the s-bot: it drives to the light, and grips any robot or object
 // that it can. Connected robots turn their chassis under their turrets towards the light, and so move as one.
 //

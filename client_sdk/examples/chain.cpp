@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A chain of s-bots crosses a gap that is too wide for one (thesis, figure 1.2b). Each drives ahead until it detects
 // the edge of the ground, or an s-bot in front of it, which it grips. A robot on its way calls. When all calls have
 // stopped, the robots of the chain drive ahead together.

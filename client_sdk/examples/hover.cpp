@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A quadcopter that rises to a height and hovers there. Cascaded proportional and derivative control regulates the
 // height by the altimeter and the attitude by the IMU. The rotors are in front, on the left, behind and on the right,
 // or in front and behind on both sides.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // One s-bot lifts another (thesis, section 1.1) while a third holds it from behind, because alone it would tip over.
 // Each robot with this controller drives ahead until it can grip the one in front of it. A robot on its way calls. When
 // all calls have stopped, the robots with the parameter `angle` raise their arm to it, hold, lower it, and release.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* Obstacle avoidance in C, with the same arithmetic as obstacle_avoidance.cpp and so the same bits. */
 
 #include <cohort/cohort.h>

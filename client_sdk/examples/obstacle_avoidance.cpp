@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Obstacle avoidance after Braitenberg (thesis, section 5.2.1), for the s-bot. Each track slows down for obstacles on
 // the opposite side, so the robot turns away from them.
 //

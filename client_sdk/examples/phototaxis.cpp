@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Phototaxis after Braitenberg (thesis, section 5.2.2), for the s-bot. Each track slows down for obstacles on the
 // opposite side, so the robot turns away from them. It slows down for light on its own side, so the robot turns towards
 // lamps. Near a lamp, the light stops both tracks.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A swarm retrieves an object that is too heavy for one robot, the prey (thesis, figure 1.2a). An s-bot drives towards
 // the call of the prey, grips it, turns its chassis under its turret towards the light and drives. The prey moves as
 // soon as enough robots pull and push.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The reduction of M. H. Payne and R. N. Hanek, Radian reduction for trigonometric functions, 1983: x 2/pi needs only
 // those digits of 2/pi that do not contribute whole turns, and enough of them below.
 

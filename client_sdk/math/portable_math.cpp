@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // sin, cos, tan, asin, acos, atan, atan2, exp and log, implemented with + - * / and sqrt. Algorithms and coefficients
 // are those of fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, e_rem_pio2.c, e_asin.c, s_atan.c, e_exp.c, e_log.c).
 // Results are within 2 units in the last place for every argument. The functions of float round these results.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// Powers, and logarithms to bases other than e, for portable_math.cpp. They are computed in double-double arithmetic

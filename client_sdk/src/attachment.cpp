@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "client_sdk/src/attachment.hpp"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "client_sdk/src/run_watch.hpp"
 
 #include "client_sdk/src/this_process.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "idl/dds/participant.hpp"
 
 #include <arpa/inet.h>
@@ -18,8 +19,8 @@
 #include <system_error>
 #include <vector>
 
-#include "idl/text/printable.hpp"
 #include "idl/dds/dds.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort::wire {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/actuation/actuator_kinds.hpp"
 
 namespace cohort::actuation {

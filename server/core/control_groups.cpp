@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/core/control_groups.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/core/thread_room.hpp"
 
 #include <sys/resource.h>

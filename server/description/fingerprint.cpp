@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/description/fingerprint.hpp"
 
 #include "server/core/hash.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/description/select_robots.hpp"
 
 #include <algorithm>

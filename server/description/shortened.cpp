@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/description/shortened.hpp"
 
 #include "idl/text/printable.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/physics/make_world.hpp"
 
 #include "server/physics/islands/multibody_world.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <chrono>
@@ -10,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "server/messages/device_messages.hpp"
 #include "server/core/periodic_ticks.hpp"
 #include "server/description/experiment.hpp"
+#include "server/messages/device_messages.hpp"
 #include "server/recording/mcap/writing/recording_file.hpp"
 #include "server/recording/measurement_times.hpp"
 #include "server/recording/ros_channels.hpp"

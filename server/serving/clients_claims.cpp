@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The part of Clients for claims of robots, and the leases that result from them.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/serving/server.hpp"
 
 // The server's functions on other threads than that of the run: those of DDS, those that report ended processes, and

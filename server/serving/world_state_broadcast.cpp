@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/serving/world_state_broadcast.hpp"
 
 namespace cohort::session {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/simulation/spawned_models.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Prints a table of the cost of a batch of many small worlds. Each has one s-bot, in an empty square or among 24 posts.
 //
 //   batch_benchmark [--worlds N] [--seconds S] [--resets N]

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+
 """Prints a table of the cost of control steps in Python: Cohort, its batch as a lower bound, and other simulators.
 
     tools/dev/python-environment --benchmarks                          # prints a Python that has all of them

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Prints a table of the cost of robots that ROS 2 nodes observe.
 //   ros2_benchmark [--robots N] [--seconds S]
 //

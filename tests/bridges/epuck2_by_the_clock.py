@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A program for an e-puck2 that goes by its own clock, as for the real robot: see docs/bridges/epuck2.md.
 
 Usage: epuck2_by_the_clock.py COURSE. Prints when it has received each answer, and what the wheels have turned.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """PX4 as its simulator sees it, with pymavlink on the wire: decodes all that the bridge sends, and answers.
 
 Usage: px4_peer.py PORT. Prints what it has seen as JSON; fails at the first message that pymavlink does not take.

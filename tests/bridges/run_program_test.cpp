@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Programs that a bridge starts in virtual time, with the option --run.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 void function_that_nobody_defines(void);
 const struct {
   unsigned abi;

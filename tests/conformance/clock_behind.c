@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A preloaded library that sets the time of day back by a minute.
 
 #include <sys/syscall.h>

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A client on the Python package of Cyclone DDS, written from docs/protocol.md and idl/cohort.idl alone.
 
 It drives robots by the values that their team's parameters give for channels, as the controller `constant` does. Usage:

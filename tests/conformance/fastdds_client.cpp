@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Drives robots of a run like any client, on Fast DDS: fastdds_client PLUGIN DOMAIN ROBOT[,ROBOT...] [LOSES_EVERY].
 // Exit code 0 if the run finished.
 

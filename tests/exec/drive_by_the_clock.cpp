@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A controller with a loop of its own that goes by the clock, ten times a second, as programs for real robots do: it
 // takes the newest observations, and commands. Prints a hash of the times at which it did.
 //

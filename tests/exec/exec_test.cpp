@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // `cohort exec` as users have it: a program goes by the time of a run.
 
 #include <gtest/gtest.h>

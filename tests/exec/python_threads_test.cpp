@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Threads of the Python interpreter in virtual time.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* A thread sleeps in real time, and the first one in virtual time. With the argument "kernel" the thread sleeps for two
  * seconds, by the C library's own syscall. With "dds" and "often in dds" it sleeps in a library that is named as one of
  * DDS: for 0.3 s, or for 20 ms again and again. The first one waits until it has woken; with "often in dds" for 1 s. */

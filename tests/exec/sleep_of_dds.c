@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* A library that is named as one of DDS. */
 
 #include <time.h>

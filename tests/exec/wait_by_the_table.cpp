@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Makes each call of tools/exec/waiting_calls.hpp that has a time limit, and prints how long it took by the program's
 // clock: 20 ms, or 1 s if it takes seconds. With "ended" waits for locks that another thread releases after 12 ms, and
 // for signals and messages that it sends. With "real" makes those that are not replaced, twice.

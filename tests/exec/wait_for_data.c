@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* A program on Cyclone DDS that waits for data, by the clock of DDS. */
 
 #include <dds/dds.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // An ordinary program that waits in every way that it can and prints how long each took by its own clocks.
 
 #include <poll.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* Linked dynamically, with the note of Go's build identity, as a Go program with cgo has. */
 
 #include <unistd.h>

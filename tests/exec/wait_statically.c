@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* A program without a loader: nothing can be loaded into it. */
 
 #include <unistd.h>

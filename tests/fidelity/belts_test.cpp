@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Links with moving surfaces: conveyors and tracks, limited by friction alone.
 
 #include <cmath>

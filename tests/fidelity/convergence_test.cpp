@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Contacts and loops whose errors would grow from step to step if a step did not solve them: at default settings.
 
 #include <gtest/gtest.h>

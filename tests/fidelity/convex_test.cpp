@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The convex solver: scenes that stand, drive and mirror each other as their equations say, at any step.
 
 #include <gtest/gtest.h>

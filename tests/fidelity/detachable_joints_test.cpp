@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Detachable joints: a robot holds objects until it is commanded to release them.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A body that moves further in a step than its thickness passes through nothing.
 
 #include <gtest/gtest.h>

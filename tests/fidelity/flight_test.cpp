@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Bodies of several links in free flight.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Bodies in air and water, compared with closed forms.
 
 #include <gtest/gtest.h>

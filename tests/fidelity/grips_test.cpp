@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Compliant connections, connections that lift, and many at once.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Spinning bodies on a joint to the world or on the ground, at default settings.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Bodies that stand on or lie between each other come to rest, and then sleep: at default settings.
 
 #include <gtest/gtest.h>

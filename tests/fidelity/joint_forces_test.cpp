@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Forces and torques through joints, compared with statics and dynamics computed by hand.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Kinematic links: they move as commanded, regardless of contacts.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Large islands, which are cut into parts and solved by all workers at once.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Joints beyond a tree of hinges: loops, joints that follow others, screws.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Motors with position and effort commands.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Robots drawn at random: mirror-symmetric, with held joints, and dropped on their feet.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The time of a step does not depend on the size of bodies, from tiny to a metre.
 
 #include <gtest/gtest.h>

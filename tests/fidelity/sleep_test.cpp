@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Sleeping bodies cost nothing, and wake as if they had never slept.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The state of a world with any physics has the same bits for any number of threads, and after a snapshot is restored.
 
 #include <gtest/gtest.h>

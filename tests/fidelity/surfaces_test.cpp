@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Properties of surfaces and links that third-party models use.
 
 #include "tests/support/physics.hpp"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Vehicles made for Gazebo, with its plugins, follow their kinematics.
 
 #include <gtest/gtest.h>

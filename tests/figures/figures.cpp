@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/figures/figures.hpp"
 
 namespace cohort::figures {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/recording/mcap/reading/mcap_reader.hpp"
 #include "server/recording/mcap/reading/recover.hpp"
 #include "server/recording/ros_channels.hpp"

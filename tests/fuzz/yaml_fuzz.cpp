@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/description/world.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "tests/fuzz/fuzz_file.hpp"

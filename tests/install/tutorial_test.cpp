@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Does what docs/tutorial.md says, to the letter: writes its files and runs its commands.
 
 #include <gtest/gtest.h>

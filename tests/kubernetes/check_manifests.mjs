@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // check_manifests.mjs FILE...: checks Kubernetes manifests against Kubernetes' own schemas. Values by their validators; keys that
 // there are none of by their types, as TypeScript does. Prints what is wrong; exit code 1 if anything is.
 import { readFileSync, writeFileSync } from "node:fs";

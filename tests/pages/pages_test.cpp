@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Runs every command of every page, as a reader would.
 
 #include <gtest/gtest.h>

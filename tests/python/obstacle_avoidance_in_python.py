@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """The controller of client_sdk/examples/obstacle_avoidance.cpp, operation for operation."""
 
 import cohort

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Controllers in Python that drive robots of a server."""
 
 import json

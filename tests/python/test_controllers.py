@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """`cohort` runs controllers that are written in Python."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Experiments that are made and run in Python."""
 
 import cohort

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Learning environments: what Gymnasium and PettingZoo ask of them, and the same trajectories for the same seeds."""
 
 import copy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """The notebooks: each runs from top to bottom, shortened by COHORT_QUICK, and shows what it says."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A Python program that keeps arrays, or ends while threads work, does not crash."""
 
 import subprocess

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Recordings give NumPy, pandas and xarray what the simulation had, bit for bit."""
 
 import importlib

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A run in Python has the same bits as one of `cohort run`."""
 
 import json

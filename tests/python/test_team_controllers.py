@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """One controller in Python that drives all robots of a process together."""
 
 import cohort

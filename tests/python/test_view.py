@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A simulation of a Python program, live in the page of `cohort view`."""
 
 import asyncio

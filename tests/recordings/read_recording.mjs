@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Reads a recording with @mcap/core, by its index and from beginning to end. Checks every CRC, decodes messages by
 // their schemas, and prints the contents as JSON.
 import { readFileSync } from "node:fs";

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Builds interfaces for rclpy of which no wheel exists, from their .msg and .srv texts, by ROS's own generators.
 
 build_interfaces.py FOLDER OUTPUT PACKAGE...: reads FOLDER/PACKAGE/msg/*.msg and FOLDER/PACKAGE/srv/*.srv of each

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that calls two services many times, several calls at once, and checks that each call has the answer to it.
 
 caller.py CALLS FIRST BYTES: calls /camera/set with the numbers from FIRST on, each with BYTES more bytes.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that answers each message of a sensor by a velocity: commander.py NAMESPACE SENSOR COMMAND [SPEED [STOP]].
 
 SENSOR is scan, odom or the name of a Range. COMMAND is Twist, TwistStamped (with the stamp of the sensor's message), or

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A client of /get_simulation_state as rmw_cyclonedds has them.
 //
 // cyclone_caller CALLS OTHERS: prints when it sees the service and calls it CALLS times. Then it waits for OTHERS

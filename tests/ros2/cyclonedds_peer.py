@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A peer on a newer Cyclone DDS, which tells others what its types are. It does as fastdds_peer.cpp says.
 
 Usage: cyclonedds_peer.py echo TOPIC TYPE QOS, or cyclonedds_peer.py match TYPE. TYPE is that of LaserScan.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that serves /NAME/echo with what it is asked (serve NAME), or that calls it and prints the answer (call)."""
 
 import sys

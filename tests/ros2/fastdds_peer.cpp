@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A peer on Fast DDS that knows no types, for tests: fastdds_peer echo TOPIC TYPE QOS, or fastdds_peer match TYPE.
 //
 // `echo` writes what it reads from rt/TOPIC to rt/TOPIC_again. QOS: `reliable` or `best_effort`, then `,transient` if

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/bridges/ros2/robots/frame_tree.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that listens to topics until it has heard so many messages, and prints them in the order of their sending.
 
 Usage: listen.py COUNT TOPIC=TYPE... Prints `TOPIC STAMP` for each, STAMP being what the message says, in nanoseconds.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that prints what the graph has of other nodes: look_at_graph.py TOPIC..., once all topics are there.
 
 For each: TOPIC NODE publishes|subscribes TYPE RELIABILITY DURABILITY, and whether the type's hash is that of this

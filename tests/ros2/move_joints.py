@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that moves joints: move_joints.py TOPIC VALUE..., the values of a Float64MultiArray, again and again."""
 
 import sys

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that sends invalid commands, again and again: odd_commander.py TOPIC COMMAND.
 
 COMMAND is nan (in a Twist), foreign (a String), short (an array of one value) or unknown_joint (a trajectory).

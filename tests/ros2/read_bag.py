@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Reads a folder as a bag of rosbag2 with rosbags, and prints what is in it.
 
 Usage: read_bag.py FOLDER. Prints a line for each topic, `TOPIC TYPE COUNT DURABILITY`, and then for each message of ROS

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Reads messages of ROS 2 with rosbags, writes them again, and compares bytes and hashes of types.
 
 Usage: read_messages.py DISTRIBUTION FILE. DISTRIBUTION: `humble`, `jazzy` …, whose own definitions count, or `ours`:

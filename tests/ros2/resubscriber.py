@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node like commander.py that does not answer the fifth scan, ends its subscription and subscribes again."""
 
 import math

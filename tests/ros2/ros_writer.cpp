@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Writes arbitrary bytes, again and again, on a topic of ROS 2: ros_writer TOPIC TYPE HEX.
 
 #include <chrono>

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Calls of the services of simulation_interfaces, for the programs of this folder."""
 
 import re

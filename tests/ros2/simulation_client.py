@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that controls a simulation by the services of simulation_interfaces, and prints what differs.
 
 - simulation_client.py all: calls each service of a paused run of turtlebot3, and ends the server.

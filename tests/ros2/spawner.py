@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that adds and removes robots of a run of turtlebot3, drives them, prints what differs, and ends the server.
 
 - spawner.py drive: drives a robot that it adds, while another one that it adds has no driver.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that says a text on a topic until it is ended (talk TEXT), or that prints what it hears (listen)."""
 
 import sys

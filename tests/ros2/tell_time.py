@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that has the simulation's time: prints `timer T` at every tenth of a second, and for odometry and clocks
 `odom T SENT` and `clock T SENT`, where SENT is when they were sent."""
 

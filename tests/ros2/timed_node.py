@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that drives a robot by timers of its own: every 0.1 s, by the odometry that came last.
 
 timed_node.py ROBOT [SPEED [END [THREADS]]]; ROBOT is its namespace. Every second of its clock it prints the time, how

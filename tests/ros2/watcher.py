@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """A node that prints what it hears of a robot: watcher.py NAMESPACE TOPIC..., as `TOPIC STAMP VALUE...`.
 
 It prints `found` when it has found a publisher of each topic.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -364,6 +365,23 @@ TEST(Architecture, ADeviceKindIsNotNamedByACommentOrAString) {
   EXPECT_EQ(kinds_named_in("// Belt\nstd::get_if<description::Rotor>(&x); \"a \\\" Lidar\" Belts TreelDrive;",
                            {"Belt", "Rotor", "Lidar", "TreelDrive"}),
             (Names{"Rotor", "TreelDrive"}));
+}
+
+TEST(Architecture, EverySourceNamesItsLicense) {
+  std::size_t count = 0;
+  for (const char* const part : {"idl", "client_sdk", "server", "tools", "tests"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(COHORT_SOURCE_DIR "/" + std::string(part))) {
+      const std::string extension = entry.path().extension();
+      if (extension != ".cpp" && extension != ".hpp" && extension != ".h" && extension != ".c") continue;
+      if (entry.path().string().find("node_modules") != std::string::npos) continue;
+      std::ifstream file(entry.path());
+      std::string first;
+      std::getline(file, first);
+      EXPECT_EQ(first, "// SPDX-License-Identifier: Apache-2.0") << entry.path();
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 1000u);
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Drives the page in a browser without a window: node browser.mjs SCENARIO ADDRESS [FILE]. Ends with 0 if all is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

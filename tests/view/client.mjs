@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Speaks the Foxglove WebSocket protocol to `cohort view`: node client.mjs SCENARIO ADDRESS [PROCESS]. Ends with 0 if all
 // is right.
 import assert from "node:assert/strict";

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Tries what the page shows of tests/view/exhibits: node exhibits.mjs SCENARIO ADDRESS [FILE]. Ends with 0 if all is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A second client beside the page under test, without a browser: sends a page's requests, and reads the robots'
 // commands.
 import rosmsg from "@foxglove/rosmsg";

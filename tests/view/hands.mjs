@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // In these scenarios a person drives robots, and adds, drags and removes objects.
 import assert from "node:assert/strict";
 import { Guest } from "./guest.mjs";

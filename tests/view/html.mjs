@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Opens HTML files that contain a recording, without a network: node html.mjs SCENARIO ADDRESS [FILE].
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

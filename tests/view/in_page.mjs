@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Functions that scripts that drive the page share.
 import assert from "node:assert/strict";
 import { chromium } from "playwright-core";

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Checks the page around the picture: panels, tree, cards, and what assistive technology needs.
 // node layout.mjs SCENARIO ADDRESS
 import assert from "node:assert/strict";

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Measures how long the page takes to show its first picture and to draw one, in headless chromium without a graphics
 // card, for 16, 1,000 and 10,000 robots. With several folders of pages, they are measured in turn on the same
 // recordings.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Takes the pictures of the page that docs/view.md shows, as PNG files: node pictures.mjs COHORT FOLDER. See
 // tools/dev/make-view-pictures.
 import { join } from "node:path";

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Recordings and views of them, for programs that measure or photograph the page.
 
 import { spawn, spawnSync } from "node:child_process";

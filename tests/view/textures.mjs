@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Checks how the page draws the textures in exhibits/textures.yaml.
 import assert from "node:assert/strict";
 import { look, pixelsAt, run, setShadows, until } from "./in_page.mjs";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/core/commit.hpp"
 
 #include <cohort_build/commit.hpp>

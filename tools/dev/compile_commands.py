@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+
 """Knows how each source and header is compiled in the preset `dev`, where CMake knows it of sources alone.
 
 As a program, it writes build/lint/compile_commands.json, which has the sources and the headers that are given. Without

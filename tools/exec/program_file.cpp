@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/exec/program_file.hpp"
 
 #include <elf.h>

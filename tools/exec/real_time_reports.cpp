@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/exec/real_time_reports.hpp"
 
 #include <algorithm>

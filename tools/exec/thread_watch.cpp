@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/exec/thread_watch.hpp"
 
 #include <fcntl.h>

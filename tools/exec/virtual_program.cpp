@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/exec/virtual_program.hpp"
 
 #include <linux/futex.h>

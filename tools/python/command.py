@@ -1,4 +1,6 @@
 #!python
+# SPDX-License-Identifier: Apache-2.0
+
 """The command `cohort` of a wheel: runs the program in the package, with this Python for controllers in Python."""
 
 import importlib.util

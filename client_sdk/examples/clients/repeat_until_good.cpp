@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Repeats a run with one seed after the other until all robots have moved at least a given distance from their start.
 //
 //   repeat_until_good METRES SECONDS RUNS    the server's domain is $COHORT_DOMAIN, its address $COHORT_SERVER

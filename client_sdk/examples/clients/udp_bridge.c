@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* The bridge of udp_bridge.cpp in C: firmware with a UDP interface drives one robot of a simulation in lockstep.
  *
  *   udp_bridge ROBOT PORT       the server's domain is $COHORT_DOMAIN, its address $COHORT_SERVER

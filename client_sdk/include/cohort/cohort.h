@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #ifndef COHORT_COHORT_H
 #define COHORT_COHORT_H
 

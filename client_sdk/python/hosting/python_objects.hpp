@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #define PY_SSIZE_T_CLEAN  // before Python.h: makes lengths of bytes Py_ssize_t

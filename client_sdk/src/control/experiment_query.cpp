@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "client_sdk/src/control/experiment_query.hpp"
 
 #include <optional>

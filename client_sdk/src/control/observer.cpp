@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "client_sdk/include/cohort/observer.hpp"
 
 #include <algorithm>
@@ -12,8 +13,8 @@
 #include "client_sdk/src/control/control_values.hpp"
 #include "client_sdk/src/control/run_history_query.hpp"
 #include "client_sdk/src/event_descriptor.hpp"
-#include "idl/text/printable.hpp"
 #include "idl/messages/scene_messages.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "client_sdk/src/control/run_history_query.hpp"
 
 #include <algorithm>
@@ -5,8 +6,8 @@
 #include <utility>
 
 #include "client_sdk/include/cohort/control.hpp"
-#include "idl/text/printable.hpp"
 #include "idl/messages/run_history.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "idl/dds/ros2/announced_types.h"
 
 #include <dds/ddsi/ddsi_domaingv.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "idl/dds/ros2/endpoint_owners.hpp"
 
 #include <dds/ddsi/ddsi_plist.h>

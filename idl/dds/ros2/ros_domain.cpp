@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "idl/dds/ros2/ros_domain.hpp"
 
 #include <charconv>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "idl/dds/ros2/ros_graph.hpp"
 
 #include <algorithm>
@@ -7,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "idl/text/printable.hpp"
 #include "idl/dds/ros2/participant_state.hpp"
 #include "idl/dds/ros2/ros_participant.hpp"
 #include "idl/messages/cdr.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort::ros2 {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// The version of Cohort, as in CMake: `find_package(Cohort 0.2)`. For C and C++.

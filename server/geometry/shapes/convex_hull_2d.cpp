@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/geometry/shapes/convex_hull_2d.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/geometry/visibility/sight_lines.hpp"
 
 #include <algorithm>

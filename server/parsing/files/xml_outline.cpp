@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/parsing/files/xml_outline.hpp"
 
 #include <expat.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/parsing/model/free_bodies.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/parsing/model/shape_files.hpp"
 
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/parsing/plugins/gazebo_plugins.hpp"
 
 #include <algorithm>

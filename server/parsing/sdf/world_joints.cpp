@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/parsing/sdf/world_joints.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/parsing/writing/write_world.hpp"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Bullet's headers, and conversions between Eigen's types and Bullet's. Private to server/physics.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/physics/contact/bullet_contact.hpp"
 
 #include "server/core/state_visitors.hpp"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // External forces on bodies that are recorded.
 
 #include "server/physics/islands/assembly.hpp"

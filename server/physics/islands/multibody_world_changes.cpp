@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Changes from outside to a world between steps, and the lowest height, which depends on them.
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Hashing, saving and restoring the state of a world: all three visit the same numbers.
 
 #include "server/core/state_visitors.hpp"

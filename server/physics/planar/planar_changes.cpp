@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Changes from outside to a planar world between steps.
 
 #include "server/physics/planar/planar_world.hpp"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Creation of the bodies of a planar world and of the ground under each.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/physics/solvers/newton_on_rows.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/physics/world/surface_pairs.hpp"
 
 #include <algorithm>

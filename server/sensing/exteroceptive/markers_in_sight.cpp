@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/sensing/exteroceptive/markers_in_sight.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/sensing/placed.hpp"
 #include "server/sensing/sensor_kinds.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/sensing/readings/signal_chain.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/sensing/readings/take_samples.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/serving/control/model_texts.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Obstacle avoidance for the robot of worlds/robots/two_wheeler, in plain C: motors by timer 0, distances by the ADC,
 // lines by the serial interface. It sleeps while it waits for the next of its steps.
 

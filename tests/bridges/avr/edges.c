@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Outputs on which two simulators of an ATmega328P have to agree, cycle by cycle. These are edges of pins by software,
 // in loops and in timer interrupts, and bytes of the serial interface.
 

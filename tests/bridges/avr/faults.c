@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // An ATmega328P that drives both motors of worlds/robots/two_wheeler, and after 0.5 s does what FAULT says.
 
 #include <avr/interrupt.h>

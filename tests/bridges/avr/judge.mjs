@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Runs an image in Intel HEX on avr8js, and writes the outputs of its pins and its serial interface as JSON. Edges of
 // port B are [cycle, levels]; bytes are [cycle, byte]. Arguments: the file, atmega328p or atmega2560, number of cycles.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A Kilobot that reports on its serial interface its type and the messages that it receives. With SENDS it sends its
 // number four times a second, unless another Kilobot is sending. When it is told to run it turns, or drives ahead if it
 // SENDS, and lights its LED. Messages are as those of other Kilobots: bits of 269 cycles, a 1 is a pulse.

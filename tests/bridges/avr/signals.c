@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Signals of many kinds on an ATmega328P, for tests to measure; byte by byte it answers to what it is asked.
 
 #include <avr/interrupt.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // An ATmega328P that is reset by its watchdog every 128 ms, and sets PB0 after each start.
 
 #include <avr/io.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Scenes that users build in their first week, at default settings and a step of 10 ms, with both dynamics.
 
 #include <gtest/gtest.h>

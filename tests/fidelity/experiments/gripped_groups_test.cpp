@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Groups of connected robots, and the rotor inertia of motors.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Results of the experiments with sensors and tracks, in numbers, for three seeds each.
 
 #include <gtest/gtest.h>

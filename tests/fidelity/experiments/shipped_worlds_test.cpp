@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Results of the shipped experiments, in numbers.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* The example in C from a loop of its own instead of from callbacks: drive_in_a_loop DOMAIN ROBOTS, or
  * without them all robots of the server that the environment names. */
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A stranger that floods one of two servers: flood DOMAIN DOMAIN RATE. Sends RATE commands a second with an invalid
 // client id to the first. After SIGUSR1 it sends to the other one, and so on, until it is killed. Prints each turn's
 // number once it has sent some. So its own load on the machine stays the same.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* A program that loads Cohort as a library: the C library's sin, cos … are there first.
  *   load_library LIBRARY EXPERIMENT TICKS [unbound]
  * Prints the state hash after these ticks. */

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A cable between two network namespaces that loses packets: lossy_link NAMESPACE NAMESPACE LOSS SEED. Makes a network
 // interface `cable` in each (of `ip netns`), and carries packets between them in both directions. It drops a share LOSS
 // (0 to 1) of them, chosen at random. Prints "up" when the interfaces exist; runs until it is killed.

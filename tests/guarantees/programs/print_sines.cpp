@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Prints bits of the C library's own sine, cosine and arc tangent for many arguments, so that a test can see whether
 // the library's variant has changed.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Drives an s-bot with commands that depend on all frames so far. A frame that is answered twice, left out or out of
 // order changes the run, and so does another seed or parameter.
 

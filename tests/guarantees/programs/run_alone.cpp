@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // run_alone EXPERIMENT PLUGIN: a program that embeds runs. It runs an experiment with one controller for all teams. It
 // prints the state hash after the run, and after one more run with the next seed.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A stranger on the network: `send_bad_commands DOMAIN CLIENT [FOLDER OF AN IDENTITY]`. Sends every kind of bad
 // command, Join and Report with the id of the given client, about a thousand a second, until it is killed.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A long run in lockstep that measures the resources of server and clients: soak TICKS CONTROLLERS. Prints a table;
 // exit code 1 if memory, open files or threads grew after the first tenth.
 

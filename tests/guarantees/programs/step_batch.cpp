@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Steps a batch of an experiment's worlds, world i with the seed i, all commands being neutral.
 //   step_batch EXPERIMENT WORLDS TICKS THREADS
 // Prints the state hash of each world.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The same as step_world, as a shared library for load_library.c.
 
 #include <cstdint>

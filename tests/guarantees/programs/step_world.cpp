@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Steps the world of an experiment, with commands that are a function of robot and tick:
 // `step_world EXPERIMENT FROM TO [--load FILE] [--save FILE] [--threads N] [--act TICK]`.
 // FROM is the tick of the world after construction or loading. At the tick of --act, objects are spawned, moved,

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Drives in waves, away from near obstacles: sums of products and functions of the C library, whose last bits may
 // differ from one CPU to another.
 

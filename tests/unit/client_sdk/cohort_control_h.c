@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* Compiled as strict C99, with all warnings: the headers of programs that control a run or look on. */
 #include <cohort/cohort_observer.h>
 

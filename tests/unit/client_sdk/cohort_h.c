@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* Compiled as strict C99, with all warnings: all that a controller in C needs. */
 #include <cohort/cohort.h>
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Controllers that experiments configure without code.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Ids of different kinds are different types, so that what is mixed up does not compile.
 
 #include "server/core/ids.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "idl/messages/parse_schema.hpp"
 
 #include <gtest/gtest.h>

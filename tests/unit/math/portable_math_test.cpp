@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The functions of client_sdk/math compared with MPFR, which computes any number of digits.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/serving/control/requests/requester_slots.hpp"
 
 #include <gtest/gtest.h>

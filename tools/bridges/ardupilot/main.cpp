@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // cohort-ardupilot-bridge: ArduPilot's SITL drives robots of a simulation (docs/bridges/ardupilot.md).
 
 #include <memory>

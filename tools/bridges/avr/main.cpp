@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // cohort-avr-bridge: compiled images for AVR microcontrollers drive robots of a simulation (docs/bridges/avr.md).
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/bridges/avr/output_pins.hpp"
 
 #include <cstring>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // cohort-betaflight-bridge: Betaflight's SITL program flies quadcopters of a simulation (docs/bridges/betaflight.md).
 
 #include <filesystem>

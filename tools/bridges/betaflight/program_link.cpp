@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/bridges/betaflight/program_link.hpp"
 
 #include <arpa/inet.h>

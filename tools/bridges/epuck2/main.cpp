@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // cohort-epuck2-bridge: programs that use the WiFi interface of an e-puck2 drive robots of a simulation
 // (docs/bridges/epuck2.md).
 

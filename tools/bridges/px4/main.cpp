@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // cohort-px4-bridge: PX4, its SITL or its hardware, drives robots of a simulation (docs/bridges/px4.md).
 
 #include <CLI/Config.hpp>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // cohort-ros2-bridge: nodes of ROS 2 drive robots of a simulation (docs/ros2.md).
 
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/sdf/schema/yaml_sdf.hpp"
 #include "server/parsing/writing/write_world.hpp"

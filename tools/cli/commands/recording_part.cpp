@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/commands/recording_part.hpp"
 
 #include "tools/cli/common/terminal/replay_progress.hpp"

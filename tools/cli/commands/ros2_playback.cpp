@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/commands/ros2_playback.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/core/text.hpp"
 #include "server/parsing/files/sample_file.hpp"
 #include "server/sensing/readings/take_samples.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/common/command_tree.hpp"
 
 #include <CLI/CLI.hpp>

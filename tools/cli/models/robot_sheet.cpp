@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/models/robot_sheet.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/running/cpu_time.hpp"
 
 #include <sys/resource.h>

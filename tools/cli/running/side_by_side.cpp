@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/running/side_by_side.hpp"
 
 #include <fmt/format.h>

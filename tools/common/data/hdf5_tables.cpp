@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/common/data/hdf5_tables.hpp"
 
 #include <hdf5.h>

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Compares models as Cohort, PyBullet and MuJoCo read them, and their rest poses on a plane after some seconds."""
 
 import argparse

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Models as each engine reads them: joints, and groups of links that are connected by fixed joints.
 
 A group has the name of its parent joint; the name of the root group is ''. Values are in world axes, with every joint

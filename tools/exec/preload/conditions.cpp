@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Waits of threads for each other, with a time limit: condition variables; and waits for data of DDS.
 
 #include <errno.h>

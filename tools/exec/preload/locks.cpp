@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Semaphores, mutexes and read-write locks, with a time limit.
 
 #include <errno.h>

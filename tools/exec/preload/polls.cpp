@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Waits for descriptors, with a time limit.
 
 #include <errno.h>

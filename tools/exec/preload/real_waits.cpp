@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Waits that the library does not replace: they last as long as they ask for in real time, with a warning. Limits that
 // the program has computed from its own clock become such of the machine's.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Receiving from sockets, with the time limit that each may have.
 
 #include <errno.h>

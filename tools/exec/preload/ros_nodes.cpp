@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Nodes of ROS 2: what their executors wait by, and how many there are (rmw/rmw.h).
 
 #include "tools/exec/preload/turns.hpp"

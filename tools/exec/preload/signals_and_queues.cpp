@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Waits with a time limit for signals, and for message queues.
 
 #include <errno.h>

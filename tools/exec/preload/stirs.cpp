@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Calls by which a thread may wake another one: they go on as they are, and are noted.
 
 #include <pthread.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Threads and processes that the program starts.
 
 #include <errno.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Timers: of descriptors (timerfd), of signals and threads (timer_create), of the process (setitimer, alarm).
 
 #include <errno.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Waits that end in virtual time: in the page, and what ends them in this process.
 
 #include <errno.h>

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Cohort: a bit-reproducible simulator for groups of robots, in lockstep with their controllers.
 
     import cohort

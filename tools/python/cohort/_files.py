@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Folders and files that come with Cohort."""
 
 import difflib

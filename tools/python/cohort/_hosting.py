@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Functions that C++ calls to run controllers written in Python."""
 
 import contextlib

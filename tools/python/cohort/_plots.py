@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Figures with matplotlib, which is imported only when needed."""
 
 import numpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Many worlds of one experiment in this process."""
 
 from __future__ import annotations

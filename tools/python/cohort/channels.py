@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Channels: the named parts of a robot's observation and command."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Controllers as clients of a server, over DDS."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """The interface for authors of controllers: derive one class from Controller or TeamController."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Experiments: a world, robots in teams, their controllers, and a duration."""
 
 from __future__ import annotations

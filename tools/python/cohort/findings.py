@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Results of replays and comparisons of recordings."""
 
 import dataclasses

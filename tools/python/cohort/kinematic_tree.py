@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """The kinematic tree of a robot: its links, the joints between them, and where its sensors are.
 
 Links and joints are those of the model file, without joints that close loops. Values are in SI units. A pose of a frame

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """sin, exp, pow and similar functions for numbers and arrays, with bit-identical results on every processor.
 
 NumPy selects its implementations by the processor, so that results may differ in the last bit. The functions of this

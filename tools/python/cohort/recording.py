@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Recordings of runs, as arrays and tables, and comparisons of recordings."""
 
 import functools

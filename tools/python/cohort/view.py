@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Views of simulations in a browser."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/batch/batch.hpp"
 
 #include <nanobind/nanobind.h>
@@ -14,12 +15,12 @@
 #include <string>
 
 #include "client_sdk/python/hosting/unlocked.hpp"
+#include "server/viewing/picture.hpp"
 #include "tools/python/native/array_simulation.hpp"
 #include "tools/python/native/arrays.hpp"
 #include "tools/python/native/channels.hpp"
 #include "tools/python/native/one_user.hpp"
 #include "tools/python/native/parts.hpp"
-#include "server/viewing/picture.hpp"
 
 namespace cohort::python {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/python/native/channels.hpp"
 
 #include <nanobind/stl/string.h>

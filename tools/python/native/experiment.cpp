@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/description/experiment.hpp"
 
 #include <nanobind/nanobind.h>
@@ -20,11 +21,11 @@
 #include <vector>
 
 #include "client_sdk/python/hosting/unlocked.hpp"
-#include "tools/python/native/parts.hpp"
 #include "server/core/snapshot.hpp"
 #include "server/description/input_error.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/run/run_world.hpp"
+#include "tools/python/native/parts.hpp"
 
 namespace cohort::python {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/python/native/live_view.hpp"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <atomic>
@@ -12,8 +13,8 @@
 #include <thread>
 #include <vector>
 
-#include "tools/python/native/array_simulation.hpp"
 #include "server/viewing/scene_maker.hpp"
+#include "tools/python/native/array_simulation.hpp"
 #include "tools/view/messages/scene_publisher.hpp"
 #include "tools/view/source.hpp"
 #include "tools/view/web/web_server.hpp"

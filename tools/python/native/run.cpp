@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/shared_ptr.h>
@@ -16,11 +17,11 @@
 #include "client_sdk/hosting/plugin_loader.hpp"
 #include "client_sdk/python/hosting/python_team.hpp"
 #include "client_sdk/python/hosting/unlocked.hpp"
-#include "tools/python/native/interruption.hpp"
-#include "tools/python/native/parts.hpp"
 #include "server/recording/recorder.hpp"
 #include "server/run/in_process.hpp"
 #include "server/run/run_recorder.hpp"
+#include "tools/python/native/interruption.hpp"
+#include "tools/python/native/parts.hpp"
 
 namespace cohort::python {
 namespace {

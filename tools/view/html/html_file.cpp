@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/view/html/html_file.hpp"
 
 #include <openssl/evp.h>

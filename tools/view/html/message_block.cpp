@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/view/html/message_block.hpp"
 
 #include <openssl/evp.h>

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+
 """Writes rough_terrain.png, a height map of 65 x 65 pixels of 16 bits: hills of several sizes, flat at the edges. If it
 is 4 m wide and 0.25 m high, an s-bot can climb all of them. The output is the same every time."""
 

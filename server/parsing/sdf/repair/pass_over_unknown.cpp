@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/parsing/sdf/repair/pass_over_unknown.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/serving/control/requests/request_budget.hpp"
 
 #include <algorithm>

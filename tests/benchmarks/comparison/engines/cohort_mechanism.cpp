@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/description/world_in_code.hpp"
 #include "server/physics/make_world.hpp"
 #include "tests/benchmarks/comparison/engines/engines.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/benchmarks/comparison/lockstep/bench_client.hpp"
 
 #include <ctime>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/benchmarks/comparison/scenes/ray_field.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/benchmarks/comparison/scenes/sensing_scene.hpp"
 
 #include <algorithm>

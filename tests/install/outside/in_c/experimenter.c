@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* Controls and observes a run through the installed headers in C, each request once, and prints what it saw:
  * experimenter RECORDING. The server's domain is $COHORT_DOMAIN; it stands paused. Exit code 1 names what failed. */
 

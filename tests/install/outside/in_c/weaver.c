@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /* weaver.cpp in C. */
 
 #include <cohort/cohort.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // cohort-ros2-services: the endpoints of services for clients on Fast DDS (services/service_frames.hpp).
 
 #include <poll.h>

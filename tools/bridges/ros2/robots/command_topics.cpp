@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/bridges/ros2/robots/command_topics.hpp"
 
 #include <algorithm>
@@ -6,12 +7,12 @@
 #include <utility>
 #include <variant>
 
-#include "idl/text/printable.hpp"
 #include "idl/dds/ros2/ros_names.hpp"
-#include "server/messages/command_messages.hpp"
 #include "idl/messages/ros_navigation_messages.hpp"
 #include "idl/messages/ros_std_messages.hpp"
 #include "idl/messages/ros_type_hash.hpp"
+#include "idl/text/printable.hpp"
+#include "server/messages/command_messages.hpp"
 #include "tools/bridges/ros2/robots/publications.hpp"
 #include "tools/bridges/ros2/robots/trajectory.hpp"
 

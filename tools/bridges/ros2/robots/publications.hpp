@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <chrono>
@@ -8,11 +9,11 @@
 #include <vector>
 
 #include "client_sdk/include/cohort/client.hpp"
-#include "idl/include/cohort/types.hpp"
 #include "idl/dds/ros2/ros_participant.hpp"
-#include "server/messages/device_messages.hpp"
+#include "idl/include/cohort/types.hpp"
 #include "idl/messages/ros_navigation_messages.hpp"
 #include "server/core/periodic_ticks.hpp"
+#include "server/messages/device_messages.hpp"
 #include "tools/bridges/ros2/robots/drive.hpp"
 #include "tools/bridges/ros2/robots/frame_tree.hpp"
 #include "tools/bridges/ros2/robots/settings.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/bridges/ros2/robots/settings.hpp"
 
 #include "idl/dds/ros2/ros_names.hpp"

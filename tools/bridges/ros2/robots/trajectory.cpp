@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/bridges/ros2/robots/trajectory.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "idl/text/printable.hpp"
 #include "idl/messages/ros_messages.hpp"
+#include "idl/text/printable.hpp"
 
 namespace cohort::ros2 {
 

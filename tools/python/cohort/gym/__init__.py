@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Reinforcement learning environments for Gymnasium (`VectorEnv`, `Env`) and PettingZoo (`parallel_env`).
 
     import cohort, cohort.gym

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Tasks with an id for `gymnasium.make` and `gymnasium.make_vec`, such as `cohort/ObstacleAvoidance-v0`."""
 
 import gymnasium

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: Apache-2.0
+
 """Common parts of the environments: worlds, observed and commanded channels, rewards and seeds."""
 
 import numpy

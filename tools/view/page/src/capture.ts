@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /** Offers a file to the browser's downloads. */
 export function download(content: Blob, name: string): void {
   const link = document.createElement("a");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { none, type Scene, type SceneEntity } from "./data/messages";
 
 /** The entities of a scene that the user has selected, and those that the user has hidden. */

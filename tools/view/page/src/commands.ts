@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { defaultSteering, readSteer } from "./hands/steering";
 
 /** A command of the console. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { download, Film, screenshot } from "./capture";
 import { type Command, type Commands, command } from "./commands";
 import type { Connection, ViewRequest } from "./data/connection";

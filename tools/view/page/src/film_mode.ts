@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Box3, Sphere, Vector3 } from "three";
 import type { Connection } from "./data/connection";
 import type { Topic } from "./data/messages";

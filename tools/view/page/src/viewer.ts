@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Plane, Quaternion, Raycaster, Sphere, Vector2, Vector3 } from "three";
 import { Chosen } from "./chosen";
 import {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { SceneChannel } from "./messages";
 
 /** Returns the index of a channel's first value among the values of all channels. */

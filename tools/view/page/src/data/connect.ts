@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Connection, Handlers } from "./connection";
 import { FileConnection } from "./file_connection";
 import { blocksOf } from "./packed";

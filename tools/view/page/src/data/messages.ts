@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The messages of server/viewing/scene_messages.hpp and tools/view/messages/view_messages.hpp, as decoded by
 // rosmsg2-serialization.
 

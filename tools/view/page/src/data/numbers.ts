@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /** Returns a number with this many decimals, and never a negative zero. */
 export function fixed(value: number, digits: number): string {
   const text = value.toFixed(digits);

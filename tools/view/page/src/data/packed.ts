@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Unpacks the data of a page that contains a recording, which tools/view/html/ has packed.
 
 export interface Packed {

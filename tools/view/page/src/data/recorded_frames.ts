@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { type Packed, readMessages, readTable, type Table } from "./packed";
 
 /** Messages of a frame by topic, packed as CDR. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { type Command, type Commands, command } from "../commands";
 import { valueNames } from "../data/channels";
 import type { Connection } from "../data/connection";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Quaternion, Vector3 } from "three";
 import { type Command, command } from "../commands";
 import type { Connection, ViewRequest } from "../data/connection";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { valueNames } from "../data/channels";
 import type { SceneChannel, SceneDrive } from "../data/messages";
 

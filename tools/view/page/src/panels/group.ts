@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Quaternion, Vector3 } from "three";
 import { valuesOfRobot } from "../data/channels";
 import { none, type SceneModel, type SceneRobot } from "../data/messages";

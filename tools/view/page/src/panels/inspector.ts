@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { firstValue, type Value, valuesOfRobot } from "../data/channels";
 import { none, type SceneEntity, type SceneModel, type SceneRobot } from "../data/messages";
 import { numberText } from "../data/numbers";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Commands } from "../commands";
 
 const mouse: readonly (readonly [string, string])[] = [

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { seconds, type ViewEvent, type ViewStatus } from "../data/messages";
 import { element } from "../element";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { seconds, type ViewStatus } from "../data/messages";
 import { element } from "../element";
 import { clockText } from "./time_bar";

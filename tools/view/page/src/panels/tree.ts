@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { element } from "../element";
 import type { Viewer } from "../viewer";
 import { type Row, rowsOf } from "./tree_rows";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { none, type Scene, type SceneModel } from "../data/messages";
 
 /** A row of the tree: a group of entities, an entity, or a part of one. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Box3, Matrix4, Quaternion, Vector3 } from "three";
 import { none } from "../data/messages";
 import { growBy, unionOf } from "./framing";

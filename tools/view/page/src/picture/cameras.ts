@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { type Box3, type PerspectiveCamera, Quaternion, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Keeper, type Lens, lensOf, unionOf } from "./framing";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Box3, BufferAttribute, Group, InstancedBufferGeometry, Matrix4, Mesh, ShaderMaterial } from "three";
 import { growBy } from "./framing";
 import { type Instances, placeDeclarations } from "./instances";

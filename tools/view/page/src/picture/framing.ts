@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Box3, type Matrix4, Vector3 } from "three";
 
 /** The position of a camera, and the point at which it looks. */

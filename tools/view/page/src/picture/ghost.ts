@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Group, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
 import { type Scene, ShapeRole } from "../data/messages";
 import { linkGeometry, matrixOf } from "./shapes";

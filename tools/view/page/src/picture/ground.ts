@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Color, Mesh, MeshLambertMaterial, PlaneGeometry, Quaternion, Vector3 } from "three";
 
 const size = 400; // [m], at the least

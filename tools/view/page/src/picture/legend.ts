@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Color } from "three";
 import { none, type Scene } from "../data/messages";
 import { overlayColors } from "./overlays";

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /** A level of picture quality. */
 export interface Level {
   /** Resolution relative to the screen's. */

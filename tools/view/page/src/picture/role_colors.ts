@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { none, type Scene, type SceneModel, type SceneShape } from "../data/messages";
 import { hasTexture } from "./textures";
 

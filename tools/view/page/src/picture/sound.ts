@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { type Camera, Quaternion, Vector3 } from "three";
 import type { SceneSignals } from "../data/messages";
 import type { Poses } from "./poses";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Color, SRGBColorSpace } from "three";
 import { none, type Scene, type SceneModel, type SceneShape, ShapeKind, ShapeRole } from "../data/messages";
 import { hasTexture } from "./textures";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { RepeatWrapping, SRGBColorSpace, Texture } from "three";
 import { none, type Scene, type SceneMeshTexture, type SceneShape } from "../data/messages";
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 /** A value over time, with ascending times [s]. Missing values are NaN. */
 export interface Curve {
   times: number[];

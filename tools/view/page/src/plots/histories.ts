@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { commandedPrefix } from "../data/channels";
 import type { Answer, ViewRequest } from "../data/connection";
 import { between, type Curve, firstAt, joined, reduced } from "./curve";

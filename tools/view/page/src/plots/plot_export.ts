@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { commandedPrefix } from "../data/channels";
 import { numberText } from "../data/numbers";
 import { between } from "./curve";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import "./plots.css";
 import { download } from "../capture";
 import { commandedPrefix, type Value, valuesMeant, valuesOfRobot } from "../data/channels";

@@ -28,14 +28,16 @@ struct ExperimentFiles {
   std::vector<std::string> last_model_folders;
   std::vector<std::string> folders;   ///< folders that were searched and exist
   std::vector<ExperimentFile> files;  ///< in ascending order of paths
+  std::vector<std::string> settings;  ///< values that replace those of the files, as PATH=VALUE
   bool operator==(const ExperimentFiles&) const = default;
   static constexpr const char* type = "cohort_msgs/msg/ExperimentFiles";
+  static constexpr std::size_t least_fields = 8;  // protocol 1.3
   static constexpr auto fields = std::tuple(
       field("seed", &ExperimentFiles::seed), field("duration_ns", &ExperimentFiles::duration_ns),
       field("experiment", &ExperimentFiles::experiment), field("working_folder", &ExperimentFiles::working_folder),
       field("model_path", &ExperimentFiles::model_path),
       field("last_model_folders", &ExperimentFiles::last_model_folders), field("folders", &ExperimentFiles::folders),
-      field("files", &ExperimentFiles::files));
+      field("files", &ExperimentFiles::files), field("settings", &ExperimentFiles::settings));
 };
 
 }  // namespace cohort::messages

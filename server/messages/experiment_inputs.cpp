@@ -16,7 +16,8 @@ ExperimentFiles experiment_files(const description::KeptFiles& kept, std::uint64
                           .model_path = kept.model_path,
                           .last_model_folders = kept.last_model_folders,
                           .folders = kept.folders,
-                          .files = {}};
+                          .files = {},
+                          .settings = kept.settings};
   message.files.reserve(kept.files.size());
   for (const description::KeptFile& file : kept.files)
     message.files.push_back({file.path, {file.bytes.begin(), file.bytes.end()}});
@@ -40,6 +41,7 @@ description::KeptFiles kept_files(const ExperimentFiles& message) {
                               .working_folder = message.working_folder,
                               .model_path = message.model_path,
                               .last_model_folders = message.last_model_folders,
+                              .settings = message.settings,
                               .files = {},
                               .folders = message.folders};
   kept.files.reserve(message.files.size());

@@ -98,6 +98,7 @@ StringMap entries_of(const description::KeptFiles& inputs) {
                        {"files", std::to_string(inputs.files.size())}};
   add_list(entries, "last_model_folder", inputs.last_model_folders);
   add_list(entries, "folder", inputs.folders);
+  add_list(entries, "setting", inputs.settings);
   return entries;
 }
 
@@ -120,6 +121,7 @@ description::KeptFiles inputs_of(const McapReader& reader, const std::filesystem
   inputs.model_path = entries["model_path"];
   inputs.last_model_folders = list_of(entries, "last_model_folder");
   inputs.folders = list_of(entries, "folder");
+  inputs.settings = list_of(entries, "setting");
   for (const AttachmentIndex& index : reader.attachments()) {
     if (!index.name.starts_with(input_prefix)) continue;
     const Attachment attachment = reader.attachment(index);

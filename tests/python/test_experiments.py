@@ -2,6 +2,8 @@
 
 """Experiments that are made and run in Python."""
 
+import pickle
+
 import cohort
 import pytest
 
@@ -100,6 +102,18 @@ def test_results_of_seeds_are_a_table():
 def test_a_run_is_recorded(tmp_path, cohort_program):
     made().run(Forward, record=tmp_path / "run.mcap")
     assert "identical" in cohort_program("replay", str(tmp_path / "run.mcap"), "--verify")
+
+
+def test_values_replace_those_of_the_experiment_and_its_world(tmp_path, cohort_program):
+    experiment = made()
+    changed = experiment.with_values({"duration": 1, "teams.explorers.period": 2, "world.gravity": [0, 0, -1.6]})
+    assert (changed.duration, changed.teams[0].period) == (1.0, 2)
+    result = changed.run(Forward, record=tmp_path / "run.mcap")
+    assert result.state_hash == pickle.loads(pickle.dumps(changed)).run(Forward).state_hash
+    assert result.state_hash != experiment.with_values({"duration": 1, "teams.explorers.period": 2}).run(Forward).state_hash
+    assert "identical" in cohort_program("replay", str(tmp_path / "run.mcap"), "--verify")
+    with pytest.raises(cohort.InputError, match="no item 'explorer'; did you mean 'explorers'?"):
+        experiment.with_values({"teams.explorer.period": 2})
 
 
 def test_a_world_is_made_with_the_keys_of_sdf():

@@ -20,6 +20,7 @@
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/world/physics_settings.hpp"
 #include "server/parsing/world/read_world.hpp"
+#include "server/parsing/yaml/setting.hpp"
 #include "server/parsing/yaml/yaml_document.hpp"
 #include "server/parsing/yaml/yaml_map.hpp"
 #include "server/parsing/yaml/yaml_values.hpp"
@@ -92,6 +93,7 @@ class ExperimentReader {
   Experiment read_without_experiment(std::optional<std::uint64_t> seed,
                                      std::optional<std::chrono::nanoseconds> duration);
   YamlPtr load();
+  YamlPtr with_settings(YamlPtr document);
   void read_world_of(const YamlMap& top, const std::vector<LaterObject>& later);
   void read_step(const YamlMap& top);
 
@@ -100,12 +102,13 @@ class ExperimentReader {
   Experiment experiment_;
   std::vector<Problem> problems_;
   YamlReport report_;
+  std::vector<std::string> settings_of_world_;
   bool world_is_read_ = false;
 };
 
 Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration) {
   if (kind_of_file(input_, experiment_.file) == FileKind::sdf) return read_without_experiment(seed, duration);
-  const YamlPtr document = load();
+  const YamlPtr document = with_settings(load());
   const YamlMap top = map_of_experiment(*document, report_);
   experiment_.name = printable(experiment_.file.stem().string());
 
@@ -141,6 +144,7 @@ Experiment ExperimentReader::read_without_experiment(std::optional<std::uint64_t
           input_.why_unreadable(input_.absolute(experiment_.file)))  // the path under which it is read and kept
     throw InputError({{experiment_.file, 0, "", std::move(*reason)}});
   experiment_.name = printable(experiment_.file.stem().string());
+  input_.set_in(experiment_.file, input_.settings());
   experiment_.seed = seed.value_or(experiment_.seed);
   experiment_.duration = duration.value_or(duration_without_experiment);
   experiment_.world = read_world_or_standing_model(input_, experiment_.file, experiment_.seed, last_model_folders_);
@@ -157,6 +161,18 @@ YamlPtr ExperimentReader::load() {
   return document.root;
 }
 
+// Leaves the settings below `world` to the file that it names.
+YamlPtr ExperimentReader::with_settings(YamlPtr document) {
+  for (const std::string& text : input_.settings()) {
+    const Setting setting = parse_setting(text);
+    if (setting.path.front() == "world" && setting.path.size() > 1)
+      settings_of_world_.push_back(text);
+    else
+      document = with_setting(document, setting, report_);
+  }
+  return document;
+}
+
 void ExperimentReader::read_world_of(const YamlMap& top, const std::vector<LaterObject>& later) {
   const std::optional<std::string> name = top.text("world");
   if (!name) return;
@@ -165,6 +181,7 @@ void ExperimentReader::read_world_of(const YamlMap& top, const std::vector<Later
     top.problem("world", *reason + ": '" + world.string() + "'");
     return;
   }
+  input_.set_in(world, settings_of_world_);
   try {
     experiment_.world = read_world(input_, world, experiment_.seed, last_model_folders_, later);
     world_is_read_ = true;
@@ -211,21 +228,26 @@ void open_files(InputFiles& disk, const fs::path& file, const std::vector<fs::pa
 
 Experiment read_experiment(const fs::path& named, std::optional<std::uint64_t> seed,
                            std::optional<std::chrono::nanoseconds> duration,
-                           const std::vector<fs::path>& last_model_folders, Xacro xacro) {
+                           const std::vector<fs::path>& last_model_folders, Xacro xacro,
+                           const std::vector<std::string>& settings) {
   const fs::path file = without_links(named);
   InputFiles disk;
   open_files(disk, file, last_model_folders, xacro);
+  disk.set(settings);
   return read_from(disk, file, seed, duration, last_model_folders);
 }
 
 Experiment read_experiment_with_joint_motors(const fs::path& named, std::optional<std::uint64_t> seed,
                                              std::optional<std::chrono::nanoseconds> duration,
-                                             const std::vector<fs::path>& last_model_folders, Xacro xacro) {
+                                             const std::vector<fs::path>& last_model_folders, Xacro xacro,
+                                             const std::vector<std::string>& settings) {
   const fs::path file = without_links(named);
   InputFiles disk;
   open_files(disk, file, last_model_folders, xacro);
+  disk.set(settings);
   Experiment plain = read_from(disk, file, seed, duration, last_model_folders);
-  if (!holds_lone_model(disk, file)) return plain;
+  // The settings are of the file itself, and not of the one that would include it.
+  if (!settings.empty() || !holds_lone_model(disk, file)) return plain;
   const auto text = text_with_joint_motors(plain.world, file.filename().string());
   if (!text) return plain;
   const fs::path with_motors = file.parent_path() / (file.stem().string() + " (joint motors).sdf");

@@ -82,7 +82,10 @@ InputFiles::InputFiles() {
 }
 
 InputFiles::InputFiles(std::shared_ptr<const KeptFiles> kept)
-    : source_(std::move(kept)), working_folder_(source_->working_folder), model_path_(source_->model_path) {
+    : source_(std::move(kept)),
+      working_folder_(source_->working_folder),
+      model_path_(source_->model_path),
+      settings_(source_->settings) {
   for (const std::string& folder : source_->folders) folders_.insert(key_of(folder));
   // Recordings from before keys were normalised have paths with "..". An exact match of the key has priority.
   for (const bool is_key : {true, false})
@@ -100,6 +103,16 @@ void InputFiles::add(const fs::path& file, std::string bytes) { files_[key_of(fi
 void InputFiles::add_expanded(const fs::path& file, std::string bytes) {
   add(file, std::move(bytes));
   expanded_.insert(key_of(file));
+}
+
+void InputFiles::set_in(const fs::path& file, std::vector<std::string> settings) {
+  settings_of_[key_of(file)] = std::move(settings);
+}
+
+const std::vector<std::string>& InputFiles::settings_of(const fs::path& file) const {
+  static const std::vector<std::string> none;
+  const auto found = settings_of_.find(key_of(file));
+  return found == settings_of_.end() ? none : found->second;
 }
 
 fs::path InputFiles::absolute(const fs::path& path) const { return (working_folder_ / path).lexically_normal(); }
@@ -196,6 +209,7 @@ KeptFiles InputFiles::kept() const {
   if (source_) kept = *source_;
   kept.working_folder = working_folder_.string();
   kept.model_path = model_path_;
+  kept.settings = settings_;
   kept.folders.assign(folders_.begin(), folders_.end());
   kept.files.reserve(kept.files.size() + files_.size());
   for (const auto& [path, bytes] : files_) kept.files.push_back({path, bytes});

@@ -46,6 +46,13 @@ class InputFiles {
   void add_expanded(const std::filesystem::path& file, std::string bytes);
   bool is_expanded(const std::filesystem::path& file) const { return expanded_.contains(key_of(file)); }
 
+  /// Replaces the settings of the experiment: values that a user sets in place of those of its files, as PATH=VALUE.
+  void set(std::vector<std::string> settings) { settings_ = std::move(settings); }
+  const std::vector<std::string>& settings() const { return settings_; }
+  /// Sets values in one of the files when it is read. Their paths begin at the top of this file.
+  void set_in(const std::filesystem::path& file, std::vector<std::string> settings);
+  const std::vector<std::string>& settings_of(const std::filesystem::path& file) const;
+
   /// Returns why the file cannot be read, such as "there is no such file"; nothing if it can.
   std::optional<std::string> why_unreadable(const std::filesystem::path& file) const;
   /// Returns the content, whose address does not change during the lifetime of this. Throws std::runtime_error with the
@@ -92,6 +99,8 @@ class InputFiles {
   std::set<std::string> folders_;             // keys, as the next
   std::set<std::string> expanded_;
   bool lacks_file_ = false;
+  std::vector<std::string> settings_;
+  std::map<std::string, std::vector<std::string>> settings_of_;  // by key
 };
 
 }  // namespace cohort::parsing

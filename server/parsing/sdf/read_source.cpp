@@ -20,6 +20,7 @@
 #include "server/parsing/sdf/repair/what_is_seen.hpp"
 #include "server/parsing/sdf/schema/missing_effects.hpp"
 #include "server/parsing/sdf/schema/yaml_sdf.hpp"
+#include "server/parsing/sdf/set_in_sdf.hpp"
 #include "server/parsing/sdf/tree/xml_edit.hpp"
 #include "server/parsing/sdf/urdf/urdf_file.hpp"
 
@@ -50,6 +51,8 @@ bool SourceReader::read(SdfFile& file, bool is_included) {
   set_file(*source, &file);
   file.tree = *std::move(source);
   if (!convert(file)) return false;
+  for (const std::string& setting : input_.settings_of(file.path))
+    set_in_sdf(file.tree, parse_setting(setting), problems_);
   tell_of_missing_effects(file.tree, warnings_);
   if (file.is_foreign) make_readable(file, is_included);
   warn_of_repeated(file.tree, ElementSchema::root(), "");

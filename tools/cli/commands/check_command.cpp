@@ -25,10 +25,11 @@ void print_world(const description::World& world) {
                    std::chrono::duration<double, std::milli>(world.step).count()));
 }
 
-int check(const std::filesystem::path& named, parsing::Xacro xacro, bool loads_controllers, Log& log) {
+int check(const std::filesystem::path& named, parsing::Xacro xacro, const std::vector<std::string>& settings,
+          bool loads_controllers, Log& log) {
   const std::filesystem::path file = experiment_called(named);
   try {
-    if (parsing::kind_of_file(file) == parsing::FileKind::sdf) {
+    if (parsing::kind_of_file(file) == parsing::FileKind::sdf && settings.empty()) {
       description::Experiment experiment;
       experiment.file = file;
       experiment.world = parsing::read_world_or_model(file, experiment.seed, installed_model_folders(), xacro);
@@ -37,7 +38,8 @@ int check(const std::filesystem::path& named, parsing::Xacro xacro, bool loads_c
       print_world(experiment.world);
       if (parsing::holds_lone_model(file)) show(robot_sheet(file, named.string(), xacro));
     } else {
-      const description::Experiment experiment = parsing::read_experiment(file, {}, {}, installed_model_folders());
+      const description::Experiment experiment =
+          parsing::read_experiment(file, {}, {}, installed_model_folders(), xacro, settings);
       log.warnings(experiment.world.warnings);
       const Simulation built(experiment, 1);
       if (loads_controllers) {
@@ -71,6 +73,7 @@ Subcommand add_check(CommandLine app) {
     std::filesystem::path file{};
     bool loads_controllers = false;
     bool runs_xacro = false;
+    std::vector<std::string> settings{};
   };
   const auto command = std::make_shared<CheckCommand>();
   CommandLine line =
@@ -80,11 +83,13 @@ Subcommand add_check(CommandLine app) {
       .required()
       .type_name("");
   add_reading_options(line, command->runs_xacro);
+  add_set_option(line, command->settings);
   line.add_flag("--load-controllers", command->loads_controllers,
                 "Also load the controller plugins and start the controllers, which executes their code");
   line.footer("Example: cohort check worlds/arenas/obstacles.sdf");
   return {line, [command](Log& log, const std::atomic<bool>&) {
-            return check(command->file, xacro_of(command->runs_xacro), command->loads_controllers, log);
+            return check(command->file, xacro_of(command->runs_xacro), command->settings, command->loads_controllers,
+                         log);
           }};
 }
 

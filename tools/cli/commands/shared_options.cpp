@@ -59,6 +59,14 @@ void add_reading_options(CommandLine line, bool& runs_xacro) {
                 "Expand FILE with xacro, which executes code in FILE: use this only for trusted files");
 }
 
+void add_set_option(CommandLine line, std::vector<std::string>& settings) {
+  line.add_option("--set", settings,
+                  "Replace a value of the experiment or its world, such as teams.swarm.parameters.gain=2 or "
+                  "'world.gravity=[0, 0, -1.6]'; may be repeated")
+      .one_value()
+      .type_name("PATH=VALUE");
+}
+
 void add_robots_of_recording(CommandLine line, std::vector<std::string>& robots) {
   line.add_option("--robots", robots, "Robots to include, selected as with --robots of 'cohort host' (default: all)")
       .comma_separated()

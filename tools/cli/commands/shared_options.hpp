@@ -40,6 +40,9 @@ void add_secure_option(CommandLine line, std::filesystem::path& folder, const st
 void add_reading_options(CommandLine line, bool& runs_xacro);
 inline parsing::Xacro xacro_of(bool runs_xacro) { return runs_xacro ? parsing::Xacro::run : parsing::Xacro::refused; }
 
+/// Adds the option that replaces values of an experiment or its world. Each text is PATH=VALUE.
+void add_set_option(CommandLine line, std::vector<std::string>& settings);
+
 /// The robots that a client drives, and its connection.
 struct ClientSide {
   std::vector<std::string> robots{};  ///< selectors

@@ -212,6 +212,19 @@ class Experiment:
         experiment._classes = self._classes
         return experiment
 
+    def with_values(self, values: dict[str, Any]) -> Experiment:
+        """Returns the same experiment with other values, by their paths in its file or below `world`.
+
+            experiment.with_values({"teams.explorers.parameters.gain": 2.0, "world.gravity": [0, 0, -1.6]})
+
+        The steps of a path are keys; an item of a list has its name or its index. Missing keys are added. Raises
+        `cohort.InputError` for a value that the experiment cannot have, and `ValueError` if it was not read from files.
+        """
+        settings = [f"{path}={json.dumps(value, cls=_PathEncoder)}" for path, value in values.items()]
+        experiment = self._of(self._native.with_settings(settings))
+        experiment._classes = self._classes
+        return experiment
+
     @property
     def name(self) -> str:
         """Name of its file, without the extension."""

@@ -9,6 +9,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -71,7 +72,21 @@ nb::tuple kept_files_of(const Experiment& experiment) {
   for (const description::KeptFile& file : kept.files)
     files.append(nb::make_tuple(file.path, nb::bytes(file.bytes.data(), file.bytes.size())));
   return nb::make_tuple(kept.experiment, kept.working_folder, kept.model_path, kept.last_model_folders, kept.folders,
-                        files, experiment.seed, experiment.duration.count());
+                        files, experiment.seed, experiment.duration.count(), kept.settings);
+}
+
+// Reads the experiment again with further settings. Throws std::invalid_argument if it was not read from files.
+ExperimentPtr with_settings(const Experiment& experiment, const std::vector<std::string>& settings) {
+  if (experiment.inputs == nullptr) throw std::invalid_argument("this experiment was not read from files");
+  auto inputs = std::make_shared<description::KeptFiles>(*experiment.inputs);
+  inputs->settings.insert(inputs->settings.end(), settings.begin(), settings.end());
+  const auto sets = [&](const char* key) {
+    return std::ranges::any_of(settings, [&](const std::string& text) { return text.starts_with(key); });
+  };
+  const auto seed = sets("seed=") ? std::nullopt : std::optional(experiment.seed);
+  const auto duration = sets("duration=") ? std::nullopt : std::optional(experiment.duration);
+  const Unlocked unlocked;
+  return std::make_shared<const Experiment>(parsing::read_experiment(inputs, seed, duration));
 }
 
 ExperimentPtr read_kept_files(const nb::tuple& kept) {
@@ -87,6 +102,7 @@ ExperimentPtr read_kept_files(const nb::tuple& kept) {
   }
   const auto seed = nb::cast<std::uint64_t>(kept[6]);
   const std::chrono::nanoseconds duration(nb::cast<std::int64_t>(kept[7]));
+  inputs->settings = nb::cast<std::vector<std::string>>(kept[8]);
   const Unlocked unlocked;
   return std::make_shared<const Experiment>(parsing::read_experiment(inputs, seed, duration));
 }
@@ -116,6 +132,7 @@ void add_experiment(nb::module_& module) {
                   nb::arg("model_folders"))
       .def("kept_files", &kept_files_of)
       .def_static("read_kept_files", &read_kept_files, nb::arg("kept"))
+      .def("with_settings", &with_settings, nb::arg("settings"))
       .def("with_seed",
            [](const ExperimentPtr& experiment, std::uint64_t seed) { return session::with_seed(experiment, seed); })
       .def_ro("name", &Experiment::name)

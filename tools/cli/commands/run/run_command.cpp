@@ -118,8 +118,8 @@ description::Experiment read(const RunCommand& command, const std::filesystem::p
   auto* const read_file =
       is_looked_at ? parsing::read_experiment_with_joint_motors : static_cast<ReadFile*>(parsing::read_experiment);
   const Stopwatch reading;
-  description::Experiment experiment =
-      read_file(file, command.seed, duration, installed_model_folders(), xacro_of(command.runs_xacro));
+  description::Experiment experiment = read_file(file, command.seed, duration, installed_model_folders(),
+                                                 xacro_of(command.runs_xacro), command.settings);
   set_recorded(experiment, command.record);
   if (!command.is_part) log.warnings(experiment.world.warnings);
   log.info(

@@ -47,6 +47,7 @@ void add_run_options(CommandLine line, RunCommand& command, LogFlags& flags) {
               "runs")
           .excludes(seed)
           .type_name("A..B[,...]");
+  add_set_option(line, command.settings);
   line.add_option_function<std::string>(
           "--speed",
           [&command](const std::string& speed) { command.speed = speed == "max" ? 0.0 : *parse_real(speed); },

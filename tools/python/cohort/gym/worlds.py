@@ -175,8 +175,11 @@ class Worlds:
         if not numpy.isfinite(actions).all():
             env, robot, value = (int(each[0]) for each in numpy.nonzero(~numpy.isfinite(actions)))
             raise ValueError(f"the action of environment {env}, robot {self.names[robot]}, value {value} is not finite")
-        self.state.commands[:, :, self._command_places] = numpy.minimum(numpy.maximum(actions, lower), upper)
         state = self.state
+        if isinstance(self._command_places, slice):  # without a copy
+            numpy.clip(actions, lower, upper, out=state.commands[:, :, self._command_places])
+        else:
+            state.commands[:, :, self._command_places] = numpy.clip(actions, lower, upper)
         numpy.copyto(state.last_poses, state.poses)
         self.batch.step(self._ticks, which)
         state.steps += 1 if which is None else which

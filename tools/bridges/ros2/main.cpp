@@ -7,8 +7,8 @@
 #include <string>
 
 #include "client_sdk/include/cohort/control.hpp"
-#include "client_sdk/src/standard_streams.hpp"
 #include "idl/dds/ros2/ros_names.hpp"
+#include "idl/text/standard_streams.hpp"
 #include "server/messages/experiment_inputs.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "tools/bridges/common/bridge_program.hpp"

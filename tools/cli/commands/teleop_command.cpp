@@ -11,7 +11,7 @@
 
 #include "client_sdk/include/cohort/control.hpp"
 #include "client_sdk/src/attachment.hpp"
-#include "client_sdk/src/domains.hpp"
+#include "idl/text/domains.hpp"
 #include "server/messages/experiment_inputs.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "tools/cli/commands/commands.hpp"

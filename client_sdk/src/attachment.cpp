@@ -15,10 +15,10 @@
 #include "client_sdk/src/frame_queue.hpp"
 #include "client_sdk/src/network_clock.hpp"
 #include "client_sdk/src/robot_descriptions.hpp"
-#include "client_sdk/src/standard_streams.hpp"
 #include "client_sdk/src/this_process.hpp"
 #include "idl/dds/transport.hpp"
 #include "idl/text/printable.hpp"
+#include "idl/text/standard_streams.hpp"
 
 namespace cohort {
 namespace {

@@ -12,7 +12,7 @@
 #include "client_sdk/src/claims.hpp"
 #include "client_sdk/src/hand_over.hpp"
 #include "client_sdk/src/loop_host.hpp"
-#include "client_sdk/src/standard_streams.hpp"
+#include "idl/text/standard_streams.hpp"
 
 namespace cohort {
 namespace {

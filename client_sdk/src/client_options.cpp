@@ -5,7 +5,7 @@
 #include "client_sdk/include/cohort/client.hpp"
 #include "client_sdk/include/cohort/control.hpp"
 #include "client_sdk/include/cohort/observer.hpp"
-#include "client_sdk/src/domains.hpp"
+#include "idl/text/domains.hpp"
 
 namespace cohort {
 namespace {

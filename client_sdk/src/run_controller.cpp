@@ -7,8 +7,8 @@
 
 #include "client_sdk/include/cohort/client.hpp"
 #include "client_sdk/src/attachment.hpp"
-#include "client_sdk/src/domains.hpp"
-#include "client_sdk/src/standard_streams.hpp"
+#include "idl/text/domains.hpp"
+#include "idl/text/standard_streams.hpp"
 
 namespace cohort {
 namespace {

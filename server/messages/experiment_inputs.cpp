@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace cohort::messages {
 
@@ -24,29 +26,29 @@ ExperimentFiles experiment_files(const description::KeptFiles& kept, std::uint64
   return message;
 }
 
-description::KeptFiles kept_files(const ExperimentFiles& message) {
+description::KeptFiles kept_files(cohort::ExperimentFiles files) {
   const auto is_absolute = [](const std::string& path) { return path.starts_with('/'); };
   const auto check = [](bool is_right, const std::string& wrong) {
-    if (!is_right) throw CdrError("invalid experiment files: " + wrong);
+    if (!is_right) throw std::invalid_argument("invalid experiment files: " + wrong);
   };
-  check(!message.experiment.empty(), "the path of the experiment is missing");
-  check(message.duration_ns > 0, "the duration is not positive");
-  check(is_absolute(message.working_folder), "the working folder is not absolute");
-  check(std::ranges::all_of(message.folders, is_absolute), "a folder is not absolute");
-  check(std::ranges::all_of(message.files, is_absolute, &ExperimentFile::path), "a file's path is not absolute");
-  check(std::ranges::adjacent_find(message.files, std::ranges::greater_equal{}, &ExperimentFile::path) ==
-            message.files.end(),
+  check(!files.experiment.empty(), "the path of the experiment is missing");
+  check(files.duration.count() > 0, "the duration is not positive");
+  check(is_absolute(files.working_folder), "the working folder is not absolute");
+  check(std::ranges::all_of(files.folders, is_absolute), "a folder is not absolute");
+  check(std::ranges::all_of(files.files, is_absolute, &cohort::ExperimentFile::path), "a file's path is not absolute");
+  check(std::ranges::adjacent_find(files.files, std::ranges::greater_equal{}, &cohort::ExperimentFile::path) ==
+            files.files.end(),
         "the files are not unique and sorted by path");
-  description::KeptFiles kept{.experiment = message.experiment,
-                              .working_folder = message.working_folder,
-                              .model_path = message.model_path,
-                              .last_model_folders = message.last_model_folders,
-                              .settings = message.settings,
+  description::KeptFiles kept{.experiment = std::move(files.experiment),
+                              .working_folder = std::move(files.working_folder),
+                              .model_path = std::move(files.model_path),
+                              .last_model_folders = std::move(files.last_model_folders),
+                              .settings = std::move(files.settings),
                               .files = {},
-                              .folders = message.folders};
-  kept.files.reserve(message.files.size());
-  for (const ExperimentFile& file : message.files)
-    kept.files.push_back({file.path, {file.data.begin(), file.data.end()}});
+                              .folders = std::move(files.folders)};
+  kept.files.reserve(files.files.size());
+  for (cohort::ExperimentFile& file : files.files)
+    kept.files.push_back({std::move(file.path), std::move(file.content)});
   return kept;
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 
+#include "idl/include/cohort/types.hpp"
 #include "idl/messages/experiment_files.hpp"
 #include "server/description/kept_files.hpp"
 
@@ -13,8 +14,8 @@ namespace cohort::messages {
 ExperimentFiles experiment_files(const description::KeptFiles& kept, std::uint64_t seed,
                                  std::chrono::nanoseconds duration);
 
-/// Returns the files in a message, for `parsing::read_experiment`. Throws CdrError if the message has no experiment, a
-/// path that is not absolute, or unsorted files.
-description::KeptFiles kept_files(const ExperimentFiles& message);
+/// Returns the files of a run's experiment for `parsing::read_experiment`. Throws std::invalid_argument if they have no
+/// experiment, a path that is not absolute, or are not sorted.
+description::KeptFiles kept_files(cohort::ExperimentFiles files);
 
 }  // namespace cohort::messages

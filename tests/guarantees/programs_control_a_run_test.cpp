@@ -6,7 +6,6 @@
 #include <functional>
 #include <thread>
 
-#include "client_sdk/src/control/experiment_query.hpp"
 #include "server/messages/experiment_inputs.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/simulation/simulation.hpp"
@@ -44,14 +43,18 @@ TEST(ProgramsControlARun, TheyPauseItStepItAndEndIt) {
   Control control = control_of(run);
   EXPECT_EQ(control.state(), SimulationState::paused);
   EXPECT_EQ(control.step(70).tick, 70u);
-  EXPECT_EQ(control.pause().tick, 70u) << "it is paused already";
+  const ControlReply paused = control.pause();
+  EXPECT_EQ(paused.tick, 70u);
+  EXPECT_TRUE(paused.was_in_state);
   EXPECT_EQ(control.set_speed(0.0).message, "as fast as possible");
   EXPECT_EQ(control.back(std::chrono::milliseconds(600)).tick, 50u);
   const ControlReply reset = control.reset(7);
   EXPECT_EQ(reset.run, 3u);
   EXPECT_EQ(reset.tick, 0u);
   EXPECT_EQ(reset.state, SimulationState::paused);
-  EXPECT_EQ(control.play().state, SimulationState::playing);
+  const ControlReply played = control.play();
+  EXPECT_EQ(played.state, SimulationState::playing);
+  EXPECT_FALSE(played.was_in_state);
   EXPECT_TRUE(eventually([&] { return control.status().tick > 5; }));
   EXPECT_EQ(refusal([&] { control.step(); }), ControlResult::not_paused) << "it plays";
   EXPECT_EQ(control.stop().state, SimulationState::stopped);
@@ -84,13 +87,10 @@ TEST(ProgramsControlARun, TheyBuildItsExperimentWithoutItsFiles) {
   const SimulationStatus status = control.status();
   std::filesystem::remove(field.file());
   std::filesystem::remove(field / "world.yaml");
-  ControlClient client = client_of(run);
   const auto rebuilt = [&] {
-    const auto files = query_experiment([&](const wire::GetExperiment& question) {
-      return client.ask(question, patience, never).value_or(wire::Reply{});
-    });
+    const ExperimentFiles files = control.experiment_files();
     return parsing::read_experiment(std::make_shared<const description::KeptFiles>(messages::kept_files(files)),
-                                    files.seed, std::chrono::nanoseconds(files.duration_ns));
+                                    files.seed, files.duration);
   };
   const description::Experiment experiment = rebuilt();
   EXPECT_EQ(experiment.seed, status.seed);

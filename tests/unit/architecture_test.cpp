@@ -160,6 +160,19 @@ TEST(Architecture, TheTopLevelFoldersIncludeOnlyThoseBefore) {
       EXPECT_LE(place_of(file), place_of(source.path)) << source.path << " includes " << file;
 }
 
+TEST(Architecture, BridgesIncludeOnlyPublicHeadersOfTheSdk) {
+  std::size_t includes = 0;
+  for (const Source& source : read_sources()) {
+    if (!source.path.starts_with("tools/bridges/")) continue;
+    for (const std::string& file : source.files) {
+      if (!file.starts_with("client_sdk/")) continue;
+      ++includes;
+      EXPECT_TRUE(file.starts_with("client_sdk/include/")) << source.path << " includes " << file;
+    }
+  }
+  EXPECT_GT(includes, 10u);
+}
+
 // As the includes, the imports of the page: `from "./name"`.
 TEST(Architecture, ModulesOfThePageImportEachOtherInNoCircle) {
   const std::filesystem::path top = COHORT_SOURCE_DIR "/tools/view/page/src";

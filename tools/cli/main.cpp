@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "client_sdk/src/standard_streams.hpp"
+#include "idl/text/standard_streams.hpp"
 #include "tools/cli/commands/commands.hpp"
 #include "tools/cli/common/build_facts.hpp"
 

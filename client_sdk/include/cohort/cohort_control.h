@@ -62,7 +62,7 @@ typedef enum CohortResult {
   cohort_result_interrupted = 14,       /* cohort_control_cancel was called */
   cohort_result_bad_reply = 15,         /* the server's reply does not match the request */
   cohort_result_too_many_requests = 16, /* too many requests of this client or its identity wait */
-  cohort_result_cancelled = 17,         /* a change of state cancelled the remaining steps */
+  cohort_result_cancelled = 17,         /* a change of state or the end of the run cancelled the remaining steps */
   cohort_result_not_paused = 18,        /* a run that plays cannot be stepped */
   cohort_result_time_not_held = 19,     /* this client does not hold the run's time */
   cohort_result_link_not_found = 20,    /* the object has no such link */

@@ -63,7 +63,7 @@ enum class ControlResult {
   bad_reply,            ///< the server's reply does not match the request
   no_attachment,        ///< the server's address or the identity cannot be used
   too_many_requests,    ///< too many requests of this client or its identity wait
-  cancelled,            ///< a change of state cancelled the remaining steps
+  cancelled,            ///< a change of state or the end of the run cancelled the remaining steps
   not_paused,           ///< a run that plays cannot be stepped
   time_not_held,        ///< this client does not hold the run's time
   link_not_found,       ///< the object has no such link
@@ -99,6 +99,7 @@ struct ControlReply {
   std::uint64_t tick = 0;            ///< tick boundary at which the request was executed
   std::chrono::nanoseconds time{0};  ///< simulated time since tick 0
   std::string message;               ///< human-readable description of the result
+  bool was_in_state = false;  ///< true if the run was already in the state that `play`, `pause` or `stop` requests
 };
 
 struct SimulatorFeatures {
@@ -300,6 +301,9 @@ class Control {
   /// Returns the events since a revision, 0 for all events, and the range of the kept snapshots (GetHistory). An event
   /// that has occurred again is returned again, with its new count.
   RunHistory history(std::uint64_t since = 0);
+  /// Returns the files from which the run's experiment was read (GetExperiment). They are transferred in parts; the
+  /// time limit applies to each part. Fails with `not_found` if a program created the experiment without files.
+  ExperimentFiles experiment_files();
 
  private:
   struct State;

@@ -9,6 +9,7 @@
 
 #include "client_sdk/src/control/control_client.hpp"
 #include "client_sdk/src/control/control_values.hpp"
+#include "client_sdk/src/control/experiment_query.hpp"
 #include "client_sdk/src/control/run_history_query.hpp"
 
 namespace cohort {
@@ -106,6 +107,7 @@ ControlReply Control::quit() {
     if (error.result != ControlResult::server_gone) throw;
     state_->last = {};
     state_->last.state = SimulationState::quitting;
+    state_->last.message = "the server has ended";
     return state_->last;
   }
 }
@@ -239,6 +241,10 @@ std::string Control::save_recording(const std::filesystem::path& file) {
 
 RunHistory Control::history(std::uint64_t since) {
   return query_history(since, [&](const wire::GetHistory& question) { return state_->request(question); });
+}
+
+ExperimentFiles Control::experiment_files() {
+  return query_experiment([&](const wire::GetExperiment& question) { return state_->request(question); });
 }
 
 }  // namespace cohort

@@ -23,7 +23,9 @@ ControllerStatus from_wire(const wire::ControllerStatus& status) {
 }  // namespace
 
 ControlReply reply_from_wire(const wire::Reply& reply) {
-  return {reply.state, reply.run, reply.tick, std::chrono::nanoseconds(reply.time_ns), reply.error_message};
+  return {reply.state,         reply.run,
+          reply.tick,          std::chrono::nanoseconds(reply.time_ns),
+          reply.error_message, reply.result == wire::ResultCode::already_in_target_state};
 }
 
 SimulationStatus status_from_wire(const wire::Reply& reply, const wire::SimulationStatus& status) {

@@ -10,6 +10,7 @@
 /// Conversions of values between the public headers and the protocol.
 namespace cohort {
 
+/// Converts the reply to a request that has been done.
 ControlReply reply_from_wire(const wire::Reply& reply);
 SimulationStatus status_from_wire(const wire::Reply& reply, const wire::SimulationStatus& status);
 /// Converts a `result` other than ok. The meaning of some numbers depends on the operation.

@@ -4,13 +4,34 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client_sdk/include/cohort/control.hpp"
+#include "idl/messages/experiment_files.hpp"
 
 namespace cohort {
+namespace {
 
-messages::ExperimentFiles query_experiment(const std::function<wire::Reply(const wire::GetExperiment&)>& ask) {
+ExperimentFiles from_message(messages::ExperimentFiles message) {
+  ExperimentFiles files{.seed = message.seed,
+                        .duration = std::chrono::nanoseconds(message.duration_ns),
+                        .experiment = std::move(message.experiment),
+                        .working_folder = std::move(message.working_folder),
+                        .model_path = std::move(message.model_path),
+                        .last_model_folders = std::move(message.last_model_folders),
+                        .folders = std::move(message.folders),
+                        .files = {},
+                        .settings = std::move(message.settings)};
+  files.files.reserve(message.files.size());
+  for (messages::ExperimentFile& file : message.files)
+    files.files.push_back({std::move(file.path), {file.data.begin(), file.data.end()}});
+  return files;
+}
+
+}  // namespace
+
+ExperimentFiles query_experiment(const std::function<wire::Reply(const wire::GetExperiment&)>& ask) {
   const auto bad = [](const std::string& what) { return ControlError(what, ControlResult::bad_reply); };
   std::vector<std::uint8_t> bytes;
   std::uint64_t size = 0;
@@ -33,7 +54,7 @@ messages::ExperimentFiles query_experiment(const std::function<wire::Reply(const
     bytes.insert(bytes.end(), part->data.begin(), part->data.end());
   } while (!run || bytes.size() < size);
   try {
-    return messages::decode<messages::ExperimentFiles>(std::as_bytes(std::span(bytes)));
+    return from_message(messages::decode<messages::ExperimentFiles>(std::as_bytes(std::span(bytes))));
   } catch (const messages::CdrError& error) {
     throw bad(std::string("the server sent an invalid experiment: ") + error.what());
   }

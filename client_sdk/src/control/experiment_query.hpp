@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "idl/messages/experiment_files.hpp"
+#include "idl/include/cohort/types.hpp"
 #include "idl/wire/control_messages.hpp"
 
 namespace cohort {
@@ -11,6 +11,6 @@ namespace cohort {
 /// Requests the files of the run's experiment part by part; `ask` returns the reply to a successful GetExperiment.
 /// `read_experiment` accepts `messages::kept_files` of the result, on any machine. Throws ControlError (`bad_reply`) if
 /// the data is not a valid message.
-messages::ExperimentFiles query_experiment(const std::function<wire::Reply(const wire::GetExperiment&)>& ask);
+ExperimentFiles query_experiment(const std::function<wire::Reply(const wire::GetExperiment&)>& ask);
 
 }  // namespace cohort

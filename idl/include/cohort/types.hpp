@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-/// Types of <cohort/control.hpp> and <cohort/observer.hpp>: poses and velocities, states of a simulation, and events of
-/// a run. Names follow those in ROS 2's simulation_interfaces and geometry_msgs where these define one. Values are in
-/// SI units; the world frame is right-handed with z up.
+/// Types of <cohort/control.hpp> and <cohort/observer.hpp>: poses and velocities, states of a simulation, events of a
+/// run, and files of an experiment. Names follow those in ROS 2's simulation_interfaces and geometry_msgs where these
+/// define one. Values are in SI units; the world frame is right-handed with z up.
 namespace cohort {
 
 struct Vector3 {
@@ -63,6 +63,24 @@ struct RunHistory {
   std::uint64_t first_kept_tick = 0;  ///< tick of the first kept snapshot, if there is one
   std::uint64_t last_kept_tick = 0;
   std::vector<RunEvent> events;  ///< events that are new or have occurred again, in the order of their last occurrences
+};
+
+struct ExperimentFile {
+  std::string path;     ///< absolute, on the server's machine
+  std::string content;  ///< may be binary
+};
+
+/// The files from which a run's experiment was read, and the settings that affect their reading.
+struct ExperimentFiles {
+  std::uint64_t seed = 0;                       ///< seed of the run
+  std::chrono::nanoseconds duration{0};         ///< simulated duration of the experiment
+  std::string experiment;                       ///< path of the experiment's file, as given to the server
+  std::string working_folder;                   ///< absolute; base of relative paths
+  std::string model_path;                       ///< COHORT_MODEL_PATH of the server
+  std::vector<std::string> last_model_folders;  ///< the last folders in the search path of models
+  std::vector<std::string> folders;             ///< folders that were searched and exist
+  std::vector<ExperimentFile> files;            ///< in ascending order of paths
+  std::vector<std::string> settings;            ///< values that replace those of the files, as PATH=VALUE
 };
 
 }  // namespace cohort

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
 
-#include "client_sdk/src/standard_streams.hpp"
+#include "idl/text/standard_streams.hpp"
 #include "tests/benchmarks/comparison/bench.hpp"
 #include "tests/benchmarks/comparison/lockstep/bench_client.hpp"
 #include "tests/benchmarks/comparison/lockstep/lockstep.hpp"

@@ -85,10 +85,14 @@ TEST_F(ClientQueries, FilesOfAnExperimentArriveUnchangedInBoundedParts) {
   EXPECT_NE(beyond.error_message.find("beyond"), std::string::npos) << beyond.error_message;
 
   const auto read = query_experiment([&](const wire::GetExperiment& question) { return ask(question); });
-  EXPECT_EQ(read, messages::experiment_files(*experiment_.inputs, 3, 10s));
+  EXPECT_EQ(read.seed, 3u);
+  EXPECT_EQ(read.duration, 10s);
   const description::KeptFiles kept = messages::kept_files(read);
   EXPECT_EQ(kept.experiment, "a.yaml");
+  EXPECT_EQ(kept.working_folder, "/here");
+  EXPECT_EQ(kept.model_path, "/models");
   EXPECT_EQ(kept.last_model_folders, std::vector<std::string>{"robots"});
+  EXPECT_EQ(kept.folders, (std::vector<std::string>{"/here", "/models"}));
   ASSERT_EQ(kept.files.size(), 2u);
   EXPECT_EQ(kept.files[1].path, "/here/w.sdf");
   EXPECT_EQ(kept.files[1].bytes, experiment_.inputs->files[1].bytes);

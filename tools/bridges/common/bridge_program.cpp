@@ -9,8 +9,8 @@
 #include <sstream>
 #include <system_error>
 
-#include "client_sdk/src/domains.hpp"
-#include "client_sdk/src/standard_streams.hpp"
+#include "idl/text/domains.hpp"
+#include "idl/text/standard_streams.hpp"
 
 namespace cohort::bridges {
 namespace {

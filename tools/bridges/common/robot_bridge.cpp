@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "client_sdk/src/standard_streams.hpp"
+#include "idl/text/standard_streams.hpp"
 
 namespace cohort::bridges {
 namespace {

@@ -4,13 +4,11 @@
 
 #include <chrono>
 #include <filesystem>
-#include <optional>
 #include <string>
 
-#include "client_sdk/src/control/control_client.hpp"
-#include "client_sdk/src/control/experiment_query.hpp"
-#include "client_sdk/src/standard_streams.hpp"
+#include "client_sdk/include/cohort/control.hpp"
 #include "idl/dds/ros2/ros_names.hpp"
+#include "idl/text/standard_streams.hpp"
 #include "server/messages/experiment_inputs.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "tools/bridges/common/bridge_program.hpp"
@@ -26,17 +24,12 @@ ControlOptions control_options(const ClientOptions& client) {
 
 // Requests the files of the server's experiment, and reads the experiment from them.
 std::shared_ptr<const description::Experiment> experiment_of(const ClientOptions& client) {
-  ControlClient control(attach(control_options(client)));
-  const messages::ExperimentFiles files = query_experiment([&](const wire::GetExperiment& question) {
-    constexpr std::chrono::hours at_most{24};  // the server may not be running yet
-    const std::optional<wire::Reply> reply = control.ask(question, at_most, stop_on_signals());
-    if (!reply) throw std::runtime_error("the server did not send its experiment");
-    if (!reply->is_done()) throw std::runtime_error(reply->error_message);
-    return *reply;
-  });
-  return std::make_shared<const description::Experiment>(
-      parsing::read_experiment(std::make_shared<const description::KeptFiles>(messages::kept_files(files)), files.seed,
-                               std::chrono::nanoseconds(files.duration_ns)));
+  Control control(control_options(client));
+  control.stop_on(&stop_on_signals());
+  control.set_time_limit(std::chrono::hours(24));  // the server may not be running yet
+  const ExperimentFiles files = control.experiment_files();
+  return std::make_shared<const description::Experiment>(parsing::read_experiment(
+      std::make_shared<const description::KeptFiles>(messages::kept_files(files)), files.seed, files.duration));
 }
 
 // Returns the ROS domain of the environment. Reports an invalid one like an error in the command line.

@@ -3,7 +3,7 @@
 
 #include "client_sdk/hosting/plugin_loader.hpp"
 #include "client_sdk/src/attachment.hpp"
-#include "client_sdk/src/domains.hpp"
+#include "idl/text/domains.hpp"
 #include "tools/cli/commands/commands.hpp"
 #include "tools/cli/commands/shared_options.hpp"
 #include "tools/cli/running/controller_ends.hpp"

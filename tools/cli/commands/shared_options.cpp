@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "client_sdk/src/domains.hpp"
+#include "idl/text/domains.hpp"
 #include "server/parsing/files/missing_meshes.hpp"
 #include "tools/cli/common/checks.hpp"
 

@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <future>
 #include <memory>
-#include <optional>
-#include <stdexcept>
 #include <thread>
 
+#include "client_sdk/include/cohort/control.hpp"
 #include "client_sdk/src/attachment.hpp"
-#include "client_sdk/src/control/control_client.hpp"
-#include "client_sdk/src/control/experiment_query.hpp"
-#include "client_sdk/src/domains.hpp"
+#include "idl/text/domains.hpp"
 #include "server/messages/experiment_inputs.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "tools/cli/commands/commands.hpp"
@@ -112,14 +110,12 @@ class ModelsOfRun {
  private:
   description::Models read(const ControlOptions& options) const {
     try {
-      ControlClient control(attach(options));
-      const messages::ExperimentFiles files = query_experiment([&](const wire::GetExperiment& question) {
-        const std::optional<wire::Reply> reply = control.ask(question, for_ever, leave_);
-        if (!reply || !reply->is_done()) throw std::runtime_error("the server did not send its experiment");
-        return *reply;
-      });
+      Control control(options);
+      control.stop_on(&leave_);
+      control.set_time_limit(for_ever);
+      const ExperimentFiles files = control.experiment_files();
       return parsing::read_experiment(std::make_shared<const description::KeptFiles>(messages::kept_files(files)),
-                                      files.seed, std::chrono::nanoseconds(files.duration_ns))
+                                      files.seed, files.duration)
           .world.models;
     } catch (const std::exception&) {
       return {};

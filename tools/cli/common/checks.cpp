@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "client_sdk/src/domains.hpp"
+#include "idl/text/domains.hpp"
 #include "server/core/text.hpp"
 
 namespace cohort::tool {

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "client_sdk/src/standard_streams.hpp"
+#include "idl/text/standard_streams.hpp"
 #include "server/core/text.hpp"
 
 namespace cohort::tool {

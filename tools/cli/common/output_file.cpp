@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "client_sdk/src/standard_streams.hpp"
+#include "idl/text/standard_streams.hpp"
 #include "server/core/atomic_file.hpp"
 #include "tools/cli/common/exit_codes.hpp"
 #include "tools/cli/common/log.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "client_sdk/src/standard_streams.hpp"
 #include "idl/text/printable.hpp"
+#include "idl/text/standard_streams.hpp"
 
 /// Output for users and programs: valid UTF-8 without terminal control sequences, even if the input is not.
 namespace cohort::tool {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "client_sdk/src/standard_streams.hpp"
+#include "idl/text/standard_streams.hpp"
 #include "tools/cli/commands/commands.hpp"
 #include "tools/cli/common/command_tree.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "client_sdk/src/standard_streams.hpp"
 #include "idl/include/cohort/version.h"
+#include "idl/text/standard_streams.hpp"
 #include "tools/cli/commands/commands.hpp"
 #include "tools/cli/common/command_tree.hpp"
 

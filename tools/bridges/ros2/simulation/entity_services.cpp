@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "idl/messages/ros_messages.hpp"
+#include "tools/bridges/ros2/simulation/service_results.hpp"
 
 namespace cohort::ros2 {
 namespace {
@@ -22,20 +23,20 @@ std::string frame_problem(const ros::Header& header) {
   return "frame_id '" + header.frame_id + "': expected 'world' or an empty frame_id";
 }
 
-WorldPose to_wire(const ros::Pose& pose) {
+WorldPose from_ros(const ros::Pose& pose) {
   const auto& [position, orientation] = pose;
   return {{position.x, position.y, position.z}, {orientation.x, orientation.y, orientation.z, orientation.w}};
 }
 
-Twist to_wire(const ros::Twist& twist) {
+Twist from_ros(const ros::Twist& twist) {
   return {{twist.linear.x, twist.linear.y, twist.linear.z}, {twist.angular.x, twist.angular.y, twist.angular.z}};
 }
 
 ros::Vector3 to_ros(const Vector3& vector) { return {vector.x, vector.y, vector.z}; }
 
-simulation::EntityState to_ros(const wire::EntityState& state, std::int64_t time_ns) {
+simulation::EntityState to_ros(const EntityState& state, std::chrono::nanoseconds time) {
   const auto& [position, orientation] = state.pose;
-  return {.header = {ros::time(std::chrono::nanoseconds(time_ns)), world_frame},
+  return {.header = {ros::time(time), world_frame},
           .pose = {{position.x, position.y, position.z}, {orientation.x, orientation.y, orientation.z, orientation.w}},
           .twist = {to_ros(state.twist.linear), to_ros(state.twist.angular)},
           .acceleration = {}};
@@ -87,32 +88,34 @@ simulation::SpawnEntity::Response EntityServices::answer(const simulation::Spawn
             {}};
   if (const std::string problem = frame_problem(asked.initial_pose.header); !problem.empty())
     return {{SpawnResult::invalid_pose, problem}, {}};
-  wire::SpawnEntity spawn{.entity = asked.name,
-                          .allow_renaming = asked.allow_renaming,
-                          .uri = asked.entity_resource.uri,
-                          .resource_string = asked.entity_resource.resource_string,
-                          .pose = to_wire(asked.initial_pose.pose),
-                          .team = {}};
-  const bool is_driven = !spawn.uri.ends_with(undriven);
-  if (!is_driven) spawn.uri.resize(spawn.uri.size() - undriven.size());
+  Spawn spawn{.name = asked.name,
+              .allow_renaming = asked.allow_renaming,
+              .model = asked.entity_resource.uri,
+              .text = asked.entity_resource.resource_string,
+              .pose = from_ros(asked.initial_pose.pose)};
+  const bool is_driven = !spawn.model.ends_with(undriven);
+  if (!is_driven) spawn.model.resize(spawn.model.size() - undriven.size());
   // A name is the simulator's to find if it may be another one.
-  if (spawn.entity.empty() && spawn.allow_renaming) spawn.entity = spawn.uri.empty() ? "entity" : spawn.uri;
-  const wire::Reply reply = run_.ask(spawn);
-  const auto* spawned = reply.get<wire::EntityName>();
-  if (!reply.is_done() || spawned == nullptr) return {result_of(reply), {}};
-  note_spawned(spawned->entity, spawn, is_driven);
-  return {result_of(reply), spawned->entity};
+  if (spawn.name.empty() && spawn.allow_renaming) spawn.name = spawn.model.empty() ? "entity" : spawn.model;
+  std::string entity;
+  try {
+    entity = run_.spawn(spawn);
+  } catch (const ControlError& error) {
+    return {result_of(error, SpawnResult::invalid_pose), {}};
+  }
+  note_spawned(entity, spawn, is_driven);
+  return {result_of(run_.last_reply()), entity};
 }
 
-void EntityServices::note_spawned(const std::string& entity, const wire::SpawnEntity& asked, bool is_driven) {
+void EntityServices::note_spawned(const std::string& entity, const Spawn& asked, bool is_driven) {
   const auto& models = experiment().world.models;
-  if (!asked.resource_string.empty()) {
+  if (!asked.text.empty()) {
     models_.erase(entity);
-    description::ParsedModelPtr parsed = experiment().read_model(asked.resource_string);
+    description::ParsedModelPtr parsed = experiment().read_model(asked.text);
     if (parsed->model.is_robot()) listener_.spawned({entity, std::move(parsed), is_driven});
     return;
   }
-  const auto model = std::ranges::find(models, asked.uri, &description::Model::name);
+  const auto model = std::ranges::find(models, asked.model, &description::Model::name);
   if (model == models.end()) return;
   models_[entity] = static_cast<std::size_t>(model - models.begin());
   if (model->is_robot()) listener_.spawned({entity, nullptr, is_driven});
@@ -131,18 +134,16 @@ simulation::SpawnEntities::Response EntityServices::answer(const simulation::Spa
 }
 
 simulation::DeleteEntity::Response EntityServices::answer(const simulation::DeleteEntity::Request& asked) {
-  const wire::Reply reply = run_.ask(wire::DeleteEntity{asked.entity});
-  if (reply.is_done()) listener_.deleted(asked.entity);
+  const ControlReply reply = run_.remove(asked.entity);
+  listener_.deleted(asked.entity);
   return {result_of(reply)};
 }
 
 simulation::GetEntities::Response EntityServices::answer(const simulation::GetEntities::Request& asked) {
   if (const auto problem = filter_problem(asked.filters)) return {*problem, {}};
-  const wire::Reply reply = run_.ask(wire::GetEntities{asked.filters.filter});
-  simulation::GetEntities::Response response{result_of(reply), {}};
-  if (const auto* names = reply.get<wire::EntityNames>())
-    std::ranges::copy_if(names->entities, std::back_inserter(response.entities),
-                         [&](const std::string& entity) { return is_selected(entity, asked.filters); });
+  simulation::GetEntities::Response response{{}, run_.entities(asked.filters.filter)};
+  response.result = result_of(run_.last_reply());
+  std::erase_if(response.entities, [&](const std::string& entity) { return !is_selected(entity, asked.filters); });
   return response;
 }
 
@@ -150,20 +151,20 @@ simulation::GetEntitiesStates::Response EntityServices::answer(const simulation:
   const auto [result, names] = answer(simulation::GetEntities::Request{asked.filters});
   simulation::GetEntitiesStates::Response response{result, {}, {}};
   for (const std::string& name : names) {
-    const wire::Reply reply = run_.ask(wire::GetEntityState{name});
-    const auto* state = reply.get<wire::EntityState>();
-    if (reply.result == wire::ResultCode::not_found) continue;  // it has gone meanwhile
-    if (!reply.is_done() || state == nullptr) return {result_of(reply), {}, {}};
-    response.entities.push_back(name);
-    response.states.push_back(to_ros(*state, reply.time_ns));
+    try {
+      const EntityState state = run_.entity_state(name);
+      response.entities.push_back(name);
+      response.states.push_back(to_ros(state, run_.last_reply().time));
+    } catch (const ControlError& error) {
+      if (error.result != ControlResult::not_found) throw;  // otherwise it has gone meanwhile
+    }
   }
   return response;
 }
 
 simulation::GetEntityState::Response EntityServices::answer(const simulation::GetEntityState::Request& asked) {
-  const wire::Reply reply = run_.ask(wire::GetEntityState{asked.entity});
-  const auto* state = reply.get<wire::EntityState>();
-  return {result_of(reply), state == nullptr ? simulation::EntityState{} : to_ros(*state, reply.time_ns)};
+  const EntityState state = run_.entity_state(asked.entity);
+  return {result_of(run_.last_reply()), to_ros(state, run_.last_reply().time)};
 }
 
 simulation::SetEntityState::Response EntityServices::answer(const simulation::SetEntityState::Request& asked) {
@@ -171,18 +172,18 @@ simulation::SetEntityState::Response EntityServices::answer(const simulation::Se
     return {{simulation::SetEntityState::Response::invalid_pose, problem}};
   if (asked.set_acceleration)
     return {{Result::feature_unsupported, "acceleration cannot be set: expected a pose or a twist"}};
-  wire::SetEntityState set{asked.entity, {}, {}};
-  if (asked.set_pose) set.pose = to_wire(asked.state.pose);
-  if (asked.set_twist) set.twist = to_wire(asked.state.twist);
-  return {result_of(run_.ask(set))};
+  const EntityState state{asked.entity, from_ros(asked.state.pose), from_ros(asked.state.twist)};
+  if (asked.set_pose && asked.set_twist) return {result_of(run_.set_entity_state(state))};
+  if (asked.set_pose) return {result_of(run_.set_pose(state.entity, state.pose))};
+  if (asked.set_twist) return {result_of(run_.set_twist(state.entity, state.twist))};
+  return {{Result::operation_failed, "expected a pose, a twist or both"}};
 }
 
 simulation::GetEntityInfo::Response EntityServices::answer(const simulation::GetEntityInfo::Request& asked) {
-  const wire::Reply reply = run_.ask(wire::GetEntityState{asked.entity});
-  if (!reply.is_done()) return {result_of(reply), {}};
+  run_.entity_state(asked.entity);
   const auto model = model_of(asked.entity);
   const std::string description = model ? "model " + experiment().world.models[*model].name : std::string();
-  return {result_of(reply), {category_of(asked.entity), description, {}}};
+  return {result_of(run_.last_reply()), {category_of(asked.entity), description, {}}};
 }
 
 simulation::GetSpawnables::Response EntityServices::answer(const simulation::GetSpawnables::Request& asked) {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <string>
 
+#include "client_sdk/include/cohort/control.hpp"
 #include "idl/messages/ros_simulation_queries.hpp"
 #include "idl/messages/ros_simulation_services.hpp"
 #include "server/description/experiment.hpp"
-#include "tools/bridges/ros2/simulation/run_control.hpp"
 
 namespace cohort::ros2 {
 
@@ -28,12 +28,13 @@ struct EntityListener {
   std::function<void(const std::string& entity)> deleted;
 };
 
-/// Answers of the services for entities and the world. Not thread-safe.
+/// Answers of the services for entities and the world. The functions throw ControlError if a request to the
+/// server fails. Not thread-safe.
 class EntityServices {
  public:
   using MakeExperiment = std::function<std::shared_ptr<const description::Experiment>()>;
   /// `experiment` is called at the first request that needs it. `run` must outlive this.
-  EntityServices(RunControl& run, MakeExperiment experiment, EntityListener listener)
+  EntityServices(Control& run, MakeExperiment experiment, EntityListener listener)
       : run_(run), make_experiment_(std::move(experiment)), listener_(std::move(listener)) {}
 
   simulation::SpawnEntity::Response answer(const simulation::SpawnEntity::Request& asked);
@@ -54,9 +55,9 @@ class EntityServices {
   std::optional<std::size_t> model_of(const std::string& entity);
   simulation::EntityCategory category_of(const std::string& entity);
   bool is_selected(const std::string& entity, const simulation::EntityFilters& filters);
-  void note_spawned(const std::string& entity, const wire::SpawnEntity& asked, bool is_driven);
+  void note_spawned(const std::string& entity, const Spawn& asked, bool is_driven);
 
-  RunControl& run_;
+  Control& run_;
   MakeExperiment make_experiment_;
   EntityListener listener_;
   std::shared_ptr<const description::Experiment> experiment_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "idl/messages/ros_type_hash.hpp"
+#include "tools/bridges/ros2/simulation/service_results.hpp"
 #include "tools/bridges/ros2/simulation/time_services.hpp"
 
 namespace cohort::ros2 {
@@ -13,15 +14,22 @@ namespace {
 using messages::Bytes;
 using messages::ByteView;
 
+template <class Response>
+Response failed(simulation::Result result) {
+  Response response;
+  if constexpr (requires { response.result; }) response.result = std::move(result);
+  return response;
+}
+
 // Answers a request; turns its errors into a result.
 template <class Response, class Request>
 Response response_to(const Request& request, const auto& answer_it) {
   try {
     return answer_it(request);
+  } catch (const ControlError& error) {
+    return failed<Response>(result_of(error));
   } catch (const std::exception& error) {
-    Response failed;
-    if constexpr (requires { failed.result; }) failed.result = {simulation::Result::operation_failed, error.what()};
-    return failed;
+    return failed<Response>({simulation::Result::operation_failed, error.what()});
   }
 }
 
@@ -90,7 +98,8 @@ std::string service_name(const std::string& type) {
 
 SimulationServices::SimulationServices(const ControlOptions& options, EntityServices::MakeExperiment experiment,
                                        EntityListener listener, InterfaceVersion version, const std::atomic<bool>& stop)
-    : run_(options, stop), entities_(run_, std::move(experiment), std::move(listener)) {
+    : run_(options), entities_(run_, std::move(experiment), std::move(listener)) {
+  run_.stop_on(&stop);
   services_ = {service<simulation::GetSimulatorFeatures>(run_),
                service<simulation::GetSimulationState>(run_),
                service<simulation::SetSimulationState>(run_),

@@ -41,7 +41,7 @@ class SimulationServices {
   const std::vector<OfferedService>& all() const { return services_; }
 
  private:
-  RunControl run_;
+  Control run_;
   EntityServices entities_;
   std::vector<OfferedService> services_;
 };

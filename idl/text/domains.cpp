@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client_sdk/src/domains.hpp"
+#include "idl/text/domains.hpp"
 
 #include <unistd.h>
 

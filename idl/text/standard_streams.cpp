@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client_sdk/src/standard_streams.hpp"
+#include "idl/text/standard_streams.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -26,9 +26,9 @@ struct ExperimentFiles {
   std::string working_folder;    ///< absolute; base of relative paths
   std::string model_path;        ///< COHORT_MODEL_PATH of the server
   std::vector<std::string> last_model_folders;
-  std::vector<std::string> folders;   ///< folders that were searched and exist
-  std::vector<ExperimentFile> files;  ///< in ascending order of paths
-  std::vector<std::string> settings;  ///< values that replace those of the files, as PATH=VALUE
+  std::vector<std::string> folders;     ///< folders that were searched and exist
+  std::vector<ExperimentFile> files;    ///< in ascending order of paths
+  std::vector<std::string> settings{};  ///< values that replace those of the files, as PATH=VALUE
   bool operator==(const ExperimentFiles&) const = default;
   static constexpr const char* type = "cohort_msgs/msg/ExperimentFiles";
   static constexpr std::size_t least_fields = 8;  // protocol 1.3

@@ -19,9 +19,9 @@ struct KeptFiles {
   std::string working_folder;  ///< absolute; base of relative paths
   std::string model_path;      ///< the environment variable COHORT_MODEL_PATH
   std::vector<std::string> last_model_folders;
-  std::vector<std::string> settings;  ///< values that replace those of the files, as PATH=VALUE, in order
-  std::vector<KeptFile> files;        ///< all files that were read, ascending by path
-  std::vector<std::string> folders;   ///< folders that were searched for and found; absolute, ascending
+  std::vector<std::string> settings{};  ///< values that replace those of the files, as PATH=VALUE, in order
+  std::vector<KeptFile> files;          ///< all files that were read, ascending by path
+  std::vector<std::string> folders;     ///< folders that were searched for and found; absolute, ascending
 };
 
 }  // namespace cohort::description

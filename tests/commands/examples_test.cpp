@@ -63,6 +63,27 @@ TEST(Examples, TellHowWellContactsAndJointsWereSolved) {
             is_any);
 }
 
+TEST(Examples, RunWithOtherValuesWhichRecordingsContain) {
+  const ScratchFolder folder;
+  const std::string recording = folder / "run.mcap";
+  const auto hash_of = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", "posts", "--duration", "1", "--summary", folder / "summary.json"});
+    const Ended ran = cohort(more);
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    return hash_in(folder / "summary.json");
+  };
+  const std::string changed =
+      hash_of({"--set", "world.population.posts.count=5", "--set", "teams.learners.period=4", "--record", recording});
+  EXPECT_NE(changed, hash_of({}));
+  EXPECT_NE(changed, hash_of({"--set", "world.population.posts.count=5"}));
+  const Ended replayed = cohort({"replay", recording, "--verify"});
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+  const Ended misspelt = cohort({"check", "posts", "--set", "teams.learner.period=4"});
+  EXPECT_EQ(misspelt.exit_code, 2);
+  EXPECT_NE(misspelt.err.find("posts.yaml:6: teams.learner.period"), std::string::npos) << misspelt.err;
+  EXPECT_NE(misspelt.err.find("did you mean 'learners'?"), std::string::npos) << misspelt.err;
+}
+
 TEST(Seeds, ProduceOneRunEach) {
   const ScratchFolder folder;
   const auto run = [&](const std::string& name, std::vector<std::string> more) {

@@ -80,7 +80,7 @@ struct ExperimentFiles {
   std::vector<std::string> last_model_folders;  ///< the last folders in the search path of models
   std::vector<std::string> folders;             ///< folders that were searched and exist
   std::vector<ExperimentFile> files;            ///< in ascending order of paths
-  std::vector<std::string> settings;            ///< values that replace those of the files, as PATH=VALUE
+  std::vector<std::string> settings{};          ///< values that replace those of the files, as PATH=VALUE
 };
 
 }  // namespace cohort

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/parsing/sdf/set_in_sdf.hpp"
 
 #include <algorithm>
@@ -13,11 +14,21 @@
 namespace cohort::parsing {
 namespace {
 
-// Returns the element or attribute that a step of a path means; the step itself if there is none.
-std::string known_name(const ElementSchema& schema, const std::string& step) {
-  if (schema.has_attribute(step) || schema.has_child(step)) return step;
+// Returns the element or attribute that a step of a path means; the step itself if there is none. An element that
+// `node` has comes first: both SDF and Cohort have a <population>.
+std::string known_name(const ElementSchema& schema, const std::string& step, const XmlNode* node = nullptr) {
   const std::string with_prefix = prefixed(step);
+  if (node != nullptr && node->child(step) == nullptr && node->child(with_prefix) != nullptr) return with_prefix;
+  if (schema.has_attribute(step) || schema.has_child(step)) return step;
   return schema.has_child(with_prefix) ? with_prefix : step;
+}
+
+// Returns the names of the attributes and elements of an element, without the prefix of Cohort.
+std::vector<std::string> keys_of(const ElementSchema& schema) {
+  std::vector<std::string> keys = schema.attributes();
+  for (const std::string& child : schema.children())
+    keys.push_back(has_prefix(child) ? child.substr(prefixed("").size()) : child);
+  return keys;
 }
 
 class SdfSetter {
@@ -37,7 +48,7 @@ class SdfSetter {
 
   // Finds the element of each step. `written`: the steps with the prefix of Cohort, without names of elements.
   bool set_below(XmlNode& node, const ElementSchema& schema, std::size_t done) {
-    const std::string name = known_name(schema, setting_.path[done]);
+    const std::string name = known_name(schema, setting_.path[done], &node);
     written_.push_back(name);
     const bool is_last = done + 1 == setting_.path.size();
     if (schema.has_attribute(name)) {
@@ -56,8 +67,11 @@ class SdfSetter {
     }
     if (those.size() == 1 && known_below(of_child, setting_.path[done + 1]))
       return set_below(node.children[those.front()], of_child, done + 1);
-    return fail(node, "cannot be set, since there is no <" + name + "> named '" + setting_.path[done + 1] + "'" +
-                          suggestion(setting_.path[done + 1], names));
+    const std::string& step = setting_.path[done + 1];
+    const std::vector<std::string> keys = keys_of(of_child);
+    if (name == "world" || nearest(step, keys))
+      return fail(node, "cannot be set, since <" + name + "> has no '" + step + "'" + suggestion(step, keys));
+    return fail(node, "cannot be set, since there is no <" + name + "> named '" + step + "'" + suggestion(step, names));
   }
 
   bool set_named(XmlNode& parent, XmlNode& node, const ElementSchema& schema, std::size_t done) {

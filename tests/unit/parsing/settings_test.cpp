@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,11 +17,14 @@ namespace {
 
 using Settings = std::vector<std::string>;
 
+const std::filesystem::path models = COHORT_SOURCE_DIR "/worlds/robots";
+
 constexpr const char* world_in_yaml = R"(world:
   gravity: [0, 0, -9.81]
   model:
     - {name: floor, static: true, link: {collision: {geometry: {plane: {}}}}}
     - {name: stone, pose: [1, 0, 1, 0, 0, 0], link: {collision: {geometry: {sphere: {radius: 0.1}}}}}
+  include: [{uri: model://sbot, name: digger}, {uri: model://sbot, name: carrier, pose: [0, 1, 0, 0, 0, 0]}]
   cohort:population:
     - name: stones
       uri: stone.yaml
@@ -41,6 +45,8 @@ constexpr const char* world_in_sdf = R"(<sdf version="1.9" xmlns:cohort="https:/
         <collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>
       </link>
     </model>
+    <include><uri>model://sbot</uri><name>digger</name></include>
+    <include><uri>model://sbot</uri><name>carrier</name><pose>0 1 0 0 0 0</pose></include>
   </world>
 </sdf>
 )";
@@ -49,11 +55,10 @@ constexpr const char* experiment = R"(world: WORLD
 duration: 5
 teams:
   - name: diggers
-    robots: none/*
-    required: false
+    robots: digger
     controller: obstacle_avoidance
     parameters: {gain: 1.5}
-  - {name: carriers, robots: none/*, required: false, controller: obstacle_avoidance}
+  - {name: carriers, robots: carrier, controller: obstacle_avoidance}
 )";
 
 class SettingsOfExperiments : public testing::TestWithParam<const char*> {
@@ -67,7 +72,7 @@ class SettingsOfExperiments : public testing::TestWithParam<const char*> {
     test::write_file(folder_ / "run.yaml", text.replace(text.find("WORLD"), 5, GetParam()));
   }
   description::Experiment read(const Settings& settings) const {
-    return read_experiment(folder_ / "run.yaml", {}, {}, {}, Xacro::refused, settings);
+    return read_experiment(folder_ / "run.yaml", {}, {}, {models}, Xacro::refused, settings);
   }
   std::string problems_with(const std::string& setting) const {
     try {
@@ -143,11 +148,11 @@ TEST(Settings, OfAPopulationNeedNoPrefix) {
   test::write_file(folder / "stone.yaml",
                    "model: {name: stone, link: {collision: {geometry: {sphere: {radius: 0.05}}}}}\n");
   const auto count_with = [&](const Settings& settings) {
-    return read_experiment(folder / "world.yaml", {}, {}, {}, Xacro::refused, settings).world.instances.size();
+    return read_experiment(folder / "world.yaml", {}, {}, {models}, Xacro::refused, settings).world.instances.size();
   };
-  EXPECT_EQ(count_with({}), 4u);
-  EXPECT_EQ(count_with({"world.population.stones.count=5"}), 7u);
-  EXPECT_EQ(count_with({"world.cohort:population.stones.count=5"}), 7u);
+  EXPECT_EQ(count_with({}), 6u);
+  EXPECT_EQ(count_with({"world.population.stones.count=5"}), 9u);
+  EXPECT_EQ(count_with({"world.cohort:population.stones.count=5"}), 9u);
 }
 
 TEST(Settings, OfAnotherFormAreRefused) {

@@ -35,7 +35,7 @@ struct RunCommand {
   unsigned threads = 0;                      ///< 0: one for each core
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
-  std::vector<std::string> settings;  ///< values that replace those of the files, as PATH=VALUE
+  std::vector<std::string> settings{};  ///< values that replace those of the files, as PATH=VALUE
   std::vector<std::uint64_t> seeds;   ///< run all files with each of these; empty: with `seed`
   unsigned jobs = 0;                  ///< with `seeds`: runs at once; 0: number of idle cores
   bool is_part = false;               ///< one run of several, started by SideBySide: no summary, no progress

@@ -122,8 +122,18 @@ TYPED_TEST(RosMessages, AreDecodedAsEncodedAndRefusedIfTruncated) {
     any.fill(message);
     const Bytes bytes = encode(message);
     EXPECT_EQ(decode<TypeParam>(bytes), message);
-    for (std::size_t size = 0; size < bytes.size(); ++size)
-      EXPECT_THROW(decode<TypeParam>(ByteView(bytes).first(size)), CdrError) << size << " of " << bytes.size();
+    // A message that has grown may end with any field of an earlier version.
+    std::size_t versions = 1;
+    if constexpr (GrownMessage<TypeParam>)
+      versions += std::tuple_size_v<decltype(TypeParam::fields)> - TypeParam::least_fields;
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      try {
+        decode<TypeParam>(ByteView(bytes).first(size));
+        --versions;
+      } catch (const CdrError&) {
+      }
+    }
+    EXPECT_EQ(versions, 1u);
   }
 }
 

@@ -17,7 +17,7 @@ namespace {
 // Returns the element or attribute that a step of a path means; the step itself if there is none. An element that
 // `node` has comes first: both SDF and Cohort have a <population>.
 std::string known_name(const ElementSchema& schema, const std::string& step, const XmlNode* node = nullptr) {
-  const std::string with_prefix = prefixed(step);
+  std::string with_prefix = prefixed(step);
   if (node != nullptr && node->child(step) == nullptr && node->child(with_prefix) != nullptr) return with_prefix;
   if (schema.has_attribute(step) || schema.has_child(step)) return step;
   return schema.has_child(with_prefix) ? with_prefix : step;

@@ -110,9 +110,10 @@ def test_values_replace_those_of_the_experiment_and_its_world(tmp_path, cohort_p
     assert (changed.duration, changed.teams[0].period) == (1.0, 2)
     result = changed.run(Forward, record=tmp_path / "run.mcap")
     assert result.state_hash == pickle.loads(pickle.dumps(changed)).run(Forward).state_hash
-    assert result.state_hash != experiment.with_values({"duration": 1, "teams.explorers.period": 2}).run(Forward).state_hash
+    on_earth = experiment.with_values({"duration": 1, "teams.explorers.period": 2})
+    assert result.state_hash != on_earth.run(Forward).state_hash
     assert "identical" in cohort_program("replay", str(tmp_path / "run.mcap"), "--verify")
-    with pytest.raises(cohort.InputError, match="no item 'explorer'; did you mean 'explorers'?"):
+    with pytest.raises(cohort.InputError, match="no item 'explorer'; did you mean 'explorers'"):
         experiment.with_values({"teams.explorer.period": 2})
 
 

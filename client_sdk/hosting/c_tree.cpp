@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "client_sdk/hosting/c_handles.hpp"
+#include "client_sdk/include/cohort/cohort_tree.h"
 
 namespace cohort {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/geometry/scene/grid.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 

@@ -9,8 +9,8 @@
 
 namespace cohort::physics {
 
-/// The motion of a segment relative to its parent. `free`: six dofs; `anchored`: fixed to the world. Only the functions
-/// of this header, and the set-up of Bullet's bodies, depend on the kind of motion.
+/// The motion of a segment relative to its parent. `free`: six dofs; `anchored`: fixed to the world. A new
+/// kind of motion needs the functions of this header and the set-up of Bullet's bodies.
 enum class Motion { free, anchored, revolute, prismatic, ball };
 
 /// Links that are welded together and move as one. Frame S has its origin at the joint above, or at the root link, and

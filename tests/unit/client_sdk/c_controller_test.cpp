@@ -9,6 +9,7 @@
 
 #include "client_sdk/hosting/controller_host.hpp"
 #include "client_sdk/include/cohort/cohort.h"
+#include "client_sdk/include/cohort/cohort_tree.h"
 #include "tests/support/counting_controller.hpp"
 
 namespace cohort {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/* Compiled as strict C99, with all warnings: the headers of programs that control a run or look on. */
+/* Compiled as strict C99, with all warnings: the headers of programs that control a run or look on, and that of kinematic trees. */
 #include <cohort/cohort_observer.h>
+#include <cohort/cohort_tree.h>
 
 int64_t control_and_look_on(void);
 int64_t control_and_look_on(void) {

@@ -46,7 +46,7 @@ struct ContactPoints {
   Eigen::Vector3d friction_direction_W = Eigen::Vector3d::Zero();
 
   void add(const Eigen::Vector3d& position_W, const Eigen::Vector3d& normal_W, double gap) {
-    assert(is_unit(normal_W) && std::isfinite(gap));
+    assert(is_unit(normal_W));
     if (count < most) points[static_cast<std::size_t>(count++)] = {position_W, normal_W, gap, {}, {}, 0.0};
   }
   ContactPoint* begin() { return points.data(); }

@@ -43,8 +43,9 @@ bool Member::is_valid() const {
   const double* const velocities = motion.velocities();
   return std::all_of(velocities, velocities + motion.mechanism().dof_count(),
                      [](double v) { return std::isfinite(v); }) &&
-         std::ranges::all_of(motion.segment_poses(),
-                             [](const Pose& X_WS) { return X_WS.position.allFinite() && is_unit(X_WS.orientation); });
+         std::ranges::all_of(motion.segment_poses(), [](const Pose& X_WS) {
+           return X_WS.position.allFinite() && X_WS.orientation.coeffs().allFinite() && is_unit(X_WS.orientation);
+         });
 }
 
 Assembly::Assembly(const description::World& world)

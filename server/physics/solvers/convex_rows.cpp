@@ -47,7 +47,7 @@ void ConvexRows::gather(Problem& problem, const std::vector<std::vector<double>>
     term.upper = row.upper;
     for (std::size_t k = 0; k < term.count; ++k) impulses_[i + k] = term.impulse[k] = rows[i + k].impulse;
     set_compliance(term);
-    assert(term.compliance + term.softness > 0.0 && term.lower <= term.upper);
+    assert(!(term.compliance + term.softness <= 0.0) && !(term.lower > term.upper));
   }
   for (ConvexTerm& term : terms_) guess_limit(term);
 }
